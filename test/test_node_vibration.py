@@ -4,6 +4,7 @@
 import itertools
 import math
 import signal
+import time
 
 import numpy as np
 import pytest
@@ -20,7 +21,8 @@ from bearing_sim.scene.loader import load_scene  # noqa: E402
 from bearing_sim.vibration.synthetic import Machine, record  # noqa: E402
 
 pytestmark = pytest.mark.timeout(300)
-RATE, WINDOW, BLOCKS = 51_200.0, 1.0, 5
+RATE, WINDOW, BLOCKS = 51_200.0, 0.5, 2
+AGAIN = 10.0  # [s] after which a window is sent again, in case that it was lost
 
 
 def test_blocks_of_vibration_become_a_measured_cage_speed_with_its_error_and_noise_becomes_none(tmp_path):
@@ -30,7 +32,7 @@ def test_blocks_of_vibration_become_a_measured_cage_speed_with_its_error_and_noi
     synthetic = record(machine, RATE, WINDOW, np.random.default_rng(3))
     noise = np.random.default_rng(4).normal(size=int(RATE * WINDOW))
     domain = fresh_domain()
-    arguments = ("-p", "overrides:=['vibration.window=1 s']", "-p", "governor:=false", "-p", f"record:={tmp_path / 'run.mcap'}")
+    arguments = ("-p", "overrides:=['vibration.window=0.5 s']", "-p", "governor:=false", "-p", f"record:={tmp_path / 'run.mcap'}")
     process, client = NodeProcess(tmp_path, domain, "--ros-args", *arguments), Client(domain)
     kind = topics.VIBRATION.ros_type
     publisher = client.node.create_publisher(message_class(kind), topics.VIBRATION.name, qos_profile_sensor_data)
@@ -42,15 +44,18 @@ def test_blocks_of_vibration_become_a_measured_cage_speed_with_its_error_and_noi
         publisher.publish(message(kind, {"layout": {"dim": dimensions, "data_offset": 0}, "data": np.asarray(samples)}))
 
     def send_window(samples):
+        """Send the blocks of a window at once, so that no busy machine tears it, and wait until it is analysed."""
+        before, end = value("windows"), time.monotonic() + AGAIN
         for block in np.split(samples, BLOCKS):
             send(block, rate=int(RATE), sequence=next(numbers))
-            client.drive(WINDOW / BLOCKS)
+        while value("windows") == before and time.monotonic() < end:
+            client.drive(0.1)
 
     def value(key):
         return client.values().get(f"vibration: {key}", "")
 
     def send_until(samples, condition):
-        for _ in range(60):
+        for _ in range(20):
             send_window(samples)
             if condition():
                 return

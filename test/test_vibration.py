@@ -22,9 +22,10 @@ from click.testing import CliRunner
 from bearing_sim.cli.main import main
 from bearing_sim.files.limits import VARIABLE, FileError
 from bearing_sim.recording.writer import McapFile
+from bearing_sim.studies.vibration import Condition, errors_in
 from bearing_sim.vibration.analysis import CLAIMED_SLIP, Geometry, analyse
 from bearing_sim.vibration.comb import families, orders_of, spectra
-from bearing_sim.vibration.order_tracking import recorded_shaft
+from bearing_sim.vibration.order_tracking import constant_shaft, find_shaft, recorded_shaft
 from bearing_sim.vibration.phase import Track, follow, mean_rate, smoothed
 from bearing_sim.vibration.reading import read_vibration
 from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, repetition
@@ -208,6 +209,34 @@ def test_lines_are_cut_and_impulses_are_kept():
     knocks = noise.copy()
     knocks[::256] += 30.0
     assert Spectrum(knocks, 25_600.0).kurtosis(Band(0.0, 12_800.0)) > 10.0 * abs(plain.kurtosis(Band(0.0, 12_800.0)))
+
+
+def test_what_fills_many_bins_of_a_spectrum_is_no_discrete_line_and_is_kept():
+    rng = np.random.default_rng(2)
+    noise = rng.normal(size=51_200)
+    lines = np.fft.rfft(noise)
+    lines *= 1.0 + 19.0 * np.exp(-0.5 * ((np.arange(len(lines)) - 8020.0) / 20.0) ** 2)  # as wide as those of a cage that wanders at a high speed
+    time = np.arange(51_200) / 25_600.0
+    samples = np.fft.irfft(lines) + 30.0 * np.cos(2.0 * math.pi * 5123.4 * time)
+    cut = Spectrum(samples, 25_600.0, 0.05).without_lines()._lines == 0.0
+    assert not cut[7980:8060].any() and cut[10_244:10_250].all() and cut.mean() < 0.005
+
+
+@pytest.mark.parametrize(("shows", "speed", "noise"), [("outer_ring", 30_000.0, -10.0), ("outer_ring", 3000.0, -20.0), ("inner_ring", 3000.0, 0.0)])
+def test_a_ring_under_noise_at_high_speed_and_beside_lines_of_other_machines_is_found_within_its_error(shows, speed, noise):
+    row = errors_in(Condition(shows, speed, 0.0, noise), 1, 11)
+    assert row.found == row.right == row.within == 1 and row.stated < 0.003
+
+
+def test_a_line_of_another_machine_within_one_of_the_shafts_widens_the_error_of_its_speed():
+    time, rng = np.arange(16_000) / 1600.0, np.random.default_rng(6)
+    for order, shift in ((1.0, 0.0), (3.0, 0.005)):
+        lines = sum(np.cos(2.0 * math.pi * 50.0 * each * time + each) / each for each in (1, 2, 3))
+        other = np.cos(2.0 * math.pi * 50.0 * (order + shift) * time)
+        signal = lines + other + 0.3 * rng.normal(size=len(time))
+        found = find_shaft([(signal, 1600.0)], constant_shaft(50.3, 0.3, 10.0), 0.02)
+        assert abs(found.frequency - 50.0) < 3.0 * found.standard_error, order
+        assert (found.standard_error > 1e-4 * 50.0) == bool(shift)
 
 
 def test_a_recorded_speed_gives_the_turns_of_its_integral():

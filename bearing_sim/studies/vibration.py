@@ -116,14 +116,18 @@ def false_lines(kind: str, records: int, seed: int, done: Callable[[], None] = l
     done : called after each record.
     """
     for number in range(records):
-        rng = np.random.default_rng((seed, number, HEALTHY.index(kind)))
-        speed = math.exp(rng.uniform(math.log(SPEEDS[0]), math.log(SPEEDS[-1])))
-        rate, _ = _sampling(speed)
-        rollers, size = int(rng.integers(10, 21)), _SIZE if rng.random() < 0.5 else math.nan
-        neighbours, lines = (0, 0.0) if kind == "noise" else (2, 0.3)
-        machine = Machine("", rollers, _SIZE, 0.0, speed * math.pi / 30.0, interfering=neighbours, shaft_lines=lines)
-        synthetic = record(machine, rate, max(1.0, 40.0 * 60.0 / speed), rng)
-        result = analyse(synthetic.vibration, Geometry(rollers, size), machine.shaft_speed * (1.0 + rng.uniform(-_NAMEPLATE, _NAMEPLATE)))
+        result = _without_damage(kind, np.random.default_rng((seed, number, HEALTHY.index(kind))))
         done()
         if result.found:
             yield number, result
+
+
+def _without_damage(kind: str, rng: np.random.Generator) -> Analysis:
+    """Return what is found in a record without a damaged bearing."""
+    speed = math.exp(rng.uniform(math.log(SPEEDS[0]), math.log(SPEEDS[-1])))
+    rate, _ = _sampling(speed)
+    rollers, size = int(rng.integers(10, 21)), _SIZE if rng.random() < 0.5 else math.nan
+    neighbours, lines = (0, 0.0) if kind == "noise" else (2, 0.3)
+    machine = Machine("", rollers, _SIZE, 0.0, speed * math.pi / 30.0, interfering=neighbours, shaft_lines=lines)
+    synthetic = record(machine, rate, max(1.0, 40.0 * 60.0 / speed), rng)
+    return analyse(synthetic.vibration, Geometry(rollers, size), machine.shaft_speed * (1.0 + rng.uniform(-_NAMEPLATE, _NAMEPLATE)))

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.vibration.comb import Fit, Range, orders_of, search, spectra
+from bearing_sim.vibration.comb import Fit, Range, orders_of, promise, search, spectra
 from bearing_sim.vibration.order_tracking import Shaft, constant_shaft, find_shaft, recorded_shaft, shaft_signal_range, wide_range
 from bearing_sim.vibration.phase import Rate, follow, mean_rate
-from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, candidate_bands, repetition
+from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, candidate_bands, narrow_bands, repetition
 
 CERTAIN = math.log(1e4)
 """[nat] by which noise must be excluded: a false alarm in 10,000 records."""
@@ -30,6 +30,7 @@ _SPIN_TOLERANCE = 0.06
 _PER_TURN_OVER_ORDER = 2.6
 _FEWEST_TURNS = 20.0
 _QUARTERS = 4
+_NARROW = 2  # bands of the width of a resonance, the most promising ones, that are searched for all combs
 _ENDS = 0.05  # fraction of the record that fades in, and out
 _FEWEST_LINES = {"outer_ring": 2, "inner_ring": 2, "roller": 2, "cage": 3}  # that must be clear: near the cage's other machines have lines, too
 
@@ -175,15 +176,21 @@ def analyse(
         raise VibrationError(
             f"{vibration.name}: {vibration.duration * low:.3g} turns of the shaft in {vibration.duration:.4g} s; expected at least {_FEWEST_TURNS:g}"
         )
-    bands = candidate_bands(whitened, min(2.2 * high * inner, raw.highest), band)
+    narrowest = min(2.2 * high * inner, raw.highest)
+    bands = [band] if band is not None else candidate_bands(whitened, narrowest)
     envelopes = [whitened.envelope(each) for each in bands]
     shaft = _shaft_of(vibration, raw, envelopes, low, high, tolerance, follows_lines)
     per_turn = _PER_TURN_OVER_ORDER * (3.0 * inner + 3.0)
+    by_angle = [(each, *_by_angle(shaft, *envelope, per_turn)) for each, envelope in zip(bands, envelopes)]
+    looks = len(bands)
+    if band is None:
+        others = [each for each in narrow_bands(whitened, narrowest) if each not in bands]
+        looks += len(others)
+        tried = [(each, *_by_angle(shaft, *whitened.envelope(each), per_turn)) for each in others]
+        by_angle += sorted(tried, key=lambda each: -promise(*each[1:], range_))[:_NARROW]
     best: tuple[Fit, Band, np.ndarray, float] | None = None
-    for each, (envelope, rate) in zip(bands, envelopes):
-        per_turn_here = min(per_turn, rate / shaft.frequency)
-        signal = shaft.resampled(envelope - envelope.mean(), rate, per_turn_here)
-        for fit in search(signal, per_turn_here, range_, len(bands)):
+    for each, signal, per_turn_here in by_angle:
+        for fit in search(signal, per_turn_here, range_, looks):
             if len(fit.clear_lines) >= _FEWEST_LINES[fit.family.name] and (best is None or fit.false_alarm > best[0].false_alarm):
                 best = fit, each, signal, per_turn_here
     if best is None:
@@ -199,6 +206,12 @@ def analyse(
         return _nothing(shaft, fit)
     course = tuple(_course(fit._replace(ratio=fit.ratio + rate.value), shaft, signal, per_turn_here, parts))
     return _completed(fit, rate, shaft, geometry, chosen, course)
+
+
+def _by_angle(shaft: Shaft, envelope: np.ndarray, rate: float, per_turn: float) -> tuple[np.ndarray, float]:
+    """Return an envelope at equal steps of the shaft's angle, and how many samples a turn has."""
+    per_turn = min(per_turn, rate / shaft.frequency)
+    return shaft.resampled(envelope - envelope.mean(), rate, per_turn), per_turn
 
 
 def _speed_range(vibration: Vibration, shaft_speed: float | None, tolerance: float) -> tuple[float, float]:

@@ -22,6 +22,7 @@ import scipy.special
 
 _HARMONICS = 3
 _AVERAGES = (1, 4, 16, 64, 256)
+_QUICK_AVERAGES = (1, 4, 16)
 _OVERLAPPED = 0.947  # independent periodograms in one of half overlapping Hann windows (Welch, IEEE Trans. AU-15, 1967)
 _FLOOR_WIDTH = 1.0  # orders over which the noise is a median
 _MOST_CANDIDATES = 400_000
@@ -137,7 +138,9 @@ def _floor(power: np.ndarray, width: int, independent: float) -> np.ndarray:
     count = max(1, 2 * len(power) // width)
     edges = np.linspace(0, len(power), count + 1).astype(int)
     low, high = edges[:-1], np.minimum(edges[:-1] + width, len(power))
-    medians = np.array([np.median(power[a:b]) for a, b in zip(np.minimum(low, max(0, len(power) - width)), np.maximum(high, min(width, len(power))))])
+    width = min(width, len(power))
+    windows = np.lib.stride_tricks.sliding_window_view(power, width)
+    medians = np.median(windows[np.minimum(low, len(power) - width)], axis=1)
     return np.maximum(np.interp(np.arange(len(power)), (low + high) / 2.0, medians), 1e-300) * to_mean
 
 
@@ -217,6 +220,15 @@ def search(signal: np.ndarray, per_turn: float, range_: Range, looks: int = 1) -
     return sorted(fits, key=lambda fit: -fit.false_alarm)
 
 
+def promise(signal: np.ndarray, per_turn: float, range_: Range) -> float:
+    """Return how clear the best comb of a raceway or of the cage is in a signal [nat], from few spectra: a quick look before `search`."""
+    highest = min(per_turn / 2.0, _HARMONICS * range_.rollers * (1.0 - range_.low) + 3.0)
+    prepared = [(count, found) for count in _QUICK_AVERAGES if (found := spectra(signal, per_turn, count, highest)) is not None]
+    quick = [family for family in families(range_.rollers) if family.name != "roller"]
+    fits = [_search_family(family, found, count, range_) for family in quick for count, found in prepared]
+    return max((fit.false_alarm for fit in fits if fit is not None), default=-math.inf)
+
+
 def _search_family(family: Family, found: Spectra, count: int, range_: Range) -> Fit | None:
     """Return the best fit of one family in one spectrum."""
     lines = family.lines()
@@ -280,8 +292,10 @@ def _scores(family: Family, found: Spectra, ratios: np.ndarray, passes: np.ndarr
 
 def _log_gamma_tail(count: int, total: float) -> float:
     """Return ln of the probability that the sum of independent exponential variables of mean 1 is as large: a finite sum."""
-    terms = np.arange(count)
-    return float(scipy.special.logsumexp(terms * math.log(max(total, 1e-300)) - scipy.special.gammaln(terms + 1.0)) - total)
+    numbers = np.arange(count)
+    terms = numbers * math.log(max(total, 1e-300)) - scipy.special.gammaln(numbers + 1.0)
+    largest = float(terms.max())
+    return largest + math.log(float(np.exp(terms - largest).sum())) - total
 
 
 def orders_of(family: Family, ratio: float, passes: float = 0.0) -> tuple[np.ndarray, np.ndarray]:

@@ -7,6 +7,8 @@ times the speed, which tell the angle better the higher they are.
 """
 
 import math
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -27,11 +29,16 @@ _PER_TURN_OF_MANY = 56
 _FEWEST_OF_MANY = 4  # lines that must deviate in one proportion to sharpen a shaft
 _CLEAR = 25.0  # [nat] of all lines above what searching costs; ten of noise have 10, and more than this in one of 10,000 records
 _MOST_OF_A_LINE = 60.0  # [nat] that one line counts for being clear
-_COST_OF_A_PATH = 2.0  # by which a varying speed must fit better than a constant one, in the units of `_counted`
-_LIMITS = (1.2, 6.0, 6.0)  # of what a line counts in each signal; low in the vibration, where those of other machines are loud
+_COUNTED = (4.0, 16.0)  # [nat] from which on a line counts, which noise exceeds in 2 %, and to which: one loud line is not several clear ones
+_COST_OF_A_PATH = 16.0  # [nat] by which a varying speed must fit better than a constant one: more than another machine's line gives it
+_LIMITS = (1.2, 6.0, 6.0)  # of what a line of a segment counts in each signal; low in the vibration, where those of other machines are loud
 _CLEARER = 1.5  # times as clear as a constant speed a varying one must be that counts where the constant one is ambiguous
-_AMBIGUOUS = 0.6  # of what the clearest speed counts
-_LESS_CLEAR = 4.0  # by which a followed phase may look less clear, where another machine's line was near
+_AMBIGUOUS = 0.55  # of what the clearest speed counts
+_ANOTHER_ROTOR = 33.0  # [nat] that three clear lines count, wherever the clearest are
+_LESS_CLEAR = 0.9  # of its lines' surprise that a followed phase must leave, where another machine's line was near
+_MOST_FOLLOWED = (64, 16, 8)  # segments in which a phase is followed
+_NEAR = 5  # steps of a spectrum around a line
+_LOUD = 200.0  # [nat] of a line beyond which it does not count for that
 _CLEAR_LINE = 10.0  # [nat] of a line that is followed
 _UNREFINED = 0.3  # standard error of a frequency that is the middle of a line, in the lines' distance 1/T
 _INSTANTS = 257  # at which the angle of a shaft is kept
@@ -121,16 +128,29 @@ def find_shaft(signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance:
             surprise = _surprise_of_lines(by_angle, shaft)
             clear = float(np.minimum(surprise, _MOST_OF_A_LINE).sum())
             if abs(shaft.frequency - 1.0) < tolerance + 0.5 / turns:
-                candidates.append((_sum_counted(surprise) - cost, clear, shaft))
+                candidates.append((float(_counted(surprise).sum()) - cost, float(np.minimum(surprise, _LOUD).sum()), clear, shaft))
     if not candidates:
         return None
-    score, clear, shaft = max(candidates, key=lambda each: each[0])
+    chosen = candidates[0]
+    for other in candidates[1:]:
+        if other[0] > chosen[0] and other[1] > chosen[1]:
+            chosen = other
+    score, _, clear, shaft = chosen
     if clear < _CLEAR + math.log(max(turns * 2.0 * tolerance * 8.0, 1.0)):
         return None
-    if is_ambiguous and score < _CLEARER * _sum_counted(_surprise_of_lines(by_angle, steady)):
+    if is_ambiguous and score < _CLEARER * float(_counted(_surprise_of_lines(by_angle, steady)).sum()):
         return None
+    clearest = _clearest(by_angle, shaft)
+    spread = _UNREFINED / turns if clearest is None else _disagreement(clearest[0], _PER_TURN, clearest[1])
     if wide is not None:
-        shaft = _sharpened(about.resampled(*wide, _PER_TURN_OF_MANY * high), _PER_TURN_OF_MANY * high, wide[1] / (2.0 * about.frequency), shaft)
+        by_angle_wide, per_turn_wide = about.resampled(*wide, _PER_TURN_OF_MANY * high), _PER_TURN_OF_MANY * high
+        sharpened, orders = _sharpened(by_angle_wide, per_turn_wide, wide[1] / (2.0 * about.frequency), shaft)
+        is_clear = _clearness(by_angle, sharpened) >= _LESS_CLEAR * _clearness(by_angle, shaft)
+        apart = abs(sharpened.frequency - shaft.frequency) > 3.0 * math.hypot(sharpened.standard_error, shaft.standard_error)
+        if len(orders) and is_clear and not apart:
+            shaft = sharpened
+            spread = _disagreement(shaft.resampled(by_angle_wide, per_turn_wide, _PER_TURN_OF_MANY), _PER_TURN_OF_MANY, orders)
+    shaft = shaft._replace(standard_error=math.hypot(shaft.standard_error, spread * shaft.frequency))
     duration = float(about.times[-1])
     times = np.union1d(about.times, np.linspace(0.0, duration, 1024))
     own = scipy.interpolate.PchipInterpolator(shaft.times, shaft.turns)(np.interp(times, about.times, about.turns))
@@ -149,22 +169,22 @@ def wide_range(high: float) -> float:
 
 
 class _Lines(NamedTuple):
-    """Spectra of segments of one signal: -ln of the probability of noise, (segment, bin), and the distance of bins [Hz]."""
+    """Spectra of segments of one signal: what each bin counts, (segment, bin), and the distance of bins [Hz]."""
 
-    surprise: np.ndarray
+    counted: np.ndarray
     step: float
 
     def comb(self, frequencies: np.ndarray) -> np.ndarray:
         """Return the sum over the shaft's harmonics at frequencies, shape (segment, frequency)."""
-        total = np.zeros((len(self.surprise), len(frequencies)))
+        total = np.zeros((len(self.counted), len(frequencies)))
         for harmonic in _HARMONICS:
             places = np.rint(harmonic * frequencies / self.step).astype(int)
-            inside = places < self.surprise.shape[1]
-            total[:, inside] += self.surprise[:, places[inside]]
+            inside = places < self.counted.shape[1]
+            total[:, inside] += self.counted[:, places[inside]]
         return total
 
 
-def _lines(signal: np.ndarray, rate: float, begins: np.ndarray, seconds: float, limit: float) -> _Lines:
+def _lines(signal: np.ndarray, rate: float, begins: np.ndarray, seconds: float, counted: Callable[[np.ndarray], np.ndarray]) -> _Lines:
     length = int(seconds * rate)
     window = np.hanning(length)
     count = scipy.fft.next_fast_len(4 * length, real=True)
@@ -175,18 +195,24 @@ def _lines(signal: np.ndarray, rate: float, begins: np.ndarray, seconds: float, 
         floors = np.array([np.median(each) for each in np.array_split(power, max(1, len(power) // 256))])
         floor = np.interp(np.arange(len(power)), (np.arange(len(floors)) + 0.5) * len(power) / len(floors), floors) / math.log(2.0)
         rows.append(power / np.maximum(floor, 1e-300))
-    return _Lines(_counted(np.array(rows), limit), rate / count)
+    return _Lines(counted(np.array(rows)), rate / count)
 
 
-def _counted(surprise: np.ndarray, limit: float) -> np.ndarray:
-    """Return what a line counts: the logarithm of its power, so that its middle counts most, and little above a limit."""
+def _counted_in_segment(surprise: np.ndarray, limit: float) -> np.ndarray:
+    """Return what a line of a segment counts: the logarithm of its power, so that its middle counts most, and little above a limit."""
     logarithm = np.log1p(surprise)
     return np.minimum(logarithm, limit) + 0.05 * np.maximum(logarithm - limit, 0.0)
 
 
-def _sum_counted(surprise: np.ndarray) -> float:
-    """Return how clear a speed is, from the surprise of its lines in each signal."""
-    return float(sum(np.sum(_counted(row, limit)) for row, limit in zip(surprise, _LIMITS)))
+def _counted(surprise: np.ndarray) -> np.ndarray:
+    """Return what a line of the whole record counts."""
+    low, high = _COUNTED
+    return np.clip(surprise - low, 0.0, high - low)
+
+
+def _clearness(signals, shaft: Shaft) -> float:
+    """Return how much of the lines is where a shaft has them."""
+    return float(np.minimum(_surprise_of_lines(signals, shaft), _LOUD).sum())
 
 
 def _surprise_of_lines(signals, shaft: Shaft) -> np.ndarray:
@@ -202,11 +228,11 @@ def _surprise_of_lines(signals, shaft: Shaft) -> np.ndarray:
 def _steady(signals, duration: float, low: float, high: float) -> tuple[Shaft, bool]:
     """Return a shaft of constant speed, and whether another speed is nearly as clear."""
     frequencies = np.linspace(low, high, int((high - low) * 10.0 * duration) + 2)
-    score = sum(_lines(signal, rate, np.zeros(1), duration, limit).comb(frequencies)[0] for (signal, rate), limit in zip(signals, _LIMITS))
-    at = int(np.argmax(score))
+    score = sum(_lines(signal, rate, np.zeros(1), duration, _counted).comb(frequencies)[0] for signal, rate in signals)
+    loudness = sum(_lines(signal, rate, np.zeros(1), duration, np.log1p).comb(frequencies)[0] for signal, rate in signals)
+    at = int(np.argmax(score + 1e-3 * loudness))  # the middle of lines that count in full beside it, too
     elsewhere = score[np.abs(frequencies - frequencies[at]) > 4.0 / duration]
-    usual = float(np.median(score))
-    is_ambiguous = bool(len(elsewhere)) and elsewhere.max() - usual > _AMBIGUOUS * (score[at] - usual)
+    is_ambiguous = bool(len(elsewhere)) and elsewhere.max() > min(_AMBIGUOUS * score[at], _ANOTHER_ROTOR)
     return constant_shaft(float(frequencies[at]), 0.0, duration, "lines"), is_ambiguous
 
 
@@ -221,7 +247,8 @@ def _path(signals, duration: float, low: float, high: float) -> Shaft | None:
     frequencies = np.arange(low, high, 0.25 / seconds)
     if len(frequencies) < 2:
         return None
-    score = sum(_lines(signal, rate, begins, seconds, limit).comb(frequencies) for (signal, rate), limit in zip(signals, _LIMITS))
+    limited = [partial(_counted_in_segment, limit=limit) for limit in _LIMITS]
+    score = sum(_lines(signal, rate, begins, seconds, counted).comb(frequencies) for (signal, rate), counted in zip(signals, limited))
     reach = max(1, min(len(frequencies) - 1, int(_STEEPEST * high / (0.25 / seconds))))
     steps = np.arange(-reach, reach + 1)
     cost = 2.0 * (steps / reach) ** 2
@@ -247,20 +274,24 @@ def _path(signals, duration: float, low: float, high: float) -> Shaft | None:
 
 
 def _refined(signals, shaft: Shaft) -> Shaft:
-    """Return the shaft with the phase of its lines followed, as long as that makes its lines clearer."""
+    """Return the shaft with the phase of its lines followed as long as that leaves them clear; in longer segments where it does not in short ones."""
     shaft = shaft._replace(standard_error=_UNREFINED / shaft.turns[-1] * shaft.frequency)
-    before = _sum_counted(_surprise_of_lines(signals, shaft))
-    for _ in range(2):
-        changed = _phase_followed(signals, shaft)
-        after = before if changed is shaft else _sum_counted(_surprise_of_lines(signals, changed))
-        if changed is shaft or after < before - _LESS_CLEAR:
+    before = _clearness(signals, shaft)
+    for most in _MOST_FOLLOWED:
+        followed = 0
+        while followed < 2:
+            changed = _phase_followed(signals, shaft, most)
+            after = before if changed is shaft else _clearness(signals, changed)
+            if changed is shaft or after < (1.0 if followed else _LESS_CLEAR) * before:
+                break
+            shaft, before, followed = changed, after, followed + 1
+        if followed:
             break
-        shaft, before = changed, after
     return shaft
 
 
-def _sharpened(signal: np.ndarray, per_turn: float, highest: float, shaft: Shaft) -> Shaft:
-    """Return the shaft with the phase of its lines up to high orders followed in one signal; as it is where too few of them are clear.
+def _sharpened(signal: np.ndarray, per_turn: float, highest: float, shaft: Shaft) -> tuple[Shaft, np.ndarray]:
+    """Return the shaft with the phase of its lines up to high orders followed in one signal, and these orders; none where too few are clear.
 
     Parameters
     ----------
@@ -270,7 +301,7 @@ def _sharpened(signal: np.ndarray, per_turn: float, highest: float, shaft: Shaft
     shaft : by the same angle.
     """
     orders = _MANY_HARMONICS[_MANY_HARMONICS < highest - 1.0]
-    sharpened = shaft._replace(angle_error=0.0)
+    sharpened, used = shaft._replace(angle_error=0.0), orders[:0]
     for _ in range(2):
         resampled = sharpened.resampled(signal, per_turn, _PER_TURN_OF_MANY)
         found = spectra(resampled, _PER_TURN_OF_MANY, 1, _HIGHEST_OF_MANY, excludes_shaft=False)
@@ -285,12 +316,42 @@ def _sharpened(signal: np.ndarray, per_turn: float, highest: float, shaft: Shaft
             break
         error = max(changed.angle_error, sharpened.angle_error)  # a phase that has been followed once deviates less than it errs
         of_ends = math.sqrt(2.0) * error / changed.turns[-1] * changed.frequency
-        sharpened = changed._replace(angle_error=error, standard_error=max(changed.standard_error, of_ends))
-    return shaft if sharpened.angle_error == 0.0 else sharpened
+        sharpened, used = changed._replace(angle_error=error, standard_error=max(changed.standard_error, of_ends)), orders[kept]
+    return sharpened if len(used) else shaft, used
 
 
-def _phase_followed(signals, shaft: Shaft) -> Shaft:
+def _phase_followed(signals, shaft: Shaft, most: int) -> Shaft:
     """Return the shaft with the phase of its clearest lines followed once."""
+    clearest = _clearest(signals, shaft)
+    changed = None if clearest is None else _followed(shaft, clearest[0], _PER_TURN, *clearest[1:], most)
+    return shaft if changed is None else changed
+
+
+def _disagreement(signal: np.ndarray, per_turn: float, orders: np.ndarray) -> float:
+    """Return the relative standard error of a mean speed by leaving out each line in turn (jackknife), since one may be another machine's.
+
+    Parameters
+    ----------
+    signal : by the shaft's angle.
+    per_turn : samples in a turn of it.
+    orders : of its lines.
+    """
+    if len(orders) < 2:
+        return _UNREFINED * per_turn / len(signal)
+    found = spectra(signal, per_turn, 1, orders[-1] + 1.0, excludes_shaft=False)
+    around = np.log(np.maximum(found.at(orders[:, None] + np.arange(-_NEAR, _NEAR + 1) * found.step), 1e-300))  # (order, shift)
+    best = np.clip(np.argmax(around, axis=1), 1, 2 * _NEAR - 1)
+    before, peak, after = (around[np.arange(len(orders)), best + shift] for shift in (-1, 0, 1))
+    bend = before - 2.0 * peak + after
+    fine = np.where(bend < 0.0, 0.5 * (before - after) / np.where(bend < 0.0, bend, 1.0), 0.0)
+    rates = (best - _NEAR + np.clip(fine, -1.0, 1.0)) * found.step / orders
+    weights = np.exp(peak) * orders**2
+    left_out = (weights @ rates - weights * rates) / (weights.sum() - weights)
+    return math.sqrt((len(rates) - 1) * float(np.var(left_out)))
+
+
+def _clearest(signals, shaft: Shaft) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """Return the signal in which the shaft's lines are clearest, by its angle, the orders of these lines and the noise around them."""
     orders = _HARMONICS
     resampled = [shaft.resampled(signal, rate, _PER_TURN) for signal, rate in signals]
     best = None
@@ -303,13 +364,15 @@ def _phase_followed(signals, shaft: Shaft) -> Shaft:
             # No line counts for more than several others, since it may be another machine's.
             noise = found.noise_at(orders[kept]) * np.maximum(1.0, near[kept] / _MOST_OF_A_LINE)
             best = near[kept].sum(), signal, orders[kept], noise
-    changed = None if best is None else _followed(shaft, best[1], _PER_TURN, *best[2:])
-    return shaft if changed is None else changed
+    return None if best is None else best[1:]
 
 
-def _followed(shaft: Shaft, signal: np.ndarray, per_turn: float, orders: np.ndarray, noise: np.ndarray) -> Shaft | None:
-    """Return the shaft with the common phase of its lines followed in a signal by its angle; None if it would turn back somewhere."""
-    segments = int(np.clip(shaft.turns[-1] / 8.0, 6, 64))
+def _followed(shaft: Shaft, signal: np.ndarray, per_turn: float, orders: np.ndarray, noise: np.ndarray, most: int = 64) -> Shaft | None:
+    """Return the shaft with the common phase of its lines followed in a signal by its angle; None if it would turn back somewhere.
+
+    The record is cut into ``most`` segments at most.
+    """
+    segments = int(np.clip(shaft.turns[-1] / 8.0, 6, most))
     while True:
         track = follow(signal, per_turn, orders, orders, noise, segments)
         if track.score > 5.0 + len(orders) or segments <= 8:
@@ -333,7 +396,7 @@ def _agreeing(found: Spectra, orders: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
     Lines of other machines close to a harmonic deviate by another one; of two sets the larger counts, then the one with lower harmonics.
     """
-    shifts = np.arange(-5, 6) * found.step
+    shifts = np.arange(-_NEAR, _NEAR + 1) * found.step
     around = found.at(orders[:, None] + shifts)  # (order, shift)
     best = np.argmax(around, axis=1)
     near = around[np.arange(len(orders)), best]

@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import scipy.stats
+import scipy.special
 
 _CANDIDATES = 64  # phases tried at once
 _ROUNDS = 4
@@ -127,7 +127,7 @@ def mean_rate(track: Track) -> Rate:
     weights /= weights.sum()
     slope = float(weights @ slopes)
     variance = float(weights @ (variances + (slopes - slope) ** 2))
-    widened = scipy.stats.t.ppf(0.8413, max(2, count // 2 - 2))  # one standard deviation of a normal distribution
+    widened = scipy.special.stdtrit(max(2, count // 2 - 2), 0.8413)  # one standard deviation of a normal distribution
     return Rate(slope / np.ptp(track.places), math.sqrt(variance) * widened / np.ptp(track.places))
 
 

@@ -10,13 +10,14 @@ from typing import NamedTuple
 import numpy as np
 import scipy.fft
 import scipy.ndimage
-import scipy.signal
 
 FEWEST_SAMPLES = 1024
 _LEAST = 1e-100  # difference of samples, in any unit
 _FLOOR_BLOCK = 256  # bins over which the floor of a spectrum is a median
 _LINE = 4.0  # times the floor: noise exceeds it in 1.5e-5 of the bins (its magnitude has a Rayleigh distribution)
 _SKIRT = 3  # bins on either side of a line that go with it
+_NEARBY = 41  # bins around a line which it must exceed as well: what fills more than half of them is no discrete line
+_FARTHEST = 200  # bins over which a loud line is cut where the record ends abruptly
 _TAPER = 0.1  # fraction of a band's width over which its edges fall off
 _OVERSAMPLED = 1.28  # rate of a signal over twice its highest frequency
 _EVENED_ORDERS = 1.5  # times the frequency of the shaft over which the level is evened out where repetitions are looked for
@@ -111,8 +112,11 @@ class Spectrum:
 
     def __init__(self, samples: np.ndarray, rate: float, ends: float = 0.0):
         self._count = len(samples)
-        window = scipy.signal.windows.tukey(self._count, 2.0 * ends) if ends else 1.0
+        window = _fading(self._count, ends) if ends else 1.0
         self._lines = scipy.fft.rfft((samples - samples.mean()) * window)
+        bins = np.arange(1, _FARTHEST)
+        fading = 1.0 if not ends else np.minimum(1.0, (0.5 / ends / bins) ** 2)
+        self._skirt = np.concatenate(([1.0], fading / (np.pi * bins)))  # height of a line of 1 so many bins off its peak, at most
         self._step = rate / self._count  # [Hz]
         self.highest = rate / 2.0
         self.rate = rate
@@ -120,17 +124,22 @@ class Spectrum:
     def without_lines(self) -> "Spectrum":
         """Return this spectrum with its level evened out, and discrete lines cut out.
 
-        Rotors, gears and the mains make lines that are sharper than those of a bearing: its rollers jitter, which spreads its lines at the high
-        frequencies where they are looked for (Borghesani, Pennacchi, Randall, Sawalhi and Ricci, Mechanical Systems and Signal Processing 36, 2013,
-        whiten all bins alike; here only the bins of lines are cut).
+        Rotors, gears and the mains make lines that are sharper than those of a bearing: its rollers jitter and its cage wanders, which spreads its
+        lines at the high frequencies where they are looked for (Borghesani, Pennacchi, Randall, Sawalhi and Ricci, Mechanical Systems and Signal
+        Processing 36, 2013, whiten all bins alike; here only the bins of lines are cut).  At high speeds they are still loud in the spectrum of the
+        vibration itself, tens of bins wide: a line is cut only where it stands out from the bins next to it.
         """
         magnitude = np.abs(self._lines)
-        blocks = max(1, len(magnitude) // _FLOOR_BLOCK)
-        edges = np.linspace(0, len(magnitude), blocks + 1).astype(int)
-        floors = np.array([np.median(magnitude[low:high]) for low, high in zip(edges, edges[1:])])
-        floor = np.interp(np.arange(len(magnitude)), (edges[1:] + edges[:-1]) / 2.0, np.maximum(floors, 1e-12 * max(magnitude.max(), 1e-300)))
-        relative = magnitude / floor
-        is_line = scipy.ndimage.binary_dilation(relative > _LINE, iterations=_SKIRT)
+        floor = _floor(magnitude)
+        sharp = self._lines.copy()
+        sharp[1:-1] -= 0.5 * (self._lines[:-2] + self._lines[2:])  # a Hann window, so that no skirt hides what is next to a line
+        sharp = np.abs(sharp)
+        nearby = scipy.ndimage.median_filter(sharp, _NEARBY, mode="nearest")
+        is_line = scipy.ndimage.binary_dilation(sharp > _LINE * np.maximum(_floor(sharp), nearby), iterations=_SKIRT)
+        peaks = [where.start + int(np.argmax(magnitude[where])) for (where,) in scipy.ndimage.find_objects(scipy.ndimage.label(is_line)[0])]
+        reaches = np.searchsorted(-self._skirt, -floor[peaks] / np.maximum(magnitude[peaks], 1e-300)) if peaks else ()
+        for peak, reach in zip(peaks, reaches):
+            is_line[max(0, peak - reach) : peak + reach + 1] = True
         gain = np.where(is_line, 0.0, 1.0) / floor
         found = object.__new__(Spectrum)
         found._count, found._step, found.highest, found.rate = self._count, self._step, self.highest, self.rate
@@ -210,6 +219,24 @@ def repetition(samples: np.ndarray, rate: float, turn: float) -> float | None:
     return lag / rate if lag / rate > _LONGER_THAN_A_TURN * turn else None
 
 
+def _fading(count: int, ends: float) -> np.ndarray:
+    """Return a cosine-tapered window that rises and falls over a fraction of its length each."""
+    rise = int(ends * (count - 1))
+    window = np.ones(count)
+    window[: rise + 1] = 0.5 - 0.5 * np.cos(np.pi * np.arange(rise + 1) / (ends * (count - 1)))
+    window[count - rise - 1 :] = window[rise::-1]
+    return window
+
+
+def _floor(magnitude: np.ndarray) -> np.ndarray:
+    """Return the level of a spectrum without its lines: medians over blocks of bins, joined by straight lines."""
+    blocks = max(1, len(magnitude) // _FLOOR_BLOCK)
+    edges = np.linspace(0, len(magnitude), blocks + 1).astype(int)
+    floors = np.array([np.median(magnitude[low:high]) for low, high in zip(edges, edges[1:])])
+    floors = np.maximum(floors, 1e-12 * max(magnitude.max(), 1e-300))
+    return np.interp(np.arange(len(magnitude)), (edges[1:] + edges[:-1]) / 2.0, floors)
+
+
 def kurtogram(spectrum: Spectrum, narrowest: float) -> list[tuple[float, Band]]:
     """Return the bands of a tree of halves and thirds with their kurtosis, the most impulsive first.
 
@@ -228,15 +255,20 @@ def kurtogram(spectrum: Spectrum, narrowest: float) -> list[tuple[float, Band]]:
     return sorted(found, key=lambda each: -each[0])
 
 
-def candidate_bands(spectrum: Spectrum, narrowest: float, given: Band | None = None) -> list[Band]:
-    """Return the bands in which lines are looked for: the one that is given, or the two most impulsive ones, the whole, and quarters of it.
+def candidate_bands(spectrum: Spectrum, narrowest: float) -> list[Band]:
+    """Return the bands in which lines are looked for: the two most impulsive ones, the whole, and quarters of it.
 
     Where noise covers the impulses no kurtosis shows their band, so that the quarters are tried as well; the false alarms of all are counted.
     """
-    if given is not None:
-        return [given]
     ranked = [band for _, band in kurtogram(spectrum, narrowest)]
     parts = next((count for count in (4, 2) if spectrum.highest / count >= narrowest), 1)
     width = spectrum.highest / parts
     bands = [*ranked[:2], Band(0.0, spectrum.highest), *(Band(k * width, (k + 1) * width) for k in range(parts))]
     return list(dict.fromkeys(bands))
+
+
+def narrow_bands(spectrum: Spectrum, narrowest: float) -> list[Band]:
+    """Return half overlapping bands of about the width of a resonance, an eighth of the whole, or wider ones where lines would not fit in."""
+    parts = next((count for count in (8, 4, 2) if spectrum.highest / count >= narrowest), 1)
+    width = spectrum.highest / parts
+    return [Band(0.5 * k * width, (0.5 * k + 1.0) * width) for k in range(2 * parts - 1)]
