@@ -62,11 +62,13 @@ class Synthetic(NamedTuple):
     vibration : the record, without a shaft speed.
     ratio : cage over shaft speed, mean over this record.
     shaft_frequency : mean over this record [Hz].
+    resonance : frequency of the housing's oscillation [Hz]; NaN where nothing shows.
     """
 
     vibration: Vibration
     ratio: float
     shaft_frequency: float
+    resonance: float
 
 
 def record(machine: Machine, rate: float, duration: float, rng: np.random.Generator) -> Synthetic:
@@ -85,7 +87,7 @@ def record(machine: Machine, rate: float, duration: float, rng: np.random.Genera
     knots = rng.normal(0.0, machine.wandering, _WANDERINGS)
     wander = np.interp(time, np.linspace(0.0, duration, _WANDERINGS), knots)
     cage = np.concatenate(([0.0], np.cumsum(np.diff(shaft) * machine.ratio * (1.0 + wander[1:])))) + rng.random()
-    impacts = np.zeros(count) if not machine.shows else _impacts(machine, shaft, cage, rate, rng)
+    impacts, resonance = (np.zeros(count), math.nan) if not machine.shows else _impacts(machine, shaft, cage, rate, rng)
     noise = rng.normal(size=count)
     power = np.mean(impacts**2)
     if power > 0.0:
@@ -97,7 +99,7 @@ def record(machine: Machine, rate: float, duration: float, rng: np.random.Genera
     for _ in range(machine.interfering):
         vibration = vibration + level * _neighbour(time, machine.shaft_speed / (2.0 * math.pi), rate, rng)
     turned = shaft[-1] - shaft[0]
-    return Synthetic(Vibration(vibration, rate, name="synthetic"), (cage[-1] - cage[0]) / turned, turned / time[-1])
+    return Synthetic(Vibration(vibration, rate, name="synthetic"), (cage[-1] - cage[0]) / turned, turned / time[-1], resonance)
 
 
 def _turns(time: np.ndarray, frequency: float, ramp: float) -> np.ndarray:
@@ -106,8 +108,8 @@ def _turns(time: np.ndarray, frequency: float, ramp: float) -> np.ndarray:
     return frequency * (time + ramp * (middle**2 - middle[0] ** 2) / (2.0 * duration))
 
 
-def _impacts(machine: Machine, shaft: np.ndarray, cage: np.ndarray, rate: float, rng: np.random.Generator) -> np.ndarray:
-    """Return the oscillation of the housing by the impacts of a spot."""
+def _impacts(machine: Machine, shaft: np.ndarray, cage: np.ndarray, rate: float, rng: np.random.Generator) -> tuple[np.ndarray, float]:
+    """Return the oscillation of the housing by the impacts of a spot, and its frequency [Hz]."""
     if machine.shows == "roller":
         spin = (1.0 - machine.size**2) / (2.0 * machine.size)
         phase = 2.0 * spin * (shaft + 0.002 * np.cumsum(rng.normal(size=len(shaft))) / math.sqrt(rate))  # both raceways; rollers skid at random
@@ -131,7 +133,7 @@ def _impacts(machine: Machine, shaft: np.ndarray, cage: np.ndarray, rate: float,
     frequency = rng.uniform(0.1, 0.35) * rate
     lasting = np.arange(int(8.0 / (2.0 * math.pi * _DAMPING * frequency) * rate) + 1) / rate
     ringing = np.exp(-2.0 * math.pi * _DAMPING * frequency * lasting) * np.sin(2.0 * math.pi * frequency * lasting)
-    return scipy.signal.oaconvolve(blows, ringing)[: len(shaft)]
+    return scipy.signal.oaconvolve(blows, ringing)[: len(shaft)], frequency
 
 
 def _neighbour(time: np.ndarray, shaft: float, rate: float, rng: np.random.Generator) -> np.ndarray:
