@@ -14,7 +14,7 @@ from scipy.stats import qmc
 
 from bearing_sim.cli.estimator_study import estimator as study_estimator
 from bearing_sim.estimation.causes import CLEARANCE, LOAD, OIL, OIL_QUANTITY, SENSOR, TRACTION, Evidence, causes_of
-from bearing_sim.estimation.estimator import Estimator
+from bearing_sim.estimation.estimator import Estimator, _Scatter
 from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import conditions_at, domain_of, fit_response, scene_fields, slip_scale
@@ -208,6 +208,13 @@ def test_one_wild_reading_in_five_leaves_the_prediction_where_the_others_are(sce
     told = rig.run(estimator, 200, wild=0.2)
     assert estimator.prediction(rig.sample()).mean() == pytest.approx(slip_of(response.fields, rig.scores, POINT), abs=1.5e-3)
     assert math.isnan(told)
+
+
+def test_two_readings_between_which_the_machine_changes_have_a_mean():
+    """Their median lies far from both; a mean of nothing, NaN, was learned for good and no change told any more."""
+    scatter = _Scatter(5e-4)
+    mean, variance = scatter.mean(np.array([0.06, 0.10]))
+    assert mean == pytest.approx(0.08) and 0.0 < variance < 1e-6 and all(map(math.isfinite, scatter.learned))
 
 
 def test_a_silent_sensor_changes_nothing_and_time_widens_what_is_known(scene, response):

@@ -140,6 +140,7 @@ class _Scatter:
         count, middle = len(values), float(np.median(values))
         deviation = max(self.deviation, _NORMAL * float(np.median(np.abs(values - middle)))) if count >= _TOO_FEW else self.deviation
         near = values[np.abs(values - middle) <= _FARTHEST * deviation]
+        near = near if len(near) else values  # as of two readings, one before and one after a sudden change: their median is far from both
         middle, deviation = float(near.mean()), self.deviation
         usual = middle if math.isnan(self._usual) or abs(middle - self._usual) > _FARTHEST * deviation else self._usual
         away = np.clip(values - usual, -3.0 * deviation, 3.0 * deviation)
