@@ -199,6 +199,8 @@ def analyse(
     if fit.false_alarm < CERTAIN:
         return _nothing(shaft, fit)
     rate = _rate_of(fit, signal, per_turn_here)
+    if fit.family.name in ("outer_ring", "inner_ring") and not _shows_its_first(fit):
+        return _nothing(shaft, fit, "lines at a harmonic only, without the first one: they may be those of anything else")
     if _may_be_a_roller(fit, range_):
         why = "the lines are those of a raceway whose cage slips grossly, or those of a roller's turns: they cannot be told apart"
         return _nothing(shaft, fit, why)
@@ -288,6 +290,12 @@ def _is_hidden(fit: Fit, range_: Range, turns: float) -> bool:
     half = 0.5 * range_.rollers * (1.0 - fit.ratio)
     covered = abs(half - round(half)) < 4.5 / turns
     return covered and range_.low <= half / range_.rollers <= range_.high
+
+
+def _shows_its_first(fit: Fit) -> bool:
+    """Return whether the first line of a raceway is clear by itself, as it is unless something else makes the others."""
+    first = orders_of(fit.family, fit.ratio)[0][0]
+    return any(abs(order - first) < 1e-6 for order in fit.clear_lines)
 
 
 def _may_be_a_roller(fit: Fit, range_: Range) -> bool:
