@@ -14,10 +14,11 @@ from bearing_sim.estimation.bands import QUANTITIES, BandEstimator, prior_draws,
 from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import ANSWERS, conditions_at, domain_of, fit_response, read_response, scene_fields, write_response
 from bearing_sim.levels.steady.table import empty_table
-from bearing_sim.studies.response import design, obtain_response
+from bearing_sim.studies.response import design, obtain_response, settled_points
 from bearing_sim.studies.uncertainty import UncertaintyError
 
 SCENE = asking_scene()
+CLEARANCE_BAND = QUANTITIES.index("running_clearance")
 SLIP, LIFE, CLEARANCE = (ANSWERS.index(name) for name in ("cage_slip", "rating_life", "running_clearance"))
 POINT = np.array([[3000.0, 700.0, 390.0, 0.3]])
 
@@ -158,6 +159,46 @@ def test_edges_are_the_quantiles_of_a_known_distribution(response):
     assert life == pytest.approx(400.0 * FACTOR ** (-0.2 * (ends[::-1] - own)), rel=0.01)
     assert clearance == pytest.approx(-25e-6 + 4e-6 * (ends - own), abs=4e-8)
     assert remaining == pytest.approx(life, rel=1e-6)
+
+
+def response_of_few_points(scene, nodes, draws):
+    """Return the response of a scene solved at few operating points."""
+    fields, conditions = scene_fields(scene), conditions_at(np.random.default_rng(4).random((nodes, 4)), domain_of(scene))
+    scores = np.concatenate([fields.scores_of(fields.own)[None], prior_draws(len(fields), draws)])
+    conditions, scores = np.repeat(conditions, len(scores), axis=0), np.tile(scores, (nodes, 1))
+    points = tuple(map(tuple, fields.values_of(scores).tolist()))
+    answers = settled_points(scene, tuple(one.field for one in fields.ranges), points, tuple(map(tuple, conditions.tolist())))["answers"]
+    return fit_response(fields, domain_of(scene), conditions, scores, np.array(answers), SlipAndOil(scene))
+
+
+def test_clearance_has_the_band_that_ranges_of_heat_and_fits_give_it():
+    warm, press = (140.0, 160.0), (40e-6, 60e-6)
+    scene = load_scene(
+        "deng2017_table1_cold",
+        [
+            "level=steady",
+            "mounting.shaft={bore_radius: 0, interference: 50 um}",
+            "heat={law: given, inner_ring: 150 degC, outer_ring: 130 degC}",
+            "uncertainty=null",
+            f"uncertainty.heat.inner_ring=[{warm[0]} degC, {warm[1]} degC]",
+            f"uncertainty.mounting.shaft.interference=[{press[0]} m, {press[1]} m]",
+        ],
+    )
+    inputs = Inputs(2000.0, 600.0, 0.0, 393.15)
+    sample = settled(scene, inputs)
+    edges = BandEstimator(scene, response_of_few_points(scene, 24, 8)).take(sample[None])[0, CLEARANCE_BAND]
+    # A solid shaft of the ring's steel presses the raceway out by bore over raceway of its interference (Lame); rollers are as warm as the mean
+    # of both rings.
+    bearing, expansion = scene.bearing, scene.bearing.material.expansion
+    raceway = 2.0 * bearing.inner_raceway.radius
+    by_heat = expansion * (raceway + bearing.roller.diameter) * (warm[1] - warm[0])
+    by_fit = bearing.bore_diameter / raceway * (press[1] - press[0])
+    # The sum of two even distributions of widths a and b lies within x of its end with the probability x^2/(2 a b), up to the lesser width.
+    farthest, at_end = 0.5 * (by_heat + by_fit), math.sqrt(2.0 * 0.05 * by_heat * by_fit)
+    assert at_end < min(by_heat, by_fit)
+    middle, half = float(sample["running_clearance"]), farthest - at_end
+    assert edges == pytest.approx([middle - half, middle + half], abs=0.02 * 2.0 * half)
+    assert half > 5e-6
 
 
 def test_what_is_measured_has_no_band(response):

@@ -2,6 +2,7 @@
 """Tasks and their journal: a kill at whatever instant loses nothing that was finished, and nothing finished is computed again."""
 
 import collections
+import functools
 import json
 import os
 import signal
@@ -10,11 +11,14 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from sweep_tasks import deadly, noted, tasks
 
 from bearing_sim.cli.main import main
+from bearing_sim.estimation.response import read_response
+from bearing_sim.studies.response import obtain_response
 from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse, run_tasks, task
 
 HERE = Path(__file__).resolve().parent
@@ -183,8 +187,31 @@ def test_the_command_sweeps_on_a_cluster_what_it_sweeps_alone(tmp_path, cluster)
     assert points("cluster", "--dask", cluster.scheduler_address) == points("alone", "--workers", "1")
 
 
+def test_the_response_that_a_cluster_builds_is_the_one_that_is_built_alone(tmp_path, cluster, monkeypatch):
+    monkeypatch.setattr("bearing_sim.studies.response.DRAWS", 8)
+    monkeypatch.setattr("bearing_sim.studies.response.obtain_response", functools.partial(obtain_response, points=256))
+    words = ["table", "deng2017_table1", "--bands", "--json"]
+
+    def built(name, *more):
+        monkeypatch.setattr("bearing_sim.estimation.response.FOLDER", tmp_path / name)
+        result = CliRunner().invoke(main, [*words, *more], catch_exceptions=False)
+        assert result.exit_code == 0, result.output
+        report = json.loads(result.stdout)
+        assert report["points"] == 256 and Path(report["file"]).parent == tmp_path / name
+        return read_response(Path(report["file"]))
+
+    there, here = built("cluster", "--dask", cluster.scheduler_address), built("alone", "--workers", "1")
+    for name in ("centres", "metrics", "weights", "errors"):
+        np.testing.assert_array_equal(getattr(there, name), getattr(here, name))
+    refused = CliRunner().invoke(main, [*words[:2], "--dask", cluster.scheduler_address])
+    assert refused.exit_code == 2 and "--dask goes with --bands only" in refused.output
+
+
 def test_a_scheduler_that_is_not_there_is_told(tmp_path, monkeypatch):
     pytest.importorskip("distributed", reason="distributed is not installed: pip install 'bearing_sim[dask]'")
     monkeypatch.setattr("bearing_sim.sweep.tasks._DASK_TIMEOUT", 0.5)
     with Journal() as journal, pytest.raises(ClusterError, match="no Dask scheduler answers"):
         run_tasks(tasks(tmp_path / "notes", 2), journal, dask="tcp://127.0.0.1:9")
+    monkeypatch.setattr("bearing_sim.estimation.response.FOLDER", tmp_path)
+    result = CliRunner().invoke(main, ["table", "deng2017_table1", "--bands", "--dask", "tcp://127.0.0.1:9"])
+    assert result.exit_code == 2 and "no Dask scheduler answers at tcp://127.0.0.1:9" in result.output

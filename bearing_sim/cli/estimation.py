@@ -36,7 +36,7 @@ _NEWEST = {  # of a run at its end
 }
 
 
-def response_with_progress(scene, rebuild=False, workers=None):
+def response_with_progress(scene, rebuild=False, workers=None, dask=None):
     """Return the response of a scene to its uncertain fields, from disk or newly built.
 
     Parameters
@@ -44,22 +44,23 @@ def response_with_progress(scene, rebuild=False, workers=None):
     scene : the scene.
     rebuild : whether to build it even if it is kept.
     workers : number of processes; None: all cores.
+    dask : address of a Dask scheduler to compute on instead; None: this machine.
 
     Raises
     ------
     UsageError
-        The scene has no uncertain fields, or another command is building the response.
+        The scene has no uncertain fields, another command is building the response, or the scheduler does not answer.
     """
     from bearing_sim.estimation.response import kept_response
     from bearing_sim.studies.response import obtain_response
     from bearing_sim.studies.uncertainty import UncertaintyError
-    from bearing_sim.sweep.tasks import JournalInUse
+    from bearing_sim.sweep.tasks import ClusterError, JournalInUse
 
     if not rebuild and (kept := kept_response(scene)) is not None:
         return kept
     click.echo(f"building the response of {scene.name} to its uncertain fields, once for this bearing and oil ...", err=True)
-    with as_usage_error(UncertaintyError, JournalInUse), progress_bar("operating points", 1.0) as show:
-        return obtain_response(scene, workers, progress=lambda done, total: show(done / max(total, 1)), rebuild=rebuild)
+    with as_usage_error(UncertaintyError, ClusterError, JournalInUse), progress_bar("operating points", 1.0) as show:
+        return obtain_response(scene, workers, dask, lambda done, total: show(done / max(total, 1)), rebuild)
 
 
 def estimation_with_progress(scene):

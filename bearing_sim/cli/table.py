@@ -27,8 +27,9 @@ from bearing_sim.cli.reporting import UsageError, announce_compilation, as_usage
 @click.option(
     "--bands", is_flag=True, help="Instead build the response to the uncertain fields, from which bands and calibration follow, or show it."
 )
+@click.option("--dask", metavar="ADDRESS", help="Compute that response on this Dask cluster, such as tcp://10.0.0.1:8786.")
 @json_option
-def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, bands, as_json):
+def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, bands, dask, as_json):
     """Build the table of operating points of SCENE at level steady, or show the existing one.
 
     Its range is given in the scene's block `table` (maximum_speed, maximum_load, minimum_temperature, maximum_temperature, tolerance);
@@ -40,9 +41,11 @@ def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, b
         scene = load_scene(scene_name, [*overrides, "level=steady"])
     if bands:
         if points or against_slip is not None:
-            raise UsageError("--bands goes with --rebuild and --workers only; leave --at and --against-slip out")
-        _show_response(scene, rebuild, workers, as_json)
+            raise UsageError("--bands goes with --rebuild, --workers and --dask only; leave --at and --against-slip out")
+        _show_response(scene, rebuild, workers, dask, as_json)
         return
+    if dask is not None:
+        raise UsageError("--dask goes with --bands only: the table itself is built by the threads of this machine; leave --dask out, or add --bands")
     if against_slip is not None:
         _compare(scene, against_slip, seed, as_json)
         return
@@ -56,13 +59,13 @@ def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, b
         _print(report)
 
 
-def _show_response(scene, rebuild, workers, as_json) -> None:
+def _show_response(scene, rebuild, workers, dask, as_json) -> None:
     """Build the response of a scene to its uncertain fields, or take the one that is kept, and show what it is good for."""
     from bearing_sim.cli.estimation import response_with_progress
     from bearing_sim.estimation.response import response_path
 
     announce_compilation()
-    found = response_with_progress(scene, rebuild, workers)
+    found = response_with_progress(scene, rebuild, workers, dask)
     domain, path = found.domain, str(response_path(scene))
     if as_json:
         report = {"scene": scene.name, "file": path, "fields": list(found.names), "points": found.points, "seconds": found.seconds}

@@ -119,21 +119,21 @@ class BandEstimator:
         """
         load = np.hypot(block["load_y"], block["load_z"])
         conditions = np.stack([block["shaft_speed"], load, block["oil_temperature"], np.arctan2(block["load_z"], block["load_y"])], axis=1)
-        there, indices = np.unique(cells(conditions, self.response.domain), axis=0, return_inverse=True)
+        there = cells(conditions, self.response.domain)
         keys = [row.tobytes() for row in there]
-        new = [k for k, key in enumerate(keys) if key not in self._kept]
+        new = {key: k for k, key in enumerate(keys) if key not in self._kept}
         if len(self._kept) + len(new) > _CELLS_KEPT:
-            self._kept, new = {}, list(range(len(keys)))
+            self._kept, new = {}, {key: k for k, key in enumerate(keys)}
+        rows, names = list(new.values()), list(new)
         for begin in range(0, len(new), _AT_ONCE):
-            chosen = new[begin : begin + _AT_ONCE]
-            scaled = np.swapaxes(self._interpolation.coefficients(there[chosen]) @ self._basis.T, 1, 2)
-            add_slip_and_oil(scaled, there[chosen], self._effects)
+            chosen = there[rows[begin : begin + _AT_ONCE]]
+            scaled = np.swapaxes(self._interpolation.coefficients(chosen) @ self._basis.T, 1, 2)
+            add_slip_and_oil(scaled, chosen, self._effects)
             changes = scaled[:, 1:] - scaled[:, :1]
             wear = (-changes[:, :, _MODIFIED]).astype(np.float32)
-            self._kept.update(zip((keys[k] for k in chosen), zip(quantiles(changes[:, :, _ANSWERED], _QUANTILES), wear)))
-        there = [self._kept[key] for key in keys]
-        edges, wear = np.stack([each[0] for each in there]), np.exp(np.stack([each[1] for each in there], dtype=float))
-        return edges[indices.ravel()], wear[indices.ravel()]
+            self._kept.update(zip(names[begin : begin + _AT_ONCE], zip(quantiles(changes[:, :, _ANSWERED], _QUANTILES), wear)))
+        kept = [self._kept[key] for key in keys]
+        return np.stack([edges for edges, _ in kept]), np.exp(np.stack([wear for _, wear in kept], dtype=float))
 
     def _remaining_lives(self, block: np.ndarray, factors: np.ndarray) -> np.ndarray:
         """Return the remaining life [h] of the level itself and of each draw: (1 - D)/(dD/dt) with dD/dt the fading mean of the damage rate.

@@ -51,7 +51,7 @@ ANSWERS = (
 PROBABILITIES = (0.05, 0.95)
 """Of lying below the ends of a band."""
 
-VERSION = 6  # of the files
+VERSION = 7  # of the files
 _FARTHEST = 4.5  # largest score; one draw in 300,000 lies beyond
 _SLOWEST, _LIGHTEST = 0.03, 0.002  # of the largest speed and load: below, the response is that of these
 _RIDGE, _PRODUCT_RIDGE = 1e-6, 1.0  # of polynomials of one field, and of two
@@ -415,21 +415,20 @@ class Interpolation:
     """
 
     def __init__(self, model: ResponseModel, answers: Sequence[int]):
-        self._model, self._groups = model, []
-        for metric in np.unique(model.metrics[list(answers)], axis=0):
-            alike = [answer for answer in answers if (model.metrics[answer] == metric).all()]
-            weights = np.ascontiguousarray(model.weights[:, alike].reshape(len(model.weights), -1))
-            self._groups.append((alike, metric, model.centres @ metric, weights))
+        self._model, self._answers = model, list(answers)
+        self._metrics = model.metrics[self._answers]
+        self._centres = model.centres @ self._metrics
+        self._weights = np.ascontiguousarray(np.moveaxis(model.weights[:, self._answers], 1, 0))
 
     def coefficients(self, conditions: np.ndarray) -> np.ndarray:
         """Return what `ResponseModel.condition_coefficients` does; zeros for all other answers."""
         model, conditions = self._model, np.asarray(conditions, float)
-        there = _embedded(coordinates(conditions, model.domain), model.domain)
-        found = np.zeros((len(there), *model.weights.shape[1:]))
-        for alike, metric, centres, weights in self._groups:
-            found[:, alike] = (_functions(there @ metric, centres) @ weights).reshape(len(there), len(alike), -1)
+        there = _embedded(coordinates(conditions, model.domain), model.domain) @ self._metrics
+        found = np.moveaxis(_functions(there, self._centres) @ self._weights, 0, 1)
         departures = found[:, :, 2:] * np.exp(found[:, :, 1:2])
-        coefficients = np.concatenate([found[:, :, :1] - departures @ model.own_basis[1:, None], departures], axis=2)
+        coefficients = np.zeros((len(conditions), len(ANSWERS), found.shape[2] - 1))
+        coefficients[:, self._answers, 0] = found[:, :, 0] - departures @ model.own_basis[1:]
+        coefficients[:, self._answers, 1:] = departures
         coefficients[model.outside(conditions)] = math.nan
         return coefficients
 
@@ -445,13 +444,22 @@ def _embedded(there: np.ndarray, domain: Domain) -> np.ndarray:
 
 
 def _functions(there: np.ndarray, centres: np.ndarray) -> np.ndarray:
-    """Return the functions of the operating point: cubes of the distances from the centres, and planes; shape (n, k + c + 1).
+    """Return the functions of the operating point: cubes of the distances from the centres, and planes.
 
     They are polyharmonic splines (J. Duchon, Lect. Notes Math. 571 (1977) 85).
+
+    Parameters
+    ----------
+    there : coordinates of operating points, scaled, shape (..., n, c).
+    centres : likewise, shape (..., k, c).
+
+    Returns
+    -------
+    shape (..., n, k + c + 1).
     """
-    square = np.sum(np.square(there), axis=1)[:, None] + np.sum(np.square(centres), axis=1) - 2.0 * there @ centres.T
+    square = np.square(there).sum(axis=-1)[..., None] + np.square(centres).sum(axis=-1)[..., None, :] - 2.0 * there @ np.swapaxes(centres, -1, -2)
     square = np.maximum(square, 0.0)
-    return np.concatenate([square * np.sqrt(square), np.ones((len(there), 1)), there], axis=1)
+    return np.concatenate([square * np.sqrt(square), np.ones((*there.shape[:-1], 1)), there], axis=-1)
 
 
 def _spline_matrix(centres: np.ndarray) -> np.ndarray:

@@ -23,6 +23,7 @@ from bearing_sim.estimation.response import (
 )
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.table import empty_table
+from bearing_sim.physics.thermal_network import NODES
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies.uncertainty import UncertaintyError, varied
@@ -32,8 +33,10 @@ DRAWS = 64  # of the fields' scores at each operating point, the scene's own val
 _POINTS = 16_384  # that a response is fitted to, a power of two
 _BATCH = 64  # points of a task
 _LONG = 1e4  # s; longer than any lag of a cage; at level steady simulated time costs nothing
-_EQUAL, _BALANCED = 0.05, 1e-3  # K, and of the shaft power; slip then errs by less than 0.01 points, clearance by 10 nm
+_NEAR, _BALANCED = 0.05, 1e-3  # K, and of the shaft power: where the search of the level's equilibrium ends, and rounds go on
+_EQUAL, _EQUAL_PART = 2e-3, 0.01  # K, and of the range of temperatures: losses of one operating point scatter by about that with its temperatures
 _ROUNDS, _FARTHEST = 12, 60.0  # of losses and temperatures in turn, and K of one
+_TELLING, _DECISIVE = 10.0, 0.1  # times that, the least step that teaches how temperatures feed back; least part of it that the update must see
 _STRETCH, _STRETCHES, _SAME_SLIP = 0.5, 40, 1e-4  # s, largest number, and difference of successive mean slips of a level that moves
 _SPARE = 4  # points more than coefficients from which on equilibria are expected by a fit
 _FITTED = 96  # points at most of that fit
@@ -72,6 +75,7 @@ class _Equilibria:
     def __init__(self):
         self._values: list[tuple[float, ...]] = []
         self._nodes: list[np.ndarray] = []
+        self.forget_feedback()
 
     def add(self, values: tuple[float, ...], nodes: np.ndarray) -> None:
         """Add the temperatures of the nodes [K] at values of the fields."""
@@ -94,6 +98,21 @@ class _Equilibria:
         terms = np.concatenate([np.ones((len(terms), 1)), terms], axis=1)
         return terms[-1] @ np.linalg.lstsq(terms[:-1], nodes)[0]
 
+    def forget_feedback(self) -> None:
+        """Take temperatures to change no losses, until `learn` tells more."""
+        self._inverse = np.eye(NODES)
+
+    def step(self, change: np.ndarray) -> np.ndarray:
+        """Return by how much temperatures are off [K] that lead to losses whose temperatures differ by a change [K], to first order."""
+        return self._inverse @ change
+
+    def learn(self, step: np.ndarray, closed: np.ndarray) -> None:
+        """Take that a step of the temperatures [K] has lessened the change by ``closed`` [K] (C. G. Broyden, Math. Comput. 19 (1965) 577)."""
+        expected = self._inverse @ closed
+        seen = float(step @ expected)
+        if seen > _DECISIVE * float(step @ step):
+            self._inverse = self._inverse + np.outer(step - expected, step @ self._inverse) / seen
+
 
 def _settled(scene: Scene, inputs: Inputs, values: tuple[float, ...], nearby: _Equilibria) -> np.ndarray:
     """Return the answers of one point, and add its equilibrium to those ``nearby``, from which the search for it begins."""
@@ -101,7 +120,7 @@ def _settled(scene: Scene, inputs: Inputs, values: tuple[float, ...], nearby: _E
     if scene.heat.law == "network":
         start = nearby.expected(values)
         simulation = Simulation(steady, inputs, empty_table(), nodes=start)
-        sample = _in_equilibrium(simulation, start)
+        sample = _in_equilibrium(simulation, start, nearby)
         nearby.add(values, simulation.thermal.temperatures.copy())
     else:
         simulation = Simulation(steady, inputs, empty_table())
@@ -125,28 +144,45 @@ def _moving_slip(scene: Scene, inputs: Inputs, settled: Simulation) -> float:
     return math.nan
 
 
-def _in_equilibrium(simulation: Simulation, start: np.ndarray | None) -> np.void:
+def _in_equilibrium(simulation: Simulation, start: np.ndarray | None, nearby: _Equilibria) -> np.void:
     """Bring a simulation that has begun at a guess of the temperatures to its thermal equilibrium and return its sample there.
 
-    The search goes back and forth between losses and temperatures, as that of `bearing_sim.levels.steady.equilibrium`, whose operating points are
-    finer and take five times as long; where back and forth alone does not end, it is that search which decides.
+    The search is that of `_refined`; where there is no guess, or it does not end, that of `bearing_sim.levels.steady.equilibrium` comes first,
+    whose operating points are finer and take five times as long.
     """
-    thermal, inlet = simulation.thermal, simulation.inputs.oil_temperature
-    thermal.held = True
-    for _ in range(_ROUNDS):
-        block = simulation.advance(_LONG, samples=2)
-        rest = thermal.rest(block[-1:], inlet)
-        change = rest - thermal.temperatures
-        if not np.isfinite(change).all() or np.abs(change).max() > _FARTHEST:
-            break
-        if np.abs(change).max() < _EQUAL:
-            return block[-1]
-        simulation.set_temperatures(rest)
-    found = thermal_equilibrium(simulation.scene, simulation.inputs, start, _EQUAL, _BALANCED)
+    simulation.thermal.held = True
+    if start is not None and (sample := _refined(simulation, nearby)) is not None:
+        return sample
+    found = thermal_equilibrium(simulation.scene, simulation.inputs, start, _NEAR, _BALANCED)
     if not found.converged:
         raise IntegrationError(found.reason)
     simulation.set_temperatures(found.temperatures)
+    if (sample := _refined(simulation, nearby)) is not None:
+        return sample
+    simulation.set_temperatures(found.temperatures)
     return simulation.advance(_LONG, samples=2)[-1]
+
+
+def _refined(simulation: Simulation, nearby: _Equilibria) -> np.void | None:
+    """Return the sample in the thermal equilibrium close to the present temperatures, or None where none is found.
+
+    Losses and temperatures are found in turn.  How losses follow temperatures is nearly the same for all values of the fields at an operating
+    point: each round teaches it, so that most points are solved for twice.
+    """
+    thermal, inlet, step, before = simulation.thermal, simulation.inputs.oil_temperature, None, None
+    for _ in range(_ROUNDS):
+        sample = simulation.advance(_LONG, samples=2)[-1:]
+        change, equal = thermal.rest(sample, inlet) - thermal.temperatures, _EQUAL + _EQUAL_PART * np.ptp(thermal.temperatures)
+        if step is not None and np.abs(step).max() > _TELLING * equal:
+            nearby.learn(step, before - change)
+        step, before = nearby.step(change), change
+        if not np.isfinite(step).all() or np.abs(step).max() > _FARTHEST:
+            break
+        if np.abs(step).max() < equal:
+            return sample[0]
+        simulation.set_temperatures(thermal.temperatures + step)
+    nearby.forget_feedback()
+    return None
 
 
 def at_points(

@@ -6,6 +6,9 @@ python test/benchmarks/band_accuracy.py [SCENE] [--points 50] [--samples 1024] [
 Remaining life is compared where half of the life is spent at each operating point for itself, and along a course that holds each for as long, until
 half of the life is spent: there what is off at one of the points that wear most is off at all that follow.
 
+What no method could better is printed beside: how well the quantiles of one half of the samples agree with those of the other, and, where life
+follows slip alone, how well lives by the level's own loads at the slips of the samples themselves agree with the samples' lives.
+
 Where life follows slip alone, its band may be narrower than what the level resolves: two solutions of the same loads from different starts differ
 by the tolerance of its load balance.  How far the level's lives are from those at the same slips, computed from another start, is its
 resolution; edges that are off by less are counted apart.
@@ -80,6 +83,21 @@ def show(name, off, edges, resolution=None):
         print(f"{said}; at {np.count_nonzero(TOLERANCE * width[:, 0] < resolution * np.abs(edges).min(axis=1))} points a tenth of the width is less")
 
 
+def show_scatter(name, exact):
+    """Print how well the quantiles of the first half of samples agree with those of the second; both halves are nets of Sobol' themselves."""
+    half = exact.shape[1] // 2
+    off, edges = distances(np.nanquantile(exact[:, :half], PROBABILITIES, axis=1).T, exact[:, half:])
+    show(f"{name}, one half of the samples against the other", off, edges)
+
+
+def show_at_known_slips(scene, conditions, answers):
+    """Print how well lives at the slips of the samples themselves agree with the samples' lives: what a response without errors would reach."""
+    effects, life = SlipAndOil(scene), ANSWERS.index("rating_life")
+    changes = effects.by_slip(conditions, np.nan_to_num(answers[:, :, ANSWERS.index("cage_slip")]))
+    found = np.quantile(answers[:, :1, life] * np.exp(changes[:, 1:]), PROBABILITIES, axis=1).T
+    show("rating_life, at the samples' own slips", *distances(found, answers[:, 1:, life]))
+
+
 def resolution_of(scene, conditions, answers):
     """Return how far the level's lives are at most from those at the same slips, computed from another start [1], shape (k,)."""
     effects, found = SlipAndOil(scene), []
@@ -95,7 +113,11 @@ def compare(scene, response, conditions, answers):
     for column, name in enumerate(QUANTITIES[:3]):
         by_slip_alone = name == "rating_life" and ANSWERS.index(name) not in response.varied_answers()
         resolution = resolution_of(scene, conditions, answers) if by_slip_alone else None
-        show(name, *distances(found[:, column], answers[:, 1:, ANSWERS.index(name)]), resolution)
+        exact = answers[:, 1:, ANSWERS.index(name)]
+        show(name, *distances(found[:, column], exact), resolution)
+        show_scatter(name, exact)
+        if by_slip_alone:
+            show_at_known_slips(scene, conditions, answers)
 
 
 def compare_remaining(scene, response, conditions, answers):
