@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-# Install the test dependencies in .venv and run the tests; arguments are passed to pytest.
+# Install the test dependencies in .venv and run the tests.
 #
-#   launch_scripts/test.sh [pytest arguments]
+#   launch_scripts/test.sh                     all but the long ones
+#   launch_scripts/test.sh --long              the long ones: whole documents, killed programs, nodes over DDS
+#   launch_scripts/test.sh pytest-arguments    what pytest makes of them
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -10,8 +12,13 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 install_package test
 
 cd "$here"
-if [ $# = 0 ]; then # all tests, on all cores
+case "${1-} $#" in
+" 0") chosen="not long" ;;
+"--long 1") chosen="long" ;;
+*) chosen="" ;;
+esac
+if [ -n "$chosen" ]; then # on all cores
     "$venv/bin/python" -m bearing_sim.cli compile --fixed-step # the code of the checkout, which the tests import
-    set -- -n auto --dist loadgroup
+    set -- -m "$chosen" -n auto --dist loadgroup
 fi
 exec "$venv/bin/python" -m pytest "$@"

@@ -108,6 +108,7 @@ def test_the_house_has_at_most_ten_floors():
     assert floors["ros"] + 1 <= MOST_FLOORS and max(floors.values()) <= MOST_FLOORS
 
 
+@pytest.mark.long
 def test_the_core_needs_neither_ros_nor_mcap_nor_rerun():
     code = (
         "import sys, bearing_sim; bearing_sim.Simulation, bearing_sim.load_scene;"
@@ -126,6 +127,7 @@ def test_help_does_not_load_the_model():
     assert found.stderr.strip() == "" and "SCENE" in found.stdout
 
 
+@pytest.mark.long
 def test_a_second_process_finds_all_machine_code_in_the_cache():
     code = (
         "from bearing_sim import Simulation, load_scene; from bearing_sim.levels.slip import methods, model;"
@@ -150,6 +152,7 @@ def test_a_changed_law_in_another_file_changes_the_cache_folder(tmp_path, monkey
     assert compilation.sources_hash() != before
 
 
+@pytest.mark.long
 def test_the_model_runs_uncompiled_for_the_debugger():
     code = (
         "from bearing_sim import Simulation, load_scene;"

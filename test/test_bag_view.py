@@ -222,6 +222,7 @@ def test_a_measured_clearance_of_another_source_is_known_by_its_joint_or_its_fie
     assert column(tmp_path / "a.rrd", "/clearance/measured")[1].tolist() == pytest.approx([30.0, 29.0, 28.0])
 
 
+@pytest.mark.long
 def test_a_cage_measured_while_the_shaft_speeds_up_is_compared_with_the_ideal_speed_of_its_own_moment(tmp_path):
     """A live run writes a measurement after the block of samples that it is compared with; readers and views have blocks of their own."""
     block = synthetic_block(SCENE, 0.002 * np.arange(1, 2501))

@@ -34,6 +34,7 @@ def report():
     return json.loads(found.stdout)
 
 
+@pytest.mark.long
 def test_cases_cover_each_level_with_error_control_and_with_a_fixed_step_at_both_speeds(report):
     assert {level: len(level_integrators(level)) for level in (*MEASURED, "steady")} == {"slip": 2, "planar": 2, "steady": 1}
     measured = [(case["level"], case["integrator"], case["speed_rpm"]) for case in report["cases"]]

@@ -9,6 +9,7 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN, ViewerFailed
 
 
+@pytest.mark.long
 def test_every_situation_is_measured_and_the_solver_goes_on_in_all_of_them():
     try:
         report = run_view_bench(0.5, 0.5)
@@ -29,6 +30,7 @@ def test_every_situation_is_measured_and_the_solver_goes_on_in_all_of_them():
                 assert 0.0 < spread["low"] <= spread["median"] <= spread["high"] and spread["pairs"] >= 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("viewer", [TAKING, NO_VIEW])
 def test_what_recording_costs_is_measured_with_a_viewer_that_draws_elsewhere_and_without_a_view(viewer):
     report = recording_cost(load_scene("deng2017_table1"), 0.3, 1000.0, 1, viewer)
@@ -51,6 +53,7 @@ def test_what_recording_costs_is_measured_with_a_viewer_and_every_tick_is_counte
     assert 0.0 <= report["without"]["late_held_ms"] <= report["without"]["worst_held_ms"] <= report["without"]["worst_stall_ms"] + 1e-9
 
 
+@pytest.mark.long
 def test_a_long_run_is_written_and_opened_whole():
     try:
         found = run_hour(2.0)

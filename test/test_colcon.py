@@ -50,6 +50,7 @@ def built(tmp_path_factory):
     return workspace
 
 
+@pytest.mark.long
 def test_colcon_takes_the_package_for_a_ros_package(built):
     (line,) = built.run(COLCON, "list").stdout.splitlines()
     assert line.split() == ["bearing_sim", "src/bearing_sim", "(ros.ament_python)"]
@@ -69,6 +70,7 @@ def test_colcon_installs_what_ros_looks_for(built):
     assert Path(module).is_relative_to(built.folder) and path.split(os.pathsep)[0] == str(prefix)
 
 
+@pytest.mark.long
 def test_the_installed_programs_run_and_find_the_bundled_scenes(built):
     scenes = built.installed("bearing-sim scenes && which bearing-sim")
     assert scenes.returncode == 0 and "deng2017_table1" in scenes.stdout, scenes.stderr
@@ -81,6 +83,7 @@ def test_the_installed_programs_run_and_find_the_bundled_scenes(built):
     assert player.returncode == 0 and "--wait-limit" in player.stdout
 
 
+@pytest.mark.long
 def test_colcon_test_passes_and_its_result_says_so(built):
     done = built.run(COLCON, "test", "--return-code-on-test-failure", "--pytest-args", *SELECTION)
     assert done.returncode == 0, done.stdout + done.stderr

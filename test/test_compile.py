@@ -4,6 +4,7 @@
 import subprocess
 import sys
 
+import pytest
 from click.testing import CliRunner
 
 from bearing_sim.cli.main import main
@@ -38,6 +39,7 @@ def test_by_default_levels_are_compiled_without_fixed_steps():
     assert builds(("slip", "planar")) == [Build("planar"), Build("slip")], "the slowest first"
 
 
+@pytest.mark.long
 def test_run_after_compile_finds_all_its_code_on_disk():
     result = CliRunner().invoke(main, ["compile", "--level", "slip"])
     assert result.exit_code == 0 and "slip: compiled" in result.output, result.output

@@ -36,6 +36,7 @@ def the_run(folder):
     return run
 
 
+@pytest.mark.long
 def test_the_demonstration_plays_a_mission_over_dds_and_leaves_recording_view_and_summary(tmp_path):
     seconds = 6.0
     process = demo(tmp_path, "--duration", str(seconds))
@@ -56,6 +57,7 @@ def test_the_demonstration_plays_a_mission_over_dds_and_leaves_recording_view_an
     assert "Traceback" not in process.text
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_demonstration_ends_its_processes_and_completes_the_recording(tmp_path, number):
     process = demo(tmp_path, "--duration", "15")
@@ -70,6 +72,7 @@ def test_an_interrupted_demonstration_ends_its_processes_and_completes_the_recor
     assert "Traceback" not in (run / "node.log").read_text()
 
 
+@pytest.mark.long
 def test_killing_the_demonstration_by_force_leaves_no_node_behind(tmp_path):
     process = demo(tmp_path, "--duration", "15")
     deadline = time.monotonic() + 100.0
@@ -90,6 +93,7 @@ def test_a_wrong_scene_is_told_before_anything_starts(tmp_path):
     assert not (tmp_path / "my runs").exists()
 
 
+@pytest.mark.long
 def test_a_player_whom_nobody_hears_gives_up_with_a_word(tmp_path):
     process = NodeProcess(tmp_path, fresh_domain(), str(tmp_path / "no.mcap"), module="bearing_sim.ros.player")
     assert process.wait() == 2 and "no such file" in process.text

@@ -44,6 +44,7 @@ def border_of(designed, kind, d_value):
     return border
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("d_value", [0.095, 0.105])
 def test_single_runs_at_level_slip_break_the_limits_just_outside_the_border_and_keep_them_inside(designed, d_value):
     border = border_of(designed, NOMINAL, d_value)
@@ -91,6 +92,7 @@ def test_borders_do_not_hang_on_the_grid_they_were_found_from(designed):
         assert border_of(coarse, kind, 0.105)[2:4] == pytest.approx(border_of(designed, kind, 0.105)[2:4], abs=5e-5)
 
 
+@pytest.mark.long
 def test_a_region_thinner_than_the_steps_of_the_grid_is_found():
     coarse = found(radii="34.86mm:34.868mm:2", d_values="0.105mm")
     fine = found(radii="34.861mm:34.865mm:9", d_values="0.105mm")
@@ -120,6 +122,7 @@ def test_the_default_range_is_about_the_scene():
 WORDS = ["design", "deng2017_table1", "--slip-below", "10%", "--life-above", "300h", "--low-radius", "34.86mm:34.866mm:4", "--workers", "1"]
 
 
+@pytest.mark.long
 def test_command_answers_beside_deng_writes_tables_and_picture_and_computes_nothing_twice(tmp_path):
     words = [
         *WORDS,

@@ -245,6 +245,7 @@ def life_at_planar(low, d_value):
     return 1.0 / (1.0 / run.advance(0.2, samples=400)["rating_life"]).mean()
 
 
+@pytest.mark.long
 def test_a_raceway_that_planar_gives_two_thirds_of_the_life_asked_for_is_not_recommended(elliptical):
     report, _ = elliptical
     assert (report["level"], report["verify_level"]) == ("slip", "planar"), "the next level is the default"

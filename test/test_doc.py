@@ -24,6 +24,7 @@ def built(tmp_path_factory):
     return build, folder / "html"
 
 
+@pytest.mark.long
 def test_the_documents_build_without_a_warning_and_without_a_broken_internal_link(built):
     build, _ = built
     assert build.returncode == 0, build.stderr

@@ -77,6 +77,7 @@ def run(path, folder, server):
     return done.stdout
 
 
+@pytest.mark.long
 @pytest.mark.timeout(1000)
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(ROOT / page)])
 def test_the_blocks_of_a_page_run_in_an_empty_folder(page, tmp_path, server):
@@ -104,6 +105,7 @@ def assert_printed(path, printed):
         assert [float(number) for number in shown[: len(told)]] == pytest.approx([float(number) for number in told], rel=0.05), (row, found)
 
 
+@pytest.mark.long
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("notebook", NOTEBOOKS)
 def test_the_cells_of_a_notebook_run_in_a_new_kernel_and_are_kept_without_outputs(notebook, tmp_path, monkeypatch):

@@ -90,6 +90,7 @@ class User:
         return {**os.environ, "PYTHONPATH": str(ROOT)}
 
 
+@pytest.mark.long
 def test_the_commands_of_the_first_ten_minutes_do_what_the_tutorial_says(tmp_path):
     user = User(tmp_path)
     try:

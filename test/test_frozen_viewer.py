@@ -92,6 +92,7 @@ def test_a_viewer_that_dies_is_nobody_elses_trouble_and_the_next_one_finds_every
         assert sink.failure is None and sink.dropped == 0
 
 
+@pytest.mark.long
 def test_a_frozen_process_of_the_view_never_blocks_the_run_and_what_is_dropped_is_counted(tmp_path, monkeypatch):
     monkeypatch.setattr(worker, "QUEUED_ROWS", 2000)
     sink = RerunSink(SCENE, path=tmp_path / "run.rrd")
@@ -126,6 +127,7 @@ def test_close_ends_a_frozen_process_of_the_view(tmp_path):
     assert not os.path.exists(f"/proc/{sink.pid}")
 
 
+@pytest.mark.long
 def test_a_killed_process_of_the_view_is_told_and_the_run_goes_on(tmp_path):
     sink = RerunSink(SCENE, path=tmp_path / "run.rrd")
     assert sink.wait_until_ready()
@@ -139,6 +141,7 @@ def test_a_killed_process_of_the_view_is_told_and_the_run_goes_on(tmp_path):
     assert sink.dropped >= 3 and sink.close() is False
 
 
+@pytest.mark.long
 def test_the_file_of_a_run_that_is_killed_is_finished_all_the_same(tmp_path):
     path = tmp_path / "run.rrd"
     script = f"""

@@ -47,6 +47,7 @@ def test_the_cost_of_a_thread_is_found_under_its_name():
     thread.join()
 
 
+@pytest.mark.long
 def test_a_node_is_measured_over_dds_and_the_figures_hang_together():
     words = [sys.executable, NODE_OVERHEAD, "--level", "slip", "--duration", "2", "--rate", "50", "--record", "--json"]
     environment = {**os.environ, "ROS_DOMAIN_ID": str(fresh_domain()), "PYTHONPATH": str(ROOT)}

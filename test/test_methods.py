@@ -64,6 +64,7 @@ def test_a_level_without_steps_refuses_a_fixed_one_and_an_automatic_level_has_st
     assert load_scene("deng2017_table1", ["level=auto", "integration.fixed_step=10 us"]).level == "slip"
 
 
+@pytest.mark.long
 def test_only_what_a_run_uses_is_compiled():
     code = (
         "from bearing_sim import Simulation, load_scene; from bearing_sim.levels.level import LEVELS;"

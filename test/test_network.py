@@ -51,6 +51,7 @@ def running(tmp_path_factory):
         yield programs
 
 
+@pytest.mark.long
 @pytest.mark.skipif("fastrtps" not in get_rmw_implementation_identifier(), reason="the profile is one of Fast DDS")
 def test_the_sockets_of_node_view_and_player_are_on_the_loopback_interface_and_programs_without_the_profile_hear_the_node(running):
     node, player, client = running
@@ -241,6 +242,7 @@ def test_a_middleware_that_cannot_start_is_one_message(capfd, monkeypatch):
     assert printed == "bearing_node: cannot start ROS: error creating node: This Fast DDS version doesn't have the security libraries\n"
 
 
+@pytest.mark.long
 def test_the_dask_scheduler_of_the_how_to_listens_on_the_loopback_interface(tmp_path):
     pytest.importorskip("distributed", reason="pip install 'bearing_sim[dask]'")
     (words,) = re.findall(r"^dask scheduler (.*)$", (HOW_TO / "replay_a_fleet.md").read_text(), re.MULTILINE)

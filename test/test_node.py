@@ -268,6 +268,7 @@ def test_scalar_inputs_in_a_namespace(launch):
     client.drive_until(lambda: [s for s in client.statuses(report) if "-5 N is negative" in s[2]], "a negative load is told", process)
 
 
+@pytest.mark.long
 def test_sigint_while_the_model_is_being_compiled_ends_at_once_and_in_order(launch, tmp_path):
     process, client = launch(f"record:={tmp_path / 'run.mcap'}", XDG_CACHE_HOME=str(tmp_path / "empty_cache"))
     client.spin_until(lambda: any("warming up" in status[2] for status in client.statuses()), "the node says that it is warming up", process)
@@ -287,6 +288,7 @@ def test_sigint_completes_the_recording(launch, tmp_path):
     assert summary is not None and summary.statistics.message_count > 100
 
 
+@pytest.mark.long
 def test_wrong_parameters_and_scenes_end_with_one_clear_message_and_code_2(tmp_path):
     blocked = tmp_path / "a_file"
     blocked.write_text("")
@@ -307,6 +309,7 @@ def test_wrong_parameters_and_scenes_end_with_one_clear_message_and_code_2(tmp_p
         assert all(words in process.text for words in expected), process.text
 
 
+@pytest.mark.long
 @pytest.mark.timeout(900)
 def test_a_level_that_the_machine_is_too_slow_for_gives_way_and_everybody_is_told(launch, tmp_path):
     recording, slow = tmp_path / "run.mcap", ["level=spatial", "bearing.roller.slices=400", "bearing.roller.slices_per_traction=1"]

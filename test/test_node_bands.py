@@ -44,6 +44,7 @@ def node(tmp_path):
     path.unlink(missing_ok=True)
 
 
+@pytest.mark.long
 def test_bands_and_estimates_are_published_calibrated_by_a_measured_cage_and_recorded(node, tmp_path):
     process, client = node
     kind, heard = topics.ESTIMATED[BANDS].ros_type, {BANDS: [], ESTIMATES: []}
@@ -107,6 +108,7 @@ class Machine:
             self.readings += 1
 
 
+@pytest.mark.long
 def test_a_change_of_the_machine_is_told_accepted_and_becomes_the_new_normal(node, tmp_path):
     process, client = node
     estimates = []

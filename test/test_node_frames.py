@@ -66,6 +66,7 @@ def wrench(frame, **force):
     return message(topics.INPUTS["radial_load"].ros_type, fields)
 
 
+@pytest.mark.long
 def test_a_bearing_in_a_machine_publishes_where_it_is_and_takes_loads_from_other_frames(stand_in, tmp_path):
     """The bearing is rolled by a quarter in its gearbox, so that a load down the gearbox's z is one along its own -y."""
     domain, path = fresh_domain(), tmp_path / "run.mcap"

@@ -109,6 +109,7 @@ def test_a_transition_that_the_state_does_not_have_is_answered_by_no_and_harms_n
     assert node.process.process.poll() is None and "Traceback" not in node.process.text
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
 @pytest.mark.parametrize("state", STATES)
 def test_a_signal_ends_the_node_in_every_state_with_code_0_and_its_recording_complete(managed, tmp_path, state, number):
@@ -130,6 +131,7 @@ def test_a_signal_ends_the_node_in_every_state_with_code_0_and_its_recording_com
         assert Recording(tmp_path / "run.mcap").samples > 0
 
 
+@pytest.mark.long
 def test_the_node_answers_while_it_compiles_and_begins_by_itself_when_that_is_done(managed, tmp_path):
     node = managed("overrides:=['level=slip']", XDG_CACHE_HOME=str(tmp_path / "empty_cache"))
     assert node.change("configure") == (True, "inactive")
@@ -199,6 +201,7 @@ def test_a_transition_that_fails_again_is_told_at_the_next_review_though_no_regu
         rclpy.shutdown()
 
 
+@pytest.mark.long
 def test_forty_reconfigures_in_mid_run_leak_no_thread_no_file_no_memory_and_every_recording_is_complete(managed, tmp_path):
     node = managed(f"record:={tmp_path / 'run.mcap'}")
     client, process = node.client, node.process

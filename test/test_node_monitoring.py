@@ -62,6 +62,7 @@ class Cage:
                 self.send(cage - extra * ideal)
 
 
+@pytest.mark.long
 def test_a_measured_cage_is_compared_judged_published_and_recorded(node, tmp_path):
     process, client = node
     cage = Cage(client)
@@ -123,6 +124,7 @@ class RingSensor:
                 self.publisher.publish(message(self.topic.ros_type, fields))
 
 
+@pytest.mark.long
 def test_a_ring_temperature_corrects_the_network_and_when_its_sensor_dies_the_network_takes_over_and_diagnostics_say_so(tmp_path):
     process, client = started(tmp_path, "heat.law=network", "input_limits.stale_after=0.1s")  # a temperature dies after 1 s
     sensor, key = RingSensor(client), "inner ring temperature measured [degC]"

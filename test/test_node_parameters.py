@@ -269,6 +269,7 @@ def test_the_example_file_holds_every_parameter_at_its_default_and_the_node_take
     client.close()
 
 
+@pytest.mark.long
 def test_two_bearings_in_one_process_have_their_own_topics_services_parameters_diagnostics_and_recordings(tmp_path):
     scenes = ["front.scene:=deng2017_table1", "rear.scene:=deng2017_table2", "front.thresholds.life_warning:=1e8"]
     process, front = start(
@@ -317,6 +318,7 @@ def test_two_bearings_in_one_process_have_their_own_topics_services_parameters_d
         process.end(signal.SIGKILL)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("names", "words"), [("[Front]", "is not a valid name"), ("[front, front]", "is given 2 times"), ("[scene]", "is the name of a parameter")]
 )

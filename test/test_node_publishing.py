@@ -124,6 +124,7 @@ def at_work(process, client):
     client.drive_until(lambda: len(client.received["bearing_joints"]) > 20, "outputs come", process)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rate", [40.0, 30.0])
 def test_outputs_are_stamped_at_the_publish_rate_also_where_it_does_not_divide_that_of_the_ticks(launch, rate):
     process, client = launch(f"publish_rate:={rate}")

@@ -79,6 +79,7 @@ def restarts(client, since=0):
     return [text for level, name, text in client.statuses(since) if level == 1 and "recording.restarted" in name]
 
 
+@pytest.mark.long
 def test_a_recording_whose_process_is_killed_goes_on_in_another_file_but_not_for_ever_and_a_killed_node_leaves_a_complete_one(launch, tmp_path):
     process, client = launch(f"record:={tmp_path / 'run.mcap'}")
     client.drive(2.0)
@@ -122,6 +123,7 @@ def test_a_recording_whose_process_is_killed_goes_on_in_another_file_but_not_for
     assert len(times) > 30 and killed_ns - times[-1] < SECOND
 
 
+@pytest.mark.long
 def test_a_full_disk_under_the_node_is_told_the_node_goes_on_and_what_was_written_recovers(launch, small_disk, tmp_path):
     process, client = launch(f"record:={small_disk / 'run.mcap'}", "record_keep_free:=0.0", "sample_rate:=1000.0", "governor:=false")
     client.drive_until(lambda: given_up(client), "the full disk is told as an ERROR", process)

@@ -103,6 +103,7 @@ def events(client, code):
     return {(level, text) for level, name, text in client.statuses() if name.endswith(f": {code}")}
 
 
+@pytest.mark.long
 def test_a_log_played_at_any_rate_with_a_pause_and_again_is_what_its_replay_is(bench, log, tmp_path):
     """First at rate 0.25 with a pause, then, after the clock's jump back, at rate 10: topics to 1e-9, recordings to the byte."""
     start, client, player = bench
@@ -149,6 +150,7 @@ def _pause(client, process, paused):
     assert future.result().success
 
 
+@pytest.mark.long
 def test_clock_that_jumps_back_is_an_error_where_that_is_asked_for(bench, log, tmp_path):
     start, client, player = bench
     path, offline = log

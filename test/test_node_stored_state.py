@@ -25,6 +25,7 @@ def test_killed_nodes_continue_from_what_they_had_published_ten_seconds_before_o
     assert 0.0 < restored <= sum(kill.last - kill.begun_with for kill in kills)
 
 
+@pytest.mark.long
 def test_a_node_keeps_one_state_for_each_bearing_and_no_second_node_may_use_it(tmp_path):
     state, domain = tmp_path / "a.json", fresh_domain()
     arguments = ("--ros-args", *SCENE, "-p", f"state_file:={state}")

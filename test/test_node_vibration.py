@@ -25,6 +25,7 @@ RATE, WINDOW, BLOCKS = 51_200.0, 0.5, 2
 AGAIN = 10.0  # [s] after which a window is sent again, in case that it was lost
 
 
+@pytest.mark.long
 def test_blocks_of_vibration_become_a_measured_cage_speed_with_its_error_and_noise_becomes_none(tmp_path):
     bearing = load_scene("deng2017_table1").bearing
     size = bearing.roller.diameter / bearing.pitch_diameter

@@ -104,6 +104,7 @@ def test_the_node_tells_once_what_is_implausible():
     assert told.level is Level.WARN and told.subject == "bearing.cage.mass" and told.reason.startswith("5000 g for about ")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("command", [["run", "--duration", "0.01"], ["loads"], ["uncertainty", "--samples", "2", "--level", "slip"]])
 def test_commands_print_what_is_implausible_and_go_on(command, tmp_path):
     name, *options = command

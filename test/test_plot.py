@@ -100,6 +100,7 @@ RUNS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["reverse", "constant", "at rest", "one sample", "tiny and huge", "days"])
 def test_no_label_lies_on_another_over_time_and_over_load_whatever_the_run(tmp_path, name):
     shown = course(RUNS[name])
@@ -244,6 +245,7 @@ def recording(tmp_path_factory):
     return path
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("suffix, magic", [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")])
 def test_the_command_draws_a_recording_into_the_format_of_the_suffix(recording, tmp_path, suffix, magic):
     done = plotted(recording, "-o", tmp_path / f"a{suffix}")

@@ -67,6 +67,7 @@ def test_every_thread_of_the_view_runs_in_idle_time_in_the_session_of_its_feeder
         assert os.getsid(sink.pid) == os.getsid(0) and os.getpgid(sink.pid) == sink.pid != os.getpgid(0)
 
 
+@pytest.mark.long
 def test_a_view_that_writes_a_file_gives_way_but_has_a_share_of_its_own_like_the_recorder(tmp_path):
     with RerunSink(SCENE, path=tmp_path / "run.rrd", serve_port=free_port()) as sink:
         assert sink.wait_until_ready(60.0)
@@ -74,6 +75,7 @@ def test_a_view_that_writes_a_file_gives_way_but_has_a_share_of_its_own_like_the
         assert set(policies(sink.pid).values()) == {BATCH} and os.getsid(sink.pid) == sink.pid != os.getsid(0)
 
 
+@pytest.mark.long
 def test_every_thread_of_a_viewer_that_we_start_beside_a_solver_runs_in_idle_time():
     with RerunSink(SCENE, serve_port=(port := free_port())) as sink:
         assert sink.wait_until_ready(60.0)
@@ -132,6 +134,7 @@ print(sink.dropped)
 """
 
 
+@pytest.mark.long
 def test_a_recording_is_complete_though_busy_processes_of_the_same_session_take_the_core_that_it_has(tmp_path):
     command = [sys.executable, "-c", ON_ONE_CORE, str(tmp_path / "run.mcap"), str(Path(__file__).parent)]
     found = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=120, check=True, start_new_session=True)
@@ -174,6 +177,7 @@ with Recorder() as recorder, RerunSink(SCENE, path=sys.argv[1] + ".rrd") as view
 """
 
 
+@pytest.mark.long
 def test_ctrl_c_at_a_terminal_reaches_who_feeds_and_neither_recorder_nor_view_before_they_are_fed_to_the_end(tmp_path):
     ours, terminal = os.openpty()
     command = [sys.executable, "-c", AT_A_TERMINAL, str(tmp_path / "run"), str(Path(__file__).parent)]

@@ -196,6 +196,7 @@ def test_a_sweep_from_python_is_that_of_the_command_line_with_names_and_si_units
     assert list(frame["cage_slip"]) == list(data["cage_slip"].values.ravel()) and (data["status"] == "ok").all()
 
 
+@pytest.mark.long
 def test_a_script_without_a_guard_sweeps_in_processes(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(
@@ -290,6 +291,7 @@ def test_a_copy_continues_with_its_thermal_network(motor, measured):
     assert [each.advance(11.7, samples=5).tobytes() for each in copies] == [whole] * 2
 
 
+@pytest.mark.long
 def test_a_simulation_goes_to_another_process_and_comes_back(paper):
     simulation = Simulation(paper)
     simulation.advance(0.01)

@@ -74,6 +74,7 @@ def is_gone(pid):
     return not Path(f"/proc/{pid}").exists()
 
 
+@pytest.mark.long
 def test_what_the_process_writes_is_what_a_sink_in_this_process_writes(recorder, tmp_path):
     for sink in (recorder.open(tmp_path / "there.mcap", SCENE, START, advance=(0.005, 5)), McapSink(tmp_path / "here.mcap", SCENE, START)):
         sink.write_start(RUN[:1])
@@ -144,6 +145,7 @@ def test_a_file_deleted_under_the_process_is_told_and_written_anew(recorder, tmp
     np.testing.assert_array_equal(samples(tmp_path / "run.mcap")["inner_load"], RUN["inner_load"][:2000])
 
 
+@pytest.mark.long
 def test_a_killed_process_is_told_as_an_error_what_it_wrote_recovers_and_the_next_recording_has_another_one(tmp_path):
     with Recorder() as recorder:
         sinks, pid = SinkRegistry(), None
@@ -171,6 +173,7 @@ def test_a_killed_process_is_told_as_an_error_what_it_wrote_recovers_and_the_nex
         assert len(samples(tmp_path / "next.mcap")) == 10
 
 
+@pytest.mark.long
 def test_a_frozen_process_holds_nobody_up_what_it_misses_is_counted_and_it_goes_on_when_it_thaws(tmp_path):
     with Recorder(capacity=1_000_000) as recorder:
         sink = recorder.open(tmp_path / "run.mcap", SCENE, START)
@@ -194,6 +197,7 @@ def test_a_frozen_process_holds_nobody_up_what_it_misses_is_counted_and_it_goes_
         assert sink.dropped == missed and len(samples(tmp_path / "run.mcap")) == 2000 - 50 * missed
 
 
+@pytest.mark.long
 def test_closing_does_not_wait_for_ever_and_the_process_completes_the_file_when_it_can(tmp_path):
     recorder = Recorder()
     sink = recorder.open(tmp_path / "run.mcap", SCENE, START)
@@ -251,6 +255,7 @@ def _feeder(path):
     return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True)
 
 
+@pytest.mark.long
 def test_killing_the_feeding_process_with_its_whole_group_leaves_a_complete_file_with_all_that_was_sent_and_no_process(tmp_path):
     feeder = _feeder(tmp_path / "run.mcap")
     pid, sent = int(feeder.stdout.readline()), 0
@@ -266,6 +271,7 @@ def test_killing_the_feeding_process_with_its_whole_group_leaves_a_complete_file
     assert len(kept) >= sent
 
 
+@pytest.mark.long
 def test_ctrl_c_does_not_end_the_process_before_it_is_fed_to_the_end(tmp_path):
     feeder = _feeder(tmp_path / "run.mcap")
     for _ in range(3):
@@ -292,6 +298,7 @@ def test_a_full_disk_comes_back_as_an_error_and_nothing_written_is_lost(recorder
     assert found.damaged == 0 and found.messages["/roller_loads"] > 500
 
 
+@pytest.mark.long
 def test_one_process_makes_many_recordings_and_keeps_neither_files_nor_threads(tmp_path):
     with Recorder() as recorder:
 

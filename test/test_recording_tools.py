@@ -74,6 +74,7 @@ def test_every_observable_comes_back_as_it_was(recording):
         np.testing.assert_allclose(read[observable.name], RUN[observable.name], rtol=1e-15, atol=1e-9 if observable.name == "time" else 0.0)
 
 
+@pytest.mark.long
 def test_the_doctor_finds_no_fault(recording, tmp_path):
     """Neither in a recording nor in one that was recovered."""
     doctor = shutil.which("pymcap-cli", path=f"{Path(sys.executable).parent}{os.pathsep}{sysconfig.get_path('scripts')}")

@@ -337,6 +337,7 @@ def test_bad_input_is_one_message_and_exit_code_2(tmp_path, monkeypatch, argumen
     assert not list(tmp_path.glob("out*"))
 
 
+@pytest.mark.long
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_run_that_is_told_to_stop_leaves_a_finished_file(tmp_path, number):

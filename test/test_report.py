@@ -74,6 +74,7 @@ def page_of(source, out):
     return page
 
 
+@pytest.mark.long
 def test_the_page_of_a_design_shows_both_bands_both_levels_points_tolerances_and_command(folder, tmp_path):
     page = page_of(folder / "design.parquet", tmp_path / "d.html")
     expected = ["Summary", "Operating points", "Picture", "Intervals of radii", "Both levels", "Map", "Bearing and conditions", "Provenance"]

@@ -219,6 +219,7 @@ def test_from_recording_refuses_what_does_not_go_with_it(tmp_path):
         invoke("replay", log, *arguments, code=code)
 
 
+@pytest.mark.long
 def test_killed_recordings_come_back_without_gaps(tmp_path):
     """`python test/benchmarks/recording_kills.py` kills many more, and measures how much of the end is lost, which depends on the machine."""
     for kill in kill_recordings(tmp_path, 2, seed=11):

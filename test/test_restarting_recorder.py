@@ -48,6 +48,7 @@ def killed(recorder, recording):
     assert recording._current.is_orphaned
 
 
+@pytest.mark.long
 def test_a_recording_whose_process_is_killed_goes_on_in_a_fresh_file_and_tells_what_is_lost(tmp_path):
     (tmp_path / "run_2.mcap").write_text("precious")
     with Recorder() as recorder:

@@ -295,6 +295,7 @@ def test_a_recording_of_unknown_length_holds_the_whole_run_and_can_be_repeated(s
     assert compared.exit_code == 0 and "the recordings agree" in compared.output
 
 
+@pytest.mark.long
 def test_random_bearings_settle_and_stay_there():
     """The whole draw: `python test/benchmarks/random_bearings.py`."""
     rows = [examine(scene) for scene in scenes(60, 1)[:8]]

@@ -51,6 +51,7 @@ def reported(command_output):
     return json.loads(command_output)
 
 
+@pytest.mark.long
 def test_there_are_six(reported):
     assert len(reported) == 6 and list(reported) == [situation.name for situation in SITUATIONS]
 

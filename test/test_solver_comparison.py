@@ -32,6 +32,7 @@ def report():
     return json.loads(found.stdout)
 
 
+@pytest.mark.long
 def test_every_integrator_is_compared_with_lsoda_at_both_speeds(report):
     compared = [(case["level"], case["integrator"], case["speed_rpm"]) for case in report["cases"]]
     assert sorted(compared) == sorted((level, name, speed) for level in MEASURED for name in level_integrators(level) for speed in SPEEDS)

@@ -139,6 +139,7 @@ def test_books_of_energy_close_with_the_support(level, variant):
         assert free == (by_unbalance == 0.0)
 
 
+@pytest.mark.long
 def test_course_over_half_a_millisecond_is_that_of_bodies_in_coordinates_that_do_not_move():
     reference, run = carried("planar", "shaft and outer ring")
     speed = reference.planar.shaft_speed

@@ -184,6 +184,7 @@ def test_an_axis_of_numbers_in_si_is_the_axis_of_the_text():
     assert axis(LOW, [0.03486, 0.034865]) == read_axis(f"{LOW}=34.86mm,34.865mm")
 
 
+@pytest.mark.long
 def test_pictures_are_lines_over_one_variable_maps_over_two_and_refused_over_three(tmp_path):
     one = swept(f"{LOW}=34.86mm:34.865mm:4", overrides=["level=steady"])
     two = swept(f"{LOW}=34.86mm:34.865mm:4", f"{SPEED}=20000rpm:50000rpm:4", overrides=["level=steady"])
@@ -201,6 +202,7 @@ def test_pictures_are_lines_over_one_variable_maps_over_two_and_refused_over_thr
 COMMAND = ["sweep", "deng2017_table1", "--vary", f"{LOW}=34.86mm:34.8675mm:31", "--level", "slip"]
 
 
+@pytest.mark.long
 def test_command_killed_in_mid_run_goes_on_with_nothing_computed_twice(tmp_path):
     out, journal = tmp_path / "s.parquet", tmp_path / "s.journal"
     words = [*COMMAND, "-o", str(out), "--workers", "2"]

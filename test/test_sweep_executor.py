@@ -155,6 +155,7 @@ def cluster():
         yield local
 
 
+@pytest.mark.long
 def test_a_dask_cluster_computes_the_same_though_one_of_its_workers_is_killed_in_mid_run(tmp_path, cluster):
     count, killed = 40, []
 
@@ -174,6 +175,7 @@ def test_a_dask_cluster_computes_the_same_though_one_of_its_workers_is_killed_in
         assert run_tasks(cluster_tasks, journal, workers=1) == found  # and another executor goes on from there
 
 
+@pytest.mark.long
 def test_the_command_sweeps_on_a_cluster_what_it_sweeps_alone(tmp_path, cluster):
     words = ["sweep", "deng2017_table1", "--level", "steady", "--vary", "bearing.outer_raceway.low_radius=34.86mm:34.865mm:5", "--json"]
 
@@ -187,6 +189,7 @@ def test_the_command_sweeps_on_a_cluster_what_it_sweeps_alone(tmp_path, cluster)
     assert points("cluster", "--dask", cluster.scheduler_address) == points("alone", "--workers", "1")
 
 
+@pytest.mark.long
 def test_the_response_that_a_cluster_builds_is_the_one_that_is_built_alone(tmp_path, cluster, monkeypatch):
     monkeypatch.setattr("bearing_sim.studies.response.DRAWS", 8)
     monkeypatch.setattr("bearing_sim.studies.response.obtain_response", functools.partial(obtain_response, points=256))

@@ -248,6 +248,7 @@ def warm():
     return scene, table[0]
 
 
+@pytest.mark.long
 def test_course_beside_a_thermal_network_is_the_same_as_one_advance_after_the_other(warm):
     scene, table = warm
     times = np.linspace(0.1, 6.0, 120)  # intervals of half the network's: it steps at every second instant

@@ -222,6 +222,7 @@ def test_what_fills_many_bins_of_a_spectrum_is_no_discrete_line_and_is_kept():
     assert not cut[7980:8060].any() and cut[10_244:10_250].all() and cut.mean() < 0.005
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("shows", "speed", "noise"), [("outer_ring", 30_000.0, -10.0), ("outer_ring", 3000.0, -20.0), ("inner_ring", 3000.0, 0.0)])
 def test_a_ring_under_noise_at_high_speed_and_beside_lines_of_other_machines_is_found_within_its_error(shows, speed, noise):
     row = errors_in(Condition(shows, speed, 0.0, noise), 1, 11)

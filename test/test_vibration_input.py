@@ -135,6 +135,7 @@ def test_an_analysis_that_fails_ends_nothing(fed):
     until(lambda: not fed.meter.readings(SPEED) and fed.meter.values["vibration: windows"] == 2)
 
 
+@pytest.mark.long
 def test_the_process_finds_the_cage_in_a_window_and_says_that_noise_has_no_line():
     own = scene(window="2 s")
     size = own.bearing.roller.diameter / own.bearing.pitch_diameter

@@ -107,6 +107,7 @@ def test_picture_has_the_size_asked_for_and_no_view_reports_a_problem(recording,
     assert content.startswith(b"\x89PNG") and struct.unpack(">II", content[16:24]) == (1000, 700)
 
 
+@pytest.mark.long
 def test_live_view_reaches_a_viewer_that_comes_late():
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))

@@ -106,6 +106,7 @@ def live():
         yield web, stream
 
 
+@pytest.mark.long
 @needs_chromium
 def test_a_browser_fetches_a_recording_and_a_live_stream_and_asks_for_nothing_that_is_not_on_this_machine(recording, live):
     web, stream = live
@@ -128,6 +129,7 @@ def test_a_browser_draws_a_recording_and_a_live_run(recording, live, tmp_path):
             assert min(counts) >= LEAST, (name, counts, page.problems)
 
 
+@pytest.mark.long
 def test_the_command_serves_until_it_is_interrupted(tmp_path):
     from recordings import steady_log
 
