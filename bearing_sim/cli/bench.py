@@ -1,22 +1,12 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""``bearing-sim bench``, ``trade`` and ``compile``: how fast the model is, what accuracy costs, and compiling ahead of a run."""
+"""``bearing-sim bench`` and ``compile``: how fast the model is, and compiling ahead of a run."""
 
 import time
 
 import click
 
-from bearing_sim.cli.options import csv_option, json_option, level_type, picture_option, quick_option, scene_argument, set_option
-from bearing_sim.cli.outputs import WritingCommand
-from bearing_sim.cli.reporting import (
-    FailedRun,
-    announce_compilation,
-    as_file_error,
-    as_usage_error,
-    print_json,
-    print_rows,
-    progress_bar,
-    write_csv,
-)
+from bearing_sim.cli.options import json_option, level_type, quick_option
+from bearing_sim.cli.reporting import announce_compilation, print_json, print_rows, progress_bar
 
 _WORDS = ("level", "integrator")  # columns of text
 
@@ -152,113 +142,6 @@ def _print_fleet(report) -> None:
     columns = ("level", "rpm", "core for one [%]", "expected", "held", "core for each [%]")
     print_rows("bearings that one core holds in real time, measured by running them, without ROS", columns, rows, words=("level",), width=120)
     click.echo(f"core {report['core']}, load average {report['load_average']:.2f}; 0 held: the machine was busy")
-
-
-_MEASURED = ("real_time_factor", "slip_error_points", "largest_slip_error_points", "load_error", "life_error")
-_COLUMNS = ("level", "setting", *_MEASURED, "on_front", "failure")
-_FACTORS, _ERRORS = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
-
-
-@click.command("trade", cls=WritingCommand)
-@scene_argument
-@set_option
-@click.option("--level", "levels", multiple=True, type=level_type, help="Measure this level; can be repeated [default: all].")
-@click.option("--against", type=level_type, help="Level of the reference [default: planar, or the highest that can compute the scene].")
-@click.option("--factor", type=click.FloatRange(min=0.0, min_open=True), help="Recommend the most accurate setting at this multiple of real time.")
-@click.option(
-    "--error",
-    type=click.FloatRange(min=0.0, min_open=True),
-    help="Recommend the fastest setting with at most this error of slip [percentage points].",
-)
-@csv_option("Write all settings to a table.")
-@picture_option("Draw error against speed")
-@json_option
-@quick_option
-def trade(scene_name, overrides, levels, against, factor, error, table, picture, as_json, quick):
-    """Measure real-time factor and errors in slip, largest roller load and life of every level and tolerance or step on SCENE.
-
-    All settings run the same manoeuvre from the scene's conditions (the load is halved and restored, the shaft slowed by a fifth) and are
-    compared with a reference at tight tolerances.  Times are processor time of one core; other programs still slow down shared memory.
-    """
-    from bearing_sim.scene.fidelity import LEVELS
-    from bearing_sim.scene.loader import SceneError
-    from bearing_sim.simulation import IntegrationError
-
-    announce_compilation()
-    from bearing_sim.studies.trade import recommend, settings_of, trade
-
-    total = 1 + sum(len(settings_of(level, quick)) for level in levels or LEVELS)
-    with progress_bar("settings", total) as show, as_usage_error(SceneError, ValueError):
-        done = iter(range(total + 1))
-        try:
-            found = trade(scene_name, overrides, levels, quick, lambda name: show(next(done)), against)
-        except IntegrationError as error:
-            raise FailedRun(f"the reference failed: {error}") from None
-    with as_file_error():
-        if table is not None:
-            write_csv(table, _rows(found))
-        if picture is not None:
-            from bearing_sim.studies.trade import draw
-
-            with picture.draft() as draft:
-                draw(draft, scene_name, found)
-    best = recommend(found, factor, error) if factor is not None or error is not None else None
-    if as_json:
-        print_json(_report(found) | {"recommended": best and best.setting.name})
-    else:
-        _print_trade(scene_name, found)
-        _print_advice(found, factor, error, best)
-
-
-def _rows(found) -> list[dict]:
-    return [
-        dict(zip(_COLUMNS, (one.setting.level, one.setting.detail, *one[1:6], k in found.front, one.failure))) for k, one in enumerate(found.measured)
-    ]
-
-
-def _report(found) -> dict:
-    return {
-        "reference": found.reference,
-        "reference_error": dict(zip(_MEASURED[1:], found.own_error)),
-        "simulated_seconds": found.simulated,
-        "left_out": found.left_out,
-        "settings": _rows(found),
-    }
-
-
-def _print_trade(name, found) -> None:
-    rows = []
-    for row in sorted(_rows(found), key=lambda row: -row["real_time_factor"]):
-        points = f"{row['slip_error_points']:.3f}", f"{row['largest_slip_error_points']:.3f}"
-        values = f"{row['real_time_factor']:.3g}", *points, f"{100 * row['load_error']:.2g}", f"{100 * row['life_error']:.2g}"
-        rows.append(("*" if row["on_front"] else "", row["level"], row["setting"], *values, row["failure"]))
-    words, numbers = ("", "level", "setting"), ("x real time", "slip, points", "largest, points", "load, %", "life, %")
-    print_rows(f"{name}: against {found.reference}, over {found.simulated:.3g} s", (*words, *numbers, ""), rows, words)
-    slip, _, load, life = found.own_error
-    click.echo(
-        f"* no setting is both faster and more accurate in slip; error of the reference {slip:.2g} points, {100 * load:.2g} %, {100 * life:.2g} %"
-    )
-    for level, reason in found.left_out.items():
-        click.echo(f"not measured: {level} ({reason})")
-
-
-def _print_advice(found, factor, error, best) -> None:
-    from bearing_sim.studies.trade import recommend
-
-    if factor is not None or error is not None:
-        click.echo(f"recommended: {_recommendation(best)}" if best else "no setting is that fast and that accurate")
-        return
-    for factor in _FACTORS:
-        click.echo(f"for {factor:g} x real time: {_recommendation(recommend(found, factor=factor))}")
-    for error in _ERRORS:
-        click.echo(f"for {error:g} points of slip: {_recommendation(recommend(found, error=error))}")
-
-
-def _recommendation(one) -> str:
-    if one is None:
-        return "none"
-    options = " ".join(f'--set "{item}"' for item in (f"level={one.setting.level}", *one.setting.overrides))
-    return f"{one.setting.name} ({one.real_time_factor:.3g} x real time, {one.slip_error:.2g} points): {options}"
 
 
 @click.command("compile")

@@ -63,7 +63,7 @@ _COMMANDS = {
     "plot": Entry("plot:plot", "Draw recorded runs over time or load, or the table of a sweep."),
     "design": Entry("design:design", "Map which outer raceways keep slip and life within limits, and verify them."),
     "report": Entry("report:report", "Make one HTML page of a study, a sweep, a design or a recorded run."),
-    "trade": Entry("bench:trade", "Measure speed against accuracy on a scene, and recommend a setting."),
+    "trade": Entry("trade:trade", "Measure speed against accuracy on a scene, and recommend a setting."),
     "bench": Entry("main:bench", "Measure how fast the model is on this machine."),
     "compile": Entry("bench:compile_levels", "Compile levels before their first run."),
     "study": Entry("main:study", "Study the model itself, and the results of Deng 2017."),

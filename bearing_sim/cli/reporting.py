@@ -105,16 +105,17 @@ def exit_on_sigterm() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def judged(log, scene):
+def judged(log, scene, longest_gap: float | None = None):
     """Return the profile of a log for a scene; every result depends on it.
 
-    Warnings on stderr say that only a part of the log could be read, and for how long inputs are unknown.
+    Warnings on stderr say that only a part of the log could be read, and for how long inputs are unknown.  ``longest_gap`` as of
+    `bearing_sim.inputs.profile.judge`.
     """
     from bearing_sim.inputs.profile import judge
     from bearing_sim.simulation import Inputs
 
     held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
-    profile = judge(log, scene.accepted_inputs, held, heat_law=scene.heat.law)
+    profile = judge(log, scene.accepted_inputs, held, longest_gap, scene.heat.law)
     if log.unfinished:
         click.echo(f"warning: {log.unfinished}", err=True)
     if profile.unknown_seconds:

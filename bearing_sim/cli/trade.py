@@ -1,0 +1,263 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim trade``: what accuracy costs on a scene, on a built-in course or on a log."""
+
+import math
+from pathlib import Path
+
+import click
+
+from bearing_sim.cli.options import (
+    channel_sources,
+    csv_option,
+    json_option,
+    level_type,
+    log_options,
+    picture_option,
+    quick_option,
+    scene_argument,
+    set_option,
+)
+from bearing_sim.cli.outputs import OutputJournal, WritingCommand
+from bearing_sim.cli.reporting import (
+    FailedRun,
+    Points,
+    UsageError,
+    announce_compilation,
+    as_file_error,
+    as_usage_error,
+    judged,
+    print_json,
+    print_rows,
+    write_csv,
+)
+
+_COURSES = ("manoeuvre", "run_down", "start", "idle")
+_ERRORS = {
+    "slip": "slip_error_points",
+    "largest_slip": "largest_slip_error_points",
+    "load": "load_error",
+    "largest_load": "largest_load_error",
+    "life": "life_error",
+    "window_life": "largest_window_life_error",
+    "edge": "edge_error",
+    "largest_edge": "largest_edge_error",
+}
+"""Column of each error by its name in `bearing_sim.studies.trade.Errors`."""
+_FASTER, _CLOSER = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
+
+
+@click.command("trade", cls=WritingCommand)
+@scene_argument
+@set_option
+@click.option("--level", "levels", multiple=True, type=level_type, help="Measure this level; can be repeated [default: all].")
+@click.option("--against", type=level_type, help="Level of the reference [default: planar, or the highest that can compute the scene].")
+@click.option(
+    "--course",
+    "course_name",
+    default=_COURSES[0],
+    show_default=True,
+    metavar="COURSE",
+    help=f"What to measure on: {', '.join(_COURSES)}, or a log: a recording as `replay` takes it, or a table with --mapping.",
+)
+@click.option("--mapping", "mapping_name", metavar="MAPPING", help="Of a table: which columns are what, as for import-csv.")
+@click.option("--windows", type=click.IntRange(1, 1000), default=12, show_default=True, metavar="K", help="Windows of a log that are measured.")
+@click.option(
+    "--window-turns", type=click.FloatRange(6.0, 1e5), default=60.0, show_default=True, metavar="N", help="Cage turns of a window of a log."
+)
+@log_options
+@click.option("--factor", type=click.FloatRange(min=0.0, min_open=True), help="Recommend the most accurate setting at this multiple of real time.")
+@click.option(
+    "--error",
+    type=click.FloatRange(min=0.0, min_open=True),
+    help="Recommend the fastest setting with at most this error of slip [percentage points].",
+)
+@click.option("--journal", type=OutputJournal(), metavar="PATH", help="File from which an interrupted trade resumes.")
+@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
+@csv_option("Write all settings to a table.")
+@picture_option("Draw error against speed")
+@json_option
+@quick_option
+def trade(
+    scene_name,
+    overrides,
+    levels,
+    against,
+    course_name,
+    mapping_name,
+    windows,
+    window_turns,
+    joint,
+    stamps,
+    longest_gap,
+    factor,
+    error,
+    journal,
+    workers,
+    table,
+    picture,
+    as_json,
+    quick,
+    **channels,
+):
+    """Measure real-time factor and errors in slip, largest roller load and life of every level and tolerance or step on SCENE.
+
+    All settings run the same course and are compared with a reference at tight tolerances. The built-in courses start from the scene's
+    conditions: manoeuvre (the load is halved and restored, the shaft slowed by a fifth), run_down (to a tenth of the speed), start (from a
+    creeping 3 % to full speed) and idle (light load halved and restored, the speed raised by a fifth). Of a log, windows of the same number of
+    cage turns are measured, evenly spread over the time during which the shaft turns; the first third of each is ignored. Times are processor
+    time of one core; other programs still slow down shared memory. --workers 1 disturbs them least.
+    """
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.simulation import IntegrationError
+    from bearing_sim.sweep.tasks import JournalInUse
+
+    with as_usage_error(SceneError), as_file_error():
+        scene = load_scene(scene_name, overrides)
+    reading = mapping_name, joint, stamps, channels
+    course = _course(course_name, scene, reading, windows, window_turns, longest_gap, quick)
+    announce_compilation()
+    from bearing_sim.studies.trade import recommend, trade
+
+    with Points("trade", 0) as points, as_usage_error(SceneError, ValueError, JournalInUse), as_file_error():
+        try:
+            found = trade(scene_name, overrides, levels, quick, points.update, against, course, journal and journal.path, workers)
+        except IntegrationError as error:
+            raise FailedRun(f"the reference failed: {error}") from None
+    with as_file_error():
+        if table is not None:
+            write_csv(table, rows_of(found))
+        if picture is not None:
+            from bearing_sim.studies.trade import draw
+
+            with picture.draft() as draft:
+                draw(draft, scene_name, found)
+    best = recommend(found, factor, error) if factor is not None or error is not None else None
+    if as_json:
+        print_json(_report(found) | {"recommended": best and best.setting.name})
+    else:
+        print_trade(scene_name, found)
+        _print_advice(found, factor, error, best)
+
+
+def _course(name, scene, reading, windows, window_turns, longest_gap, quick):
+    """Return what `bearing_sim.studies.trade.trade` takes as the course: a name, or a function of the scene."""
+    mapping_name, joint, stamps, channels = reading
+    if name in _COURSES:
+        if mapping_name or any(channels.values()) or longest_gap:
+            raise UsageError(f"--course {name} is built in; --mapping and options that say where a log holds what go with a log")
+        return name
+    path = Path(name)
+    if not path.exists():
+        from bearing_sim.scene.errors import did_you_mean
+
+        raise UsageError(f"--course {name}: no such file or built-in course{did_you_mean(name, _COURSES)}; built in: {', '.join(_COURSES)}")
+    profile = judged(_read(path, mapping_name, joint, stamps, channels), scene, longest_gap)
+    segment = profile.segment(None, scene.lubricant.temperature)
+    times = segment.instants * 1e-9
+
+    def windows_in(scene):
+        from bearing_sim.studies.trade_course import windows_of
+
+        return windows_of(path.name, scene, times, segment.inputs, segment.in_gap, 1 if quick else windows, window_turns)
+
+    with as_usage_error(ValueError):
+        windows_in(scene)  # before anything is compiled
+    return windows_in
+
+
+def _read(path, mapping_name, joint, stamps, channels):
+    """Return the input log of a recording or, with a mapping, of a table."""
+    from bearing_sim.inputs.csv_import import TableError, input_log, load_mapping, read_table
+    from bearing_sim.inputs.log import InputLogError, read_input_log
+    from bearing_sim.scene.loader import SceneError
+
+    names, constants = channel_sources(**channels)
+    with as_usage_error(SceneError, InputLogError, TableError), as_file_error():
+        if mapping_name:
+            if names or constants:
+                raise UsageError("--mapping says what the columns are; give constants there, and leave out the options for topics")
+            return input_log(read_table(path, load_mapping(mapping_name)[0]), path)
+        from bearing_sim.fleet.logs import is_text
+
+        if path.is_file() and is_text(path):
+            hint = f"propose one with: bearing-sim import-csv --guess {path} -o mapping.yaml"
+            raise UsageError(f"--course {path} is a table, which needs a mapping that says which columns are what (--mapping): {hint}")
+        return read_input_log(path, names, joint, stamps, constants=constants)
+
+
+def rows_of(found) -> list[dict]:
+    """Return a row for each setting of a trade: level, setting, real-time factor, errors, whether it is on the front, and why it failed."""
+    return [
+        {"level": one.setting.level, "setting": one.setting.detail, "real_time_factor": one.real_time_factor}
+        | {column: getattr(one.errors, name) for name, column in _ERRORS.items()}
+        | {"on_front": k in found.front, "failure": one.failure}
+        for k, one in enumerate(found.measured)
+    ]
+
+
+def _report(found) -> dict:
+    course = found.course
+    return {
+        "reference": found.reference,
+        "reference_error": {column: getattr(found.own_error, name) for name, column in _ERRORS.items()},
+        "course": course.name,
+        "windows": [{"begin_seconds": window.begin, "seconds": window.seconds, "ignored_seconds": window.settling} for window in course.windows],
+        "simulated_seconds": found.simulated,
+        "turning_seconds": course.turning,
+        "log_seconds": course.log_seconds,
+        "range": course.extent(),
+        "left_out": found.left_out,
+        "settings": rows_of(found),
+    }
+
+
+def measured_in_words(course) -> str:
+    """Return how much of a course was measured."""
+    if not course.is_log:
+        return f"over {course.measured:.3g} s"
+    ignored, lengths = sum(window.settling for window in course.windows), [window.seconds for window in course.windows]
+    return (
+        f"over {len(course.windows)} windows of {min(lengths):.3g} to {max(lengths):.3g} s: {course.measured:.3g} s of the {course.turning:.5g} s "
+        f"({100 * course.measured / course.turning:.2g} %) during which the shaft turns, in a log of {course.log_seconds:.5g} s; {ignored:.3g} s "
+        "of it ignored as settling"
+    )
+
+
+def print_trade(name, found) -> None:
+    """Print all settings of a trade of a scene, the errors of the reference, and what was not measured."""
+    rows, has_edges = [], any(not math.isnan(one.errors.edge) for one in found.measured)
+    for row in sorted(rows_of(found), key=lambda row: -row["real_time_factor"]):
+        points = f"{row['slip_error_points']:.3f}", f"{row['largest_slip_error_points']:.3f}"
+        percents = ("load_error", "life_error", "largest_window_life_error", *(("edge_error",) if has_edges else ()))
+        values = f"{row['real_time_factor']:.3g}", *points, *(f"{100 * row[column]:.2g}" for column in percents)
+        rows.append(("*" if row["on_front"] else "", row["level"], row["setting"], *values, row["failure"]))
+    words = ("", "level", "setting")
+    numbers = ("x real time", "slip, points", "largest, points", "load, %", "life, %", "of a window, %", *(("edge, %",) if has_edges else ()))
+    print_rows(f"{name}, {found.course.name}: against {found.reference}", (*words, *numbers, ""), rows, words)
+    click.echo(measured_in_words(found.course))
+    own = found.own_error
+    click.echo(
+        f"* no setting is both faster and more accurate in slip; error of the reference {own.slip:.2g} points, {100 * own.load:.2g} %, "
+        f"{100 * own.life:.2g} %"
+    )
+    for level, reason in found.left_out.items():
+        click.echo(f"not measured: {level} ({reason})")
+
+
+def _print_advice(found, factor, error, best) -> None:
+    from bearing_sim.studies.trade import recommend
+
+    if factor is not None or error is not None:
+        click.echo(f"recommended: {_recommendation(best)}" if best else "no setting is that fast and that accurate")
+        return
+    for factor in _FASTER:
+        click.echo(f"for {factor:g} x real time: {_recommendation(recommend(found, factor=factor))}")
+    for error in _CLOSER:
+        click.echo(f"for {error:g} points of slip: {_recommendation(recommend(found, error=error))}")
+
+
+def _recommendation(one) -> str:
+    if one is None:
+        return "none"
+    options = " ".join(f'--set "{item}"' for item in (f"level={one.setting.level}", *one.setting.overrides))
+    return f"{one.setting.name} ({one.real_time_factor:.3g} x real time, {one.errors.slip:.2g} points): {options}"
