@@ -24,7 +24,7 @@ ROOMS = {
     "__init__": ("", ""),
     "extras": ("", ""),
     "files": ("numpy yaml", ""),
-    "scene": ("numpy scipy pint pydantic pydantic_core yaml", "files"),
+    "scene": ("numpy platformdirs scipy pint pydantic pydantic_core yaml", "files"),
     "numerics": ("numpy numba llvmlite platformdirs", ""),
     "physics": ("numpy scipy", "numerics"),
     "model": ("numpy pandas scipy xarray", "scene physics"),

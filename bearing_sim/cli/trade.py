@@ -73,6 +73,12 @@ _FASTER, _CLOSER = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
 )
 @click.option("--journal", type=OutputJournal(), metavar="PATH", help="File from which an interrupted trade resumes.")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
+@click.option(
+    "--keep/--no-keep",
+    default=True,
+    show_default=True,
+    help="Keep the settings for this bearing and machine, for `level: auto` and the node's governor; --quick keeps nothing.",
+)
 @csv_option("Write all settings to a table.")
 @picture_option("Draw error against speed")
 @json_option
@@ -93,6 +99,7 @@ def trade(
     error,
     journal,
     workers,
+    keep,
     table,
     picture,
     as_json,
@@ -112,7 +119,7 @@ def trade(
     from bearing_sim.sweep.tasks import JournalInUse
 
     with as_usage_error(SceneError), as_file_error():
-        scene = load_scene(scene_name, overrides)
+        scene = load_scene(scene_name, overrides)  # fails before anything is compiled
     reading = mapping_name, joint, stamps, channels
     course = _course(course_name, scene, reading, windows, window_turns, longest_gap, quick)
     announce_compilation()
@@ -131,12 +138,28 @@ def trade(
 
             with picture.draft() as draft:
                 draw(draft, scene_name, found)
+    kept = _keep(scene, found) if keep and not quick else None
     best = recommend(found, factor, error) if factor is not None or error is not None else None
     if as_json:
-        print_json(_report(found) | {"recommended": best and best.setting.name})
+        print_json(_report(found) | {"recommended": best and best.setting.name, "kept": kept and str(kept.path)})
     else:
         print_trade(scene_name, found)
+        if kept is not None:
+            names = ", ".join(dict.fromkeys(course.name for course in kept.courses))
+            click.echo(f"kept for this bearing and machine ({names}): {kept.path}")
         _print_advice(found, factor, error, best)
+
+
+def _keep(scene, found):
+    """Keep the settings of a trade for later; return what is kept for the bearing, or None where that cannot be written."""
+    from bearing_sim.scene.kept_front import keep
+    from bearing_sim.studies.trade import kept_course
+
+    try:
+        return keep(scene, kept_course(found))
+    except OSError as error:
+        click.echo(f"warning: the settings are not kept: {error}", err=True)
+        return None
 
 
 def _course(name, scene, reading, windows, window_turns, longest_gap, quick):

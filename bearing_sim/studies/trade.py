@@ -20,6 +20,7 @@ import numpy as np
 from bearing_sim.levels.level import LEVELS
 from bearing_sim.levels.steady.table import Table, empty_table
 from bearing_sim.levels.steady.table_builder import obtain_table, span_of
+from bearing_sim.scene.kept_front import KeptCourse, KeptSetting
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Integration, Scene, tolerance_overrides
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
@@ -97,6 +98,7 @@ class Traded(NamedTuple):
     real_time_factor: float
     errors: Errors
     failure: str = ""  # why there is no result, or empty
+    overrides: tuple[str, ...] = ()  # all of integration and slices, also what is default or comes from the scene
 
 
 class Trade(NamedTuple):
@@ -217,6 +219,7 @@ def trade(
     reference, check = (_results(run) for run in runs[:2])
     measured = [_traded(setting, run, reference) for setting, run in zip(settings, runs[2:])]
     measured = _with_edges(measured, runs[2:])
+    measured = [one._replace(overrides=complete_overrides(scene)) for one, scene in zip(measured, scenes)]
     described = f"{best} with tolerances x {factors[0]:g}"
     own = _errors(check, reference)
     return Trade(measured, front_of(measured, own.slip), described, own, found, left_out)
@@ -252,6 +255,27 @@ def recommend(found: Trade, factor: float | None = None, error: float | None = N
     if not within:
         return None
     return within[-1] if error is None else within[0]
+
+
+def complete_overrides(scene: Scene) -> tuple[str, ...]:
+    """Return the overrides that give another scene the steps, tolerances and slices of this one, whatever its own are."""
+    integration, absolute = scene.integration, scene.integration.absolute_tolerance
+    if scene.level == "steady":
+        return ("integration.fixed_step=null",)
+    fields = {f"absolute_tolerance.{name}": getattr(absolute, name) for name in ("position", "play", "speed")}
+    fields |= {name: getattr(integration, name) for name in ("relative_tolerance", "maximum_step", "fixed_step")}
+    written = tuple(f"integration.{name}={'null' if value is None else repr(float(value))}" for name, value in fields.items())
+    return (*written, f"bearing.roller.slices={scene.bearing.roller.slices}") if scene.level == "spatial" else written
+
+
+def kept_course(found: Trade) -> KeptCourse:
+    """Return what a trade leaves for later: its settings with a result, and where they were measured."""
+    settings = [
+        KeptSetting(one.setting.level, one.setting.detail, one.overrides, one.real_time_factor, one.errors._asdict())
+        for one in found.measured
+        if not one.failure
+    ]
+    return KeptCourse(found.course.name, found.reference, found.own_error._asdict(), found.course.extent(), tuple(settings))
 
 
 def _tasks(scene: Scene, course: Course, repeats: int) -> Iterator[Task]:

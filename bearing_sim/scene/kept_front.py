@@ -1,0 +1,267 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Measured fronts: what `bearing-sim trade` found on this machine about a bearing, kept in the user's cache folder.
+
+A file holds the settings of all courses that were measured for one bearing in one lubricant on one machine with one version of the program.  It
+stands in this room because the loader reads it to resolve ``level: auto``, and everything that runs a scene stands above the loader; writing is
+beside reading so that the format is in one place.  Nothing here imports the model.
+
+What the errors depend on goes into the name of the file: bearing, lubricant, mounting, support, heat, life and the loads that are no inputs.  What
+a setting changes (level, integration, slices) does not, nor do shaft speed, radial load and oil temperature: a course says between which it was
+measured, and holds for scenes that operate there.
+"""
+
+import dataclasses
+import hashlib
+import json
+import math
+import os
+import platform
+import time
+from collections.abc import Iterable, Mapping
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import NamedTuple
+
+import platformdirs
+
+from bearing_sim.files.limits import JSON_FILE
+from bearing_sim.files.outputs import RefusedOutput, replaced
+from bearing_sim.files.reading import read_bytes
+
+FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "fronts"
+_PACKAGE = Path(__file__).resolve().parents[1]
+_SOURCES = ("numerics/*.py", "physics/*.py", "levels/**/*.py", "model/*.py", "simulation.py", "studies/trade.py", "studies/trade_course.py")
+_FORMAT = 1
+_SLACK = 1.25  # factor by which a scene may operate outside of what was measured in speed and load; assumption
+_TEMPERATURE_SLACK = 10.0  # K, likewise
+_PATIENCE, _PAUSE = 10.0, 0.05  # s, for another process that is writing
+_INPUTS = {"shaft_speed": "shaft speed", "radial_load": "radial load", "oil_temperature": "oil temperature"}
+
+
+class KeptSetting(NamedTuple):
+    """One measured way to compute the bearing.
+
+    Attributes
+    ----------
+    level : of fidelity.
+    detail : tolerances, step or slices, in words.
+    overrides : of a scene's fields, complete: tolerances, step and slices.
+    real_time_factor : simulated over processor time on this machine.
+    errors : by name: ``slip`` and ``largest_slip`` [percentage points], ``load``, ``largest_load``, ``life``, ``window_life``, ``edge`` and
+        ``largest_edge``, relative; NaN where they were not measured (see `bearing_sim.studies.trade.Errors`).
+    """
+
+    level: str
+    detail: str
+    overrides: tuple[str, ...]
+    real_time_factor: float
+    errors: Mapping[str, float]
+
+    @property
+    def name(self) -> str:
+        """Name in messages."""
+        return f"{self.level}, {self.detail}"
+
+
+class KeptCourse(NamedTuple):
+    """What was measured on one course.
+
+    Attributes
+    ----------
+    name : of the course.
+    reference : that errors are against, in words.
+    own_errors : of the reference, as of `KeptSetting`.
+    extent : least and largest ``shaft_speed`` [rad/s, without sign], ``radial_load`` [N] and ``oil_temperature`` [K].
+    settings : those that have a result.
+    """
+
+    name: str
+    reference: str
+    own_errors: Mapping[str, float]
+    extent: Mapping[str, tuple[float, float]]
+    settings: tuple[KeptSetting, ...]
+
+    def covers(self, scene) -> bool:
+        """Return whether a scene operates where this course was measured, or nearly so; a shaft at rest is everywhere."""
+        values = _operating(scene)
+        if values["shaft_speed"] == 0.0:
+            return True
+        low, high = self.extent["oil_temperature"]
+        if not low - _TEMPERATURE_SLACK <= values["oil_temperature"] <= high + _TEMPERATURE_SLACK:
+            return False
+        return all(self.extent[name][0] / _SLACK <= values[name] <= self.extent[name][1] * _SLACK for name in ("shaft_speed", "radial_load"))
+
+
+class KeptFront(NamedTuple):
+    """What is kept for a bearing.
+
+    Attributes
+    ----------
+    path : of the file.
+    courses : that were measured, the newest last.
+    """
+
+    path: Path
+    courses: tuple[KeptCourse, ...]
+
+    def at(self, scene) -> "KeptFront":
+        """Return the courses that cover the operating point of a scene."""
+        return self._replace(courses=tuple(course for course in self.courses if course.covers(scene)))
+
+    def settings(self) -> list[KeptSetting]:
+        """Return the settings of all courses, each with its worst errors and its least real-time factor, the fastest first.
+
+        Of several courses only settings that were measured on each of them count, because nothing is known of the others there.
+        """
+        found: dict[tuple[str, ...], list[KeptSetting]] = {}
+        for course in self.courses:
+            for setting in course.settings:
+                found.setdefault((setting.level, *setting.overrides), []).append(setting)
+        together = [_worst(each) for each in found.values() if len(each) == len(self.courses)]
+        return sorted(together, key=lambda setting: -setting.real_time_factor)
+
+    def front(self) -> list[KeptSetting]:
+        """Return the settings that no other beats in both speed and slip error, the fastest first; errors below the reference's own are equal."""
+        certain = max((course.own_errors.get("slip", 0.0) for course in self.courses), default=0.0)
+        front, least = [], math.inf
+        for setting in self.settings():
+            error = max(setting.errors["slip"], certain)
+            if error < least:
+                front.append(setting)
+                least = error
+        return front
+
+
+def _worst(settings: list[KeptSetting]) -> KeptSetting:
+    """Return one setting measured on several courses; an error that is not known on one of them is not known."""
+    errors = {
+        name: math.nan if any(math.isnan(one.errors[name]) for one in settings) else max(one.errors[name] for one in settings)
+        for name in settings[0].errors
+    }
+    return settings[0]._replace(errors=errors, real_time_factor=min(one.real_time_factor for one in settings))
+
+
+def _operating(scene) -> dict[str, float]:
+    operating = scene.operating
+    return {"shaft_speed": abs(operating.shaft_speed), "radial_load": operating.radial_load, "oil_temperature": scene.lubricant.temperature}
+
+
+def extent_in_words(extent: Mapping[str, tuple[float, float]]) -> str:
+    """Return a range of speed, load and temperature (see `KeptCourse`) in the units that people use."""
+    (slow, fast), (low, high), (cold, warm) = (extent[name] for name in _INPUTS)
+    turns = 30.0 / math.pi
+    return f"{slow * turns:.4g} to {fast * turns:.4g} rpm, {low:.4g} to {high:.4g} N, {cold - 273.15:.3g} to {warm - 273.15:.3g} degC"
+
+
+@cache
+def machine() -> str:
+    """Return the name of this machine and the model of its processor."""
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as lines:
+            processor = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine())
+    except OSError:
+        processor = platform.machine()
+    return f"{platform.node()}, {processor}"
+
+
+@cache
+def _program() -> str:
+    """Return a hash of the sources that measured errors and times depend on; without importing the compiler."""
+    digest = hashlib.sha256()
+    for name in ("numba", "numpy"):
+        try:
+            digest.update(version(name).encode())
+        except PackageNotFoundError:
+            pass
+    for pattern in _SOURCES:
+        for path in sorted(_PACKAGE.glob(pattern)):
+            digest.update(path.relative_to(_PACKAGE).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def front_path(scene) -> Path:
+    """Return where the measured settings of a scene's bearing are kept for this machine and program."""
+    bearing = dataclasses.asdict(scene.bearing)
+    for name in ("name", "source", "designation", "estimated"):
+        bearing.pop(name, None)
+    bearing["roller"].pop("slices", None)
+    lubricant = dataclasses.asdict(scene.lubricant)
+    lubricant.pop("temperature", None)
+    operating = dataclasses.asdict(scene.operating)
+    held = {name: value for name, value in operating.items() if name not in ("shaft_speed", "radial_load", "load_angle")}
+    blocks = [dataclasses.asdict(getattr(scene, name)) for name in ("mounting", "support", "heat", "dynamics", "life")]
+    digest = hashlib.sha256("\n".join(map(repr, (_program(), machine(), bearing, lubricant, held, *blocks))).encode())
+    return FOLDER / f"{digest.hexdigest()[:24]}.json"
+
+
+def read_front(scene) -> KeptFront | None:
+    """Return what is kept for a scene's bearing on this machine, or None where there is nothing, or nothing that is whole."""
+    path = front_path(scene)
+    try:
+        stored = json.loads(read_bytes(path, JSON_FILE))
+        if stored["format"] != _FORMAT:
+            return None
+        return KeptFront(path, tuple(map(_course, stored["courses"])))
+    except Exception:  # whatever a broken file makes its reader raise, it counts as none
+        return None
+
+
+def _course(stored: Mapping) -> KeptCourse:
+    settings = tuple(
+        KeptSetting(str(one["level"]), str(one["detail"]), tuple(map(str, one["overrides"])), float(one["real_time_factor"]), _numbers(one["errors"]))
+        for one in stored["settings"]
+    )
+    extent = {name: (float(stored["extent"][name][0]), float(stored["extent"][name][1])) for name in _INPUTS}
+    return KeptCourse(str(stored["name"]), str(stored["reference"]), _numbers(stored["own_errors"]), extent, settings)
+
+
+def _numbers(stored: Mapping) -> dict[str, float]:
+    return {str(name): math.nan if value is None else float(value) for name, value in stored.items()}
+
+
+def keep(scene, course: KeptCourse) -> KeptFront:
+    """Add what was measured on a course to what is kept for a scene's bearing, and return that.
+
+    A course of the same name, extent and reference gets the new settings beside those of its old ones that were not measured again; of another
+    reference it is replaced.  A reader finds the old file or the new one, never a part.
+
+    Raises
+    ------
+    OSError
+        It cannot be written, also if another process keeps writing it for ten seconds.
+    """
+    path = front_path(scene)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    end = time.monotonic() + _PATIENCE
+    while True:
+        try:
+            with replaced(path) as draft:  # alone among writers from here on
+                before = read_front(scene)
+                courses = _merged(() if before is None else before.courses, course)
+                stored = {"format": _FORMAT, "machine": machine(), "bearing": scene.bearing.name, "courses": [_stored(each) for each in courses]}
+                draft.write_text(json.dumps(stored, indent=1, allow_nan=False))
+            return KeptFront(path, tuple(courses))
+        except RefusedOutput:
+            if time.monotonic() > end or not os.access(path.parent, os.W_OK):
+                raise
+            time.sleep(_PAUSE)
+
+
+def _merged(before: Iterable[KeptCourse], course: KeptCourse) -> list[KeptCourse]:
+    others = []
+    for old in before:
+        if (old.name, dict(old.extent)) != (course.name, dict(course.extent)):
+            others.append(old)
+        elif old.reference == course.reference:
+            new = {(one.level, one.detail) for one in course.settings}
+            course = course._replace(settings=(*(one for one in old.settings if (one.level, one.detail) not in new), *course.settings))
+    return [*others, course]
+
+
+def _stored(course: KeptCourse) -> dict:
+    def finite(errors):
+        return {name: value if math.isfinite(value) else None for name, value in errors.items()}
+
+    settings = [one._asdict() | {"errors": finite(one.errors)} for one in course.settings]
+    return course._asdict() | {"own_errors": finite(course.own_errors), "settings": settings}
