@@ -121,9 +121,16 @@ class KeptFront(NamedTuple):
         together = [_worst(each) for each in found.values() if len(each) == len(self.courses)]
         return sorted(together, key=lambda setting: -setting.real_time_factor)
 
+    def own_errors(self) -> dict[str, float]:
+        """Return the largest errors of the references of all courses by name; NaN where none is known."""
+        names = {name for course in self.courses for name in course.own_errors}
+        known = {name: [each for course in self.courses if not math.isnan(each := course.own_errors.get(name, math.nan))] for name in names}
+        return {name: max(values, default=math.nan) for name, values in known.items()}
+
     def front(self) -> list[KeptSetting]:
         """Return the settings that no other beats in both speed and slip error, the fastest first; errors below the reference's own are equal."""
-        certain = max((course.own_errors.get("slip", 0.0) for course in self.courses), default=0.0)
+        own = self.own_errors().get("slip", math.nan)
+        certain = 0.0 if math.isnan(own) else own
         front, least = [], math.inf
         for setting in self.settings():
             error = max(setting.errors["slip"], certain)
@@ -151,7 +158,7 @@ def extent_in_words(extent: Mapping[str, tuple[float, float]]) -> str:
     """Return a range of speed, load and temperature (see `KeptCourse`) in the units that people use."""
     (slow, fast), (low, high), (cold, warm) = (extent[name] for name in _INPUTS)
     turns = 30.0 / math.pi
-    return f"{slow * turns:.4g} to {fast * turns:.4g} rpm, {low:.4g} to {high:.4g} N, {cold - 273.15:.3g} to {warm - 273.15:.3g} degC"
+    return f"{slow * turns:.5g} to {fast * turns:.5g} rpm, {low:.5g} to {high:.5g} N, {cold - 273.15:.3g} to {warm - 273.15:.3g} degC"
 
 
 @cache

@@ -28,11 +28,13 @@ from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
 from bearing_sim.scene.fidelity import choose
 from bearing_sim.scene.flanges import drop_absent_flanges
 from bearing_sim.scene.internal_dimensions import CAGE_RULES, bearing_tree, with_cage_of_kind
+from bearing_sim.scene.kept_front import KeptSetting, read_front
 from bearing_sim.scene.lubricant_names import keep_one_lubricant, with_named_lubricants
 from bearing_sim.scene.quantity import SPEED, to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.tree import at
 from bearing_sim.scene.uncertainty import declared_in, drop_ranges, override_range, read_ranges, written
+from bearing_sim.scene.wants import candidates, read_wants, reason_of, without_measurement
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
@@ -192,11 +194,15 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
     ranges, wrong = read_ranges(resolved.get("uncertainty"), Scene)
     resolved["uncertainty"] = ranges
     errors += [InvalidField(*error) for error in (*wrong_diameters, *wrong)]
+    if isinstance(resolved.get("wants"), Mapping):
+        resolved["wants"], most, unread_wants = read_wants(resolved["wants"])
+        resolved["wanted_errors"] = [{"want": name, "error": error} for name, error in most.items()]
+        errors += unread_wants
     if gives_round_raceway(tree) and _has_lobes(resolved):
         errors.append(InvalidField(ROUND_RACEWAY, "", "this raceway has lobes, and no one diameter; give low_diameter or low_radius"))
     without = {diameters(Scene)[path].radius for path, _, _ in wrong_diameters if path in diameters(Scene)}
     try:
-        scene = TypeAdapter(Scene).validate_python(_with_level(resolved), context=_WRITTEN)
+        scene = TypeAdapter(Scene).validate_python(_with_level(resolved, origin), context=_WRITTEN)
     except ValidationError as error:
         found = invalid_fields(error, Scene, _UNION_TAGS)
         if any(each.path == "bearing.preset" for each in errors):  # what depends on the bearing that stands in is no error of the file
@@ -239,8 +245,11 @@ def _has_lobes(tree: Mapping) -> bool:
         return False
 
 
-def _with_level(tree: Mapping) -> Mapping:
+def _with_level(tree: Mapping, origin: str) -> Mapping:
     """Return a scene's tree with ``level: auto`` resolved to the lowest level that has everything the scene asks for.
+
+    Where it wants largest errors, it gets the fastest setting whose measured errors keep them, with all its overrides; or the most accurate level where
+    nothing is known to keep them (see `bearing_sim.scene.wants`).
 
     Raises
     ------
@@ -250,11 +259,45 @@ def _with_level(tree: Mapping) -> Mapping:
     if tree.get("level") != "auto":
         return tree
     highest = "slip" if at(tree, "bearing.cage.guidance") == "full_complement" else "spatial"  # the level with all other effects
-    found = choose(TypeAdapter(Scene).validate_python({**tree, "level": highest}, context=_WRITTEN))
+    scene = TypeAdapter(Scene).validate_python({**tree, "level": highest}, context=_WRITTEN)
+    found = choose(scene)
+    if found.level is not None and scene.wanted_errors:
+        errors = {each.want: each.error for each in scene.wanted_errors}
+        kept = read_front(scene)
+        for setting in candidates(scene, errors, kept):
+            chosen = _with_setting(tree, setting)
+            if _is_valid(chosen):
+                return {**chosen, "level_reason": reason_of(setting, errors, kept.at(scene))}
+        found = without_measurement(scene, errors, kept, origin)
     if found.level is None:
         detail = {"type": PydanticCustomError("no_level", "{reason}", {"reason": found.reason}), "loc": ("level",), "input": "auto"}
         raise ValidationError.from_exception_data("Scene", [detail])
     return {**tree, "level": found.level, "level_reason": found.reason}
+
+
+def _with_setting(tree: Mapping, setting: KeptSetting) -> dict:
+    """Return a scene's tree at the level and with the overrides of a measured setting."""
+    return _overridden(copy.deepcopy({**tree, "level": setting.level}), setting.overrides)
+
+
+def _is_valid(tree: Mapping) -> bool:
+    """Whether a tree is a valid scene; a measured fixed step may be too long at another speed."""
+    try:
+        TypeAdapter(Scene).validate_python(tree, context=_WRITTEN)
+    except ValidationError:
+        return False
+    return True
+
+
+def with_setting(scene: Scene, setting: KeptSetting) -> Scene:
+    """Return a scene at the level and with the overrides of a measured setting.
+
+    Raises
+    ------
+    SceneError
+        The setting is none for this scene, such as a fixed step that is too long at its speed.
+    """
+    return load_scene(scene, [f"level={setting.level}", "level_reason=''", *setting.overrides])
 
 
 def scene_to_yaml(scene: Scene) -> str:
@@ -269,6 +312,8 @@ def _as_mapping(scene: Scene) -> dict:
         *blocks, last = path.split(".")[1:]
         if declared.unit == SPEED and (block := functools.reduce(dict.get, blocks, tree))[last] is not None:
             block[last] = declared.written(block[last])
+    if most := {each["want"]: each["error"] for each in tree.pop("wanted_errors")}:
+        tree["wants"] = {name: most.get(name) for name in tree["wants"]}
     return {**tree, "uncertainty": written(tree["uncertainty"], Scene)}
 
 

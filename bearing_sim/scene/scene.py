@@ -29,6 +29,7 @@ from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.support import Support, support_errors
 from bearing_sim.scene.uncertainty import Range, messages, nearest, quantities, range_errors, with_values
 from bearing_sim.scene.vibration import VibrationInput
+from bearing_sim.scene.wants import MEASURED
 
 NO_CLEARANCE_LIMIT = -1e-3
 """A threshold of the running clearance that none falls below [m]."""
@@ -338,14 +339,24 @@ class SteadyTable:
 
 
 @record
+class WantedError:
+    """The largest error that a scene accepts of something that it wants."""
+
+    want: Literal[tuple(MEASURED)]  # entry of wants
+    error: Annotated[float, Field(gt=0.0, le=1.0)]  # 0.003 of slip are 0.3 percentage points; others are relative
+
+
+@record
 class Scene:
     """One bearing, its oil, its operating conditions, and how it is computed."""
 
     name: str  # name of the scene
     description: str = ""  # what it is, in a sentence
     level: Literal["steady", "slip", "planar", "spatial"] = "slip"  # level of fidelity; a file may also say auto
-    # With `level: auto` a file gets the lowest level that has these and all other effects of the scene; level_reason says why.
+    # With `level: auto` a file gets the lowest level that has these and all other effects of the scene; level_reason says why.  A mapping to largest
+    # errors, such as {slip: 0.3 %, life: 5 %}, asks for the fastest setting whose errors `bearing-sim trade` has measured to be below them.
     wants: tuple[Literal[tuple(WANTS)], ...] = ()
+    wanted_errors: tuple[WantedError, ...] = ()  # those of a mapping wants, which a file gives there
     level_reason: str = ""  # why the level was chosen, filled in for `level: auto`
     bearing: Bearing
     lubricant: Lubricant
