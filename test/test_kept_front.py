@@ -11,9 +11,9 @@ from click.testing import CliRunner
 from bearing_sim import load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.scene import kept_front
-from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, front_path, keep, read_front
+from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, complete_overrides, front_path, keep, read_front
 from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml
-from bearing_sim.studies.trade import Errors, complete_overrides, settings_of
+from bearing_sim.studies.trade import Errors, settings_of
 
 NAMES = Errors._fields
 EXTENT = {"shaft_speed": (1000.0, 5000.0), "radial_load": (400.0, 800.0), "oil_temperature": (370.0, 380.0)}

@@ -91,7 +91,9 @@ def test_after_a_reset_the_cage_is_not_judged_until_the_prediction_has_settled(b
 class Fallen:
     """A governor that has fallen to a cheaper level."""
 
-    level, wanted = "slip", "planar"
+    level, wanted, is_at_wanted = "slip", "planar", False
+    setting = wanted_setting = ""
+    slip_error = life_error = math.nan
 
     def __init__(self, simulation):
         self._simulation = simulation

@@ -12,10 +12,10 @@ from bearing_sim import SceneError, load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.scene import kept_front
 from bearing_sim.scene.fidelity import hint
-from bearing_sim.scene.kept_front import KeptCourse, KeptFront, KeptSetting, keep
+from bearing_sim.scene.kept_front import KeptCourse, KeptFront, KeptSetting, complete_overrides, keep
 from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml, with_setting
 from bearing_sim.scene.wants import candidates
-from bearing_sim.studies.trade import Errors, complete_overrides
+from bearing_sim.studies.trade import Errors
 
 NAMES = Errors._fields
 

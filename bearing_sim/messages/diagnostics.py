@@ -39,6 +39,8 @@ class Subject(NamedTuple):
     values: tuple[str, ...] = ()
 
 
+SETTING_ERRORS = ("measured slip error [fraction]", "measured life error [fraction]")
+"""Keys of the errors of the setting that runs, as `bearing-sim trade` has measured them; of slip 0.01 is a point."""
 _CHANNELS = (*INPUTS, *MEASURED_CHANNELS)
 _VALUES = {"shaft_speed": "shaft speed [", "radial_load": "radial load [", "oil_temperature": "oil temperature ["}
 _VALUES |= {name: f"{name.replace('_', ' ')} measured [" for name in RING_TEMPERATURES}
@@ -60,7 +62,7 @@ SUBJECTS = (
         ("pace.", "output.", "run.behind"),
         ("real-time factor", "time lost [s]", "blocks dropped", "outputs_left_out"),
     ),
-    Subject("governor", "the level of fidelity that is computed", ("governor.",), ("level",)),
+    Subject("governor", "the setting and level of fidelity that is computed, and its errors", ("governor.",), ("level", "setting", *SETTING_ERRORS)),
     Subject("slip", "cage slip against its thresholds", ("bearing.slip",), ("cage slip [fraction]", "cage slip 5 %", "cage slip 95 %")),
     Subject(
         "life",

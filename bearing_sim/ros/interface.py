@@ -32,11 +32,13 @@ from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSet
 from bearing_sim.ros.polling import PolledSubscriptions
 from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
 from bearing_sim.ros.warm_up import WarmUp, levels_to_compile, start_compiling
-from bearing_sim.runtime.governor import Governor
+from bearing_sim.runtime.governor import RECORD as GOVERNOR_RECORD
+from bearing_sim.runtime.governor import Governor, governor_record, settings_to_fall
 from bearing_sim.runtime.health import Condition, Phase, not_running
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
 from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene.fidelity import hint
+from bearing_sim.scene.kept_front import KeptSetting, read_front
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import messages, with_values
@@ -241,6 +243,7 @@ class BearingInterface:
         self._simulation: Simulation | None = None
         self._response: ResponseModel | None = None  # of the bearing to its uncertain fields
         self._governor: Governor | None = None
+        self._settings: list[KeptSetting] = []  # measured ones, along which the governor falls
         self._new_governor: Governor | None = None  # made on the warm-up thread, taken over at the next review
         self._compiling: subprocess.Popen | None = None
         self._last_level: Level | None = None
@@ -285,10 +288,11 @@ class BearingInterface:
             self._response = kept_response(self.scene) if self.scene.estimation.is_asked else None
             simulation = warmed_up(self.scene)
             governs = self._shared.governor and not follows_clock(self._node)  # with sim time no time is skipped
+            self._settings = settings_to_fall(self.scene, read_front(self.scene))
             if governs and levels_to_compile(self.scene):
                 self._compiling = start_compiling(self.scene, lower=True)
             elif governs:
-                self._governor = governor_of(simulation)
+                self._governor = governor_of(simulation, self._settings)
             self._simulation = simulation
         except IntegrationError as error:
             self.error = f"the scene's own operating conditions cannot be computed: {error}"
@@ -347,6 +351,8 @@ class BearingInterface:
             self._subscribe_to_vibration()
         self._log(f"publishing {', '.join(self._outputs.topic_names)}")
         self._log(f"ready: listening to {', '.join(subscription.topic_name for subscription in self._subscriptions.values())}")
+        if self._settings and shared.governor and not follows_clock(self._node):
+            self._log(f"the governor falls along measured settings: {'; '.join(setting.name for setting in self._settings)}")
         if self._compiling is not None:
             self._log("compiling levels of lower fidelity for the governor in the background, once for this version")
 
@@ -573,7 +579,7 @@ class BearingInterface:
     def _make_governor(self) -> None:
         """Make a governor, on the thread of `WarmUp`."""
         try:
-            self._new_governor = governor_of(self._simulation)
+            self._new_governor = governor_of(self._simulation, self._settings)
         except IntegrationError as error:
             self._logger.warning(f"the governor has no level of lower fidelity to use: {error}")
 
@@ -603,7 +609,10 @@ class BearingInterface:
 
     def _start_recording(self, path: Path) -> None:
         def records() -> dict[str, dict[str, str]]:
-            return {RECORD: self.live.keeper.record} if self.live.keeper is not None else {}
+            found = {RECORD: self.live.keeper.record} if self.live.keeper is not None else {}
+            if self._settings and isinstance(self.live, LiveModel):
+                found[GOVERNOR_RECORD] = governor_record(self._settings, self.live.setting)
+            return found
 
         def opened(start_ns: int):
             limits = limits_of(self._shared)

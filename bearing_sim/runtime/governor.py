@@ -1,43 +1,55 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Keep real time by reducing fidelity: change to a lower level when the solver is too slow, and back when it is fast enough.
+"""Keep real time by reducing fidelity: change to a faster setting when the solver is too slow, and back when it is fast enough.
 
-The criterion is the recent cost of ticks, simulated over wall seconds.  The ratio of costs between a level and the one above was measured when
-the upper one last ran, so the cost of the present level predicts whether the upper one would keep real time.
+Settings are levels, or those that `bearing-sim trade` has measured on the bearing and this machine, from accurate to fast
+(`bearing_sim.scene.kept_front`); then the errors of the one that runs are known.  The criterion is the recent cost of ticks, simulated over
+wall seconds.  The ratio of costs between a setting and the one above was measured when the upper one last ran, so the cost of the present one
+predicts whether the upper one would keep real time.
 """
 
+import dataclasses
+import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from bearing_sim.scene.fidelity import lower_levels
+from bearing_sim.scene.kept_front import KeptFront, KeptSetting, complete_overrides
+from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
 
 _TOO_SLOW = 1.05  # times real time: below this the lag grows, or soon will
 _FAST_ENOUGH = 1.4  # predicted for the level above before it is used: well over _TOO_SLOW, so that it is not left again at once
 _MEMORY = 0.25  # [s] over which the factor is a mean: short, so that a change comes before the lag that can be caught up is used up
 _LONGEST_WAIT = 300.0  # [s]
+_WORTH_A_CHANGE = 1.25  # times as fast as the setting above
+RECORD = "bearing_sim_governor"
+"""Name of a recording's metadata record of the settings that a governor can choose."""
 
 
 class Change(NamedTuple):
-    """A change of level."""
+    """A change of setting."""
 
     simulation: Simulation  # that continues the run
     down: bool
     text: str
+    setting: str = ""  # name of the setting that continues; empty where only levels are known
 
 
 class Governor:
-    """Chooses the level that a running model computes at.
+    """Chooses the level, or the measured setting, that a running model computes at.
 
-    If a level has to be left sooner than the wait before it, the next wait is twice as long.
+    If a setting has to be left sooner than the wait before it, the next wait is twice as long.
 
     Parameters
     ----------
-    ladder : simulations of one bearing at its levels, compiled, the wanted one first, each of lower fidelity than the one before.
-    patience : time for which the level above must be predicted to be fast enough before it is tried again [s].
+    ladder : simulations of one bearing at its settings, compiled, the wanted one first, each faster than the one before.
+    patience : time for which the setting above must be predicted to be fast enough before it is tried again [s].
+    settings : those of the ladder as measured (see `settings_to_fall`); empty where nothing is known but the levels.
     """
 
-    def __init__(self, ladder: Sequence[Simulation], patience: float = 5.0):
-        self._ladder, self._patience = list(ladder), patience
+    def __init__(self, ladder: Sequence[Simulation], patience: float = 5.0, settings: Sequence[KeptSetting] = ()):
+        self._ladder, self._patience, self._settings = list(ladder), patience, list(settings)
         self._cost_ratios = [math.nan] * len(self._ladder)  # cost of a level over that of the one below
         self._begin(0)
         self._wait, self._came_up = patience, False
@@ -51,6 +63,34 @@ class Governor:
     def wanted(self) -> str:
         """The level that runs if the machine is fast enough."""
         return self._ladder[0].scene.level
+
+    @property
+    def is_at_wanted(self) -> bool:
+        """Whether the setting runs that is wanted."""
+        return self._rung == 0
+
+    @property
+    def setting(self) -> str:
+        """Name of the setting that runs; empty where only levels are known."""
+        return self._name(self._rung)
+
+    @property
+    def wanted_setting(self) -> str:
+        """Name of the setting that runs if the machine is fast enough, likewise."""
+        return self._name(0)
+
+    @property
+    def slip_error(self) -> float:
+        """Measured error of slip of the setting that runs, root mean square over its courses, 0.01 for a point; NaN where it was not measured."""
+        return 0.01 * self._settings[self._rung].errors.get("slip", math.nan) if self._settings else math.nan
+
+    @property
+    def life_error(self) -> float:
+        """Measured error of the life of the setting that runs, relative; NaN where it was not measured."""
+        return self._settings[self._rung].errors.get("life", math.nan) if self._settings else math.nan
+
+    def _name(self, rung: int) -> str:
+        return self._settings[rung].name if self._settings else ""
 
     @property
     def factor(self) -> float:
@@ -99,18 +139,25 @@ class Governor:
     def _go_down(self) -> Change:
         if self._came_up:
             self._wait = min(2.0 * self._wait, _LONGEST_WAIT) if self._stayed < self._wait else self._patience
-        factor, below = self.factor, self._ladder[self._rung + 1].scene.level
-        text = f"level {self.level} reaches {factor:.3g} of real time on this machine: {below} continues from the same cage angle and speed"
+        factor, left = self.factor, self.setting or self.level
         simulation = self._change(self._rung + 1)
+        text = f"level {left} reaches {factor:.3g} of real time on this machine: {self._told()} continues from the same cage angle and speed"
         self._left_at, self._came_up = factor, False
-        return Change(simulation, True, text)
+        return Change(simulation, True, text, self.setting)
 
     def _go_up(self, promised: float) -> Change:
-        above = self._ladder[self._rung - 1].scene.level
-        text = f"level {above}, expected to reach {promised:.3g} of real time, continues from the same cage angle and speed"
         simulation = self._change(self._rung - 1)
+        text = f"level {self._told()}, expected to reach {promised:.3g} of real time, continues from the same cage angle and speed"
         self._came_up = True
-        return Change(simulation, False, text)
+        return Change(simulation, False, text, self.setting)
+
+    def _told(self) -> str:
+        """Return the setting that runs, with its measured errors where it has any."""
+        if not self.setting:
+            return self.level
+        numbers = (f"slip {100.0 * self.slip_error:.2g} points", self.slip_error), (f"life {100.0 * self.life_error:.2g} %", self.life_error)
+        errors = ", ".join(text for text, error in numbers if not math.isnan(error)) or "not measured"
+        return f"{self.setting} (errors: {errors})"
 
     def _change(self, rung: int) -> Simulation:
         before, after = self._ladder[self._rung], self._ladder[rung]
@@ -122,3 +169,65 @@ class Governor:
         self._rung = rung
         self._simulated = self._spent = self._stayed = self._promising = 0.0
         self._left_at = math.nan
+
+
+def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
+    """Return the settings from that of a scene to the fastest on the kept front of its bearing; empty where nothing is kept for where it operates.
+
+    Each is faster than the one before by a quarter at least, and on the front of the settings that the governor can use: at the scene's own level
+    or a lower one that has everything the scene asks for, and without a fixed step, whose code is compiled separately.  Lower levels that were not
+    measured follow at the end, with errors that are not known.
+
+    Parameters
+    ----------
+    scene : that runs.
+    kept : what is kept for its bearing (see `bearing_sim.scene.kept_front.read_front`), or None.
+    """
+    if kept is None or not (front := kept.at(scene)).courses:
+        return []
+    unknown = dict.fromkeys(front.courses[0].own_errors, math.nan)
+    overrides, usable = complete_overrides(scene), (scene.level, *lower_levels(scene))
+    measured = [one for one in front.settings() if one.level in usable and _is_adaptive(one) and not math.isnan(one.errors["slip"])]
+    own = next((one for one in front.settings() if (one.level, one.overrides) == (scene.level, overrides)), None)
+    settings = [own or KeptSetting(scene.level, "as in the scene", overrides, math.nan, unknown)]
+    slowest = own.real_time_factor if own is not None else max((one.real_time_factor for one in measured if one.level == scene.level), default=0.0)
+    for one in sorted(measured, key=lambda one: (one.errors["slip"], -one.real_time_factor)):
+        if one.real_time_factor >= _WORTH_A_CHANGE * slowest:
+            settings.append(one)
+            slowest = one.real_time_factor
+    known = {one.level for one in measured} | {scene.level}
+    adaptive = dataclasses.replace(scene.integration, fixed_step=None)
+    for level in usable:
+        if level not in known:
+            lower = dataclasses.replace(scene, level=level, integration=adaptive)
+            settings.append(KeptSetting(level, "not measured", complete_overrides(lower), math.nan, unknown))
+    return settings if len(settings) > 1 else []
+
+
+def _is_adaptive(setting: KeptSetting) -> bool:
+    return all(not each.startswith("integration.fixed_step=") or each.endswith("=null") for each in setting.overrides)
+
+
+def governor_record(settings: Sequence[KeptSetting], running: str) -> dict[str, str]:
+    """Return the metadata record `RECORD` of a recording: the settings that its events name, with overrides and errors, and which one runs first."""
+    stored = [
+        {"name": one.name, "level": one.level, "overrides": one.overrides, "slip_error": one.errors["slip"], "life_error": one.errors["life"]}
+        for one in settings
+    ]
+    return {"settings": json.dumps(stored), "running": running or settings[0].name}
+
+
+def recorded_settings(record: Mapping[str, str]) -> tuple[dict[str, KeptSetting], str]:
+    """Return the settings of a record of `governor_record` by name, the wanted one first, and the name of the one that ran first.
+
+    Raises
+    ------
+    ValueError
+        The record is none of `governor_record`.
+    """
+    try:
+        found = [KeptSetting(each["level"], "", tuple(each["overrides"]), math.nan, {}) for each in json.loads(record["settings"])]
+        names = [str(each["name"]) for each in json.loads(record["settings"])]
+        return dict(zip(names, found)), str(record["running"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"the settings of the governor in the recording cannot be read: {error!r}") from None

@@ -8,7 +8,7 @@ The node is a thin front end; another one (a socket, a test) would use the same 
 import dataclasses
 import math
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, unused_event, with_values
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import Bands
-from bearing_sim.messages.diagnostics import further_condition
+from bearing_sim.messages.diagnostics import SETTING_ERRORS, further_condition
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.plausibility import plausibility
 from bearing_sim.model.sample import RING_TEMPERATURES, joined
@@ -33,6 +33,8 @@ from bearing_sim.runtime.sink_registry import Sink, SinkRegistry
 from bearing_sim.runtime.solver import Solver, WallTimeSolver
 from bearing_sim.runtime.solver_threads import SolverThreads
 from bearing_sim.scene.fidelity import lower_levels
+from bearing_sim.scene.kept_front import KeptSetting
+from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import Simulation
 from bearing_sim.stored_state.keeper import StateKeeper
@@ -64,16 +66,24 @@ def warmed_up(scene: Scene) -> Simulation:
     return simulation
 
 
-def governor_of(simulation: Simulation) -> Governor | None:
-    """Return a governor over a simulation's level and the levels of lower fidelity that support its scene; None if there are none.
+def governor_of(simulation: Simulation, settings: Sequence[KeptSetting] = ()) -> Governor | None:
+    """Return a governor over a simulation's settings, or its level and the levels of lower fidelity that support its scene; None if there are none.
 
-    Their code is compiled or loaded here.  Lower levels use the scene's tolerances.
+    Their code is compiled or loaded here.  Without measured settings lower levels use the scene's tolerances.
+
+    Parameters
+    ----------
+    simulation : at the wanted setting.
+    settings : from that of the simulation to the fastest (see `bearing_sim.runtime.governor.settings_to_fall`); empty where nothing was measured.
 
     Raises
     ------
     IntegrationError
         The scene's own operating conditions cannot be computed at one of them.
     """
+    if settings:
+        faster = [warmed_up(with_setting(simulation.scene, setting)) for setting in settings[1:]]
+        return Governor([simulation, *faster], settings=settings)
     scene = dataclasses.replace(simulation.scene, integration=dataclasses.replace(simulation.scene.integration, fixed_step=None))
     lower = [warmed_up(dataclasses.replace(scene, level=level)) for level in lower_levels(scene)]
     return Governor([simulation, *lower]) if lower else None
@@ -310,12 +320,12 @@ class Model:
         """Return the health now, with the numbers behind it."""
         now, newest = self.run_time(now_ns), self.solver.newest
         further = further_condition(self.scene, newest) if newest is not None else {}
-        values = numbers(self.gate, self.solver) | {"level": self._running_level} | further
+        values = numbers(self.gate, self.solver) | {"level": self._running_level} | self._setting_values() | further
         values["inputs unknown [s]"] = self.gate.coverage.unknown_until(now)
         values |= self.monitor.values | self.residual.values(now) | self.sinks.values | self._values()
         values |= self.keeper.values if self.keeper is not None else {}
         values |= self._estimation.values(now) if self._estimation is not None else {}
-        said = remarks(self.gate, self.solver, self._running_level) | self.sinks.remarks
+        said = remarks(self.gate, self.solver, self._running_setting or self._running_level) | self.sinks.remarks
         said["estimate"] = "nothing is estimated: the scene does not ask for it" if self._estimation is None else self._estimation.remark
         said["vibration"] = "not listened to: the scene does not ask for it, or the run has simulated time"
         said |= self._remarks()
@@ -344,6 +354,15 @@ class Model:
     @property
     def _running_level(self) -> str:
         return self.scene.level
+
+    @property
+    def _running_setting(self) -> str:
+        """The measured setting that runs, in words; empty where none is known."""
+        return ""
+
+    def _setting_values(self) -> dict[str, object]:
+        """Return the setting that runs and its measured errors for diagnostics; NaN where they were not measured."""
+        return {"setting": self._running_setting or "not measured", **dict.fromkeys(SETTING_ERRORS, math.nan)}
 
     def _take(self, items: Iterable, now: float) -> None:
         """Pass results of the solver on at run time ``now`` [s]."""
@@ -387,6 +406,9 @@ class Model:
 
     def _note_solver_event(self, event: Event, now: float) -> None:
         """Note an event of the solver that is seen at ``now`` [s]; after a reset, judge the bearing from the start."""
+        if event.kind == "governor.change":  # keeps its own time: the samples after it are of another setting
+            self.health.note(event, self._review_time(now))
+            return
         self._note(event._replace(time=now))
         if event.kind == "run.reset":
             self.gate.coverage = Coverage()
@@ -544,6 +566,20 @@ class LiveModel(Model):
     def _running_level(self) -> str:
         return self._governor.level if self._governor is not None else self.scene.level
 
+    @property
+    def _running_setting(self) -> str:
+        return self._governor.setting if self._governor is not None else ""
+
+    def _setting_values(self) -> dict[str, object]:
+        if self._governor is None:
+            return super()._setting_values()
+        return super()._setting_values() | dict(zip(SETTING_ERRORS, (self._governor.slip_error, self._governor.life_error)))
+
+    @property
+    def setting(self) -> str:
+        """Name of the measured setting that runs; empty where none is known."""
+        return self._running_setting
+
     def _take(self, items: Iterable, now: float) -> None:
         blocks, judged = [], 0
         for item in items:
@@ -587,9 +623,10 @@ class LiveModel(Model):
         if self._output_count.is_raised:
             reason = f"{self._output_count.recent} of {self._output_count.recently_due} outputs were left out in the last five seconds"
             flow = [*flow, Event(now, Level.WARN, "pace.outputs", "", reason, "use more processes or cores, a lower level or a lower publish_rate")]
-        if self._running_level == self.scene.level:
+        if self._governor is None or self._governor.is_at_wanted:
             return flow
-        reason = f"computing at level {self._running_level} instead of {self.scene.level}, for which this machine is too slow"
+        running, wanted = self._running_setting or self._running_level, self._governor.wanted_setting or self.scene.level
+        reason = f"computing at level {running} instead of {wanted}, for which this machine is too slow"
         return [Event(now, Level.WARN, "governor.level", "", reason), *flow]
 
     def _advanced(self, now: float) -> None:

@@ -10,6 +10,7 @@ calls as in the recorded run, if the recording contains their duration: then the
 change.
 """
 
+import bisect
 import dataclasses
 import math
 import time
@@ -23,8 +24,12 @@ from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import RING_TEMPERATURES, new_block
 from bearing_sim.recording.reader import Received, Recording
+from bearing_sim.runtime.governor import RECORD as GOVERNOR_RECORD
+from bearing_sim.runtime.governor import recorded_settings
 from bearing_sim.runtime.reproduced_bands import BandDifference, ReproducedBands, first_bands
 from bearing_sim.scene.fidelity import NUMBERS
+from bearing_sim.scene.loader import with_setting
+from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, begin_at_temperatures, inputs_of, start_sample, thermal_nodes
 from bearing_sim.stored_state.counting import LifeCounter
 from bearing_sim.stored_state.keeper import RECORD
@@ -33,6 +38,7 @@ from bearing_sim.stored_state.state_file import parsed
 
 _SKIPPED = 0.25  # fraction of a spacing by which angle and stamps may disagree before time counts as skipped
 _ROUND_OFF = 1e-6  # of an angle, relative
+_INSTANT = 1e-7  # s within which two instants are the same
 _LEVELS = {number: name for name, number in NUMBERS.items()}
 
 
@@ -45,7 +51,7 @@ class Reproduction:
     samples, received : samples computed and written, and messages of inputs copied.
     sim_seconds, wall_seconds : simulated time, and how long that took.
     starts : how the run began, first and after each reset: ``"ideal rolling"`` or ``"sample"`` (in the middle of a run).
-    level_changes : changes of level by a governor.
+    level_changes : changes of level, or of the setting, by a governor.
     skipped_seconds : time of the recording that its run did not simulate.
     failed : samples that could not be computed; the run continues from the recorded ones.
     steps, rejected_steps : the integrator's work.
@@ -129,6 +135,7 @@ class _Run:
         self._simulation: Simulation | None = None
         self._start_ns, self._counter = recording.start_ns, _counter(recording)
         self._is_counted = False  # whether the simulation's damage is that of the run, to which the life used before is to be added
+        self._settings, self._setting, self._reset_at = _Settings(recording), "", -math.inf
         self._last: np.void | None = None
         self._waiting = new_block(0, recording.scene.bearing.roller.count)
 
@@ -141,6 +148,8 @@ class _Run:
             if done + size > len(rows):
                 break
             group = rows[done : done + size]
+            if not begins:
+                self._follow_setting(group[0])
             computed += [self._call(group)] if not begins and self._is_call(group) else [self._one(sample) for sample in group]
             done += size
             # A sample that is not the state at a start is the first of its call.
@@ -203,6 +212,7 @@ class _Run:
         if begins:
             if not first:
                 self.restarts.add(float(sample["time"]))
+                self._reset_at = float(sample["time"])
             lead = self._begin(sample, inputs)
         else:
             lead = self._lead(self._last, sample)
@@ -246,7 +256,7 @@ class _Run:
     def _begin(self, sample: np.void, inputs: Inputs) -> float:
         """Start at the run's own start if that is at most two intervals or so before the sample; return the time to the sample [s]."""
         self.finish()
-        self._simulation = Simulation(self._scene, inputs)
+        self._simulation, self._setting = Simulation(self._scene, inputs), ""
         if self._simulation.thermal is not None:  # a run may start from temperatures that its scene does not name
             nodes, rings = thermal_nodes(sample), np.array([float(sample[f"{name}_uncorrected"]) for name in RING_TEMPERATURES])
             begin_at_temperatures(self._simulation, inputs, nodes, rings)
@@ -272,16 +282,69 @@ class _Run:
         by_angle = 2.0 * (float(sample["shaft_angle"]) - float(before["shaft_angle"])) / speeds if speeds else stamped
         return stamped if abs(by_angle - stamped) <= _SKIPPED * stamped else max(by_angle, 0.0)
 
+    def _follow_setting(self, sample: np.void) -> None:
+        """Change to the setting with which the governor computed a sample, where the recording names settings."""
+        name = self._settings.at(float(sample["time"]), self._reset_at)
+        if name == self._setting:
+            return
+        self._setting = name
+        self.result.level_changes += 1
+        self._continue_with(self._settings.scene(name))
+
+    def _continue_with(self, scene: Scene) -> None:
+        self.finish()
+        other = Simulation(scene, self._simulation.inputs)
+        other.take_over(self._simulation)
+        self._simulation = other
+
     def _follow_level(self, sample: np.void) -> None:
+        self._follow_setting(sample)
         level = _LEVELS.get(int(sample["level"]), self._simulation.scene.level)
         if level == self._simulation.scene.level:
             return
         self.result.level_changes += 1
         own = self._scene.integration if level == self._scene.level else dataclasses.replace(self._scene.integration, fixed_step=None)
-        self.finish()
-        other = Simulation(dataclasses.replace(self._scene, level=level, integration=own), self._simulation.inputs)
-        other.take_over(self._simulation)
-        self._simulation = other
+        self._continue_with(dataclasses.replace(self._scene, level=level, integration=own))
+
+
+class _Settings:
+    """The measured settings that a governor chose in a recorded run, over time.
+
+    Parameters
+    ----------
+    recording : if it has no record of settings, its setting is ``""`` throughout.
+    """
+
+    def __init__(self, recording: Recording):
+        self._scene, self._times, self._names = recording.scene, [], [""]
+        record = recording.records.get(GOVERNOR_RECORD)
+        if record is None:
+            return
+        self._known, running = recorded_settings(record)
+        self._wanted = next(iter(self._known), "")
+        changes = [item for item in recording if isinstance(item, Event) and item.kind == "governor.change" and item.subject in self._known]
+        self._names = [self._of(running), *(self._of(change.subject) for change in changes)]
+        self._times = [change.time for change in changes]
+
+    def _of(self, name: str) -> str:
+        """Return the name of a setting; empty for the wanted one, which is that of the scene."""
+        return "" if name == self._wanted else name
+
+    def at(self, time: float, reset: float) -> str:
+        """Return the name of the setting of a sample [s]; a change holds from behind its own instant on.
+
+        Parameters
+        ----------
+        time : of the sample [s].
+        reset : when the run was reset to the wanted setting [s]; minus infinity if it was not.
+        """
+        number = bisect.bisect_left(self._times, time - _INSTANT)
+        changed = self._times[number - 1] if number else -math.inf
+        return "" if changed < reset else self._names[number]
+
+    def scene(self, name: str) -> Scene:
+        """Return the scene at a setting."""
+        return with_setting(self._scene, self._known[name]) if name else self._scene
 
 
 def _stored_state(recording: Recording) -> StoredState | None:

@@ -391,15 +391,15 @@ class WallTimeSolver(Solver):
             change = self._governor.consider(tick / self._pacer.rate, ended - began)
             if change is not None:
                 self._simulation = change.simulation
-                self._put(Event(now, Level.WARN if change.down else Level.OK, "governor.change", "", change.text))
+                self._put(Event(now, Level.WARN if change.down else Level.OK, "governor.change", change.setting, change.text))
 
     def _use_governor(self, governor: Governor | None) -> None:
         if governor is None and self._governor is not None:
-            left = self._governor.level
+            left, was_at_wanted = self._governor.setting or self._governor.level, self._governor.is_at_wanted
             self._simulation = self._governor.leave()
-            if left != self._governor.wanted:
-                reason = f"the governor is switched off: level {self._governor.wanted} continues from {left}"
-                self._put(Event(self._now(), Level.OK, "governor.change", "", reason))
+            if not was_at_wanted:
+                reason = f"the governor is switched off: level {self._governor.setting or self._governor.wanted} continues from {left}"
+                self._put(Event(self._now(), Level.OK, "governor.change", self._governor.setting, reason))
         self._governor = governor
 
     def _to_start(self, inputs: Inputs, begin: Begin) -> None:

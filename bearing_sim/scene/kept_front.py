@@ -161,6 +161,17 @@ def extent_in_words(extent: Mapping[str, tuple[float, float]]) -> str:
     return f"{slow * turns:.5g} to {fast * turns:.5g} rpm, {low:.5g} to {high:.5g} N, {cold - 273.15:.3g} to {warm - 273.15:.3g} degC"
 
 
+def complete_overrides(scene) -> tuple[str, ...]:
+    """Return the overrides that give another scene the steps, tolerances and slices of this one, whatever its own are."""
+    integration, absolute = scene.integration, scene.integration.absolute_tolerance
+    if scene.level == "steady":
+        return ("integration.fixed_step=null",)
+    fields = {f"absolute_tolerance.{name}": getattr(absolute, name) for name in ("position", "play", "speed")}
+    fields |= {name: getattr(integration, name) for name in ("relative_tolerance", "maximum_step", "fixed_step")}
+    written = tuple(f"integration.{name}={'null' if value is None else repr(float(value))}" for name, value in fields.items())
+    return (*written, f"bearing.roller.slices={scene.bearing.roller.slices}") if scene.level == "spatial" else written
+
+
 @cache
 def machine() -> str:
     """Return the name of this machine and the model of its processor."""

@@ -248,8 +248,8 @@ def _has_lobes(tree: Mapping) -> bool:
 def _with_level(tree: Mapping, origin: str) -> Mapping:
     """Return a scene's tree with ``level: auto`` resolved to the lowest level that has everything the scene asks for.
 
-    Where it wants largest errors, it gets the fastest setting whose measured errors keep them, with all its overrides; or the most accurate level where
-    nothing is known to keep them (see `bearing_sim.scene.wants`).
+    Where it wants largest errors, it gets the fastest setting whose measured errors keep them, with all its overrides; or the most accurate level
+    where nothing is known to keep them (see `bearing_sim.scene.wants`).
 
     Raises
     ------

@@ -20,7 +20,7 @@ import numpy as np
 from bearing_sim.levels.level import LEVELS
 from bearing_sim.levels.steady.table import Table, empty_table
 from bearing_sim.levels.steady.table_builder import obtain_table, span_of
-from bearing_sim.scene.kept_front import KeptCourse, KeptSetting
+from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, complete_overrides
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Integration, Scene, tolerance_overrides
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
@@ -255,17 +255,6 @@ def recommend(found: Trade, factor: float | None = None, error: float | None = N
     if not within:
         return None
     return within[-1] if error is None else within[0]
-
-
-def complete_overrides(scene: Scene) -> tuple[str, ...]:
-    """Return the overrides that give another scene the steps, tolerances and slices of this one, whatever its own are."""
-    integration, absolute = scene.integration, scene.integration.absolute_tolerance
-    if scene.level == "steady":
-        return ("integration.fixed_step=null",)
-    fields = {f"absolute_tolerance.{name}": getattr(absolute, name) for name in ("position", "play", "speed")}
-    fields |= {name: getattr(integration, name) for name in ("relative_tolerance", "maximum_step", "fixed_step")}
-    written = tuple(f"integration.{name}={'null' if value is None else repr(float(value))}" for name, value in fields.items())
-    return (*written, f"bearing.roller.slices={scene.bearing.roller.slices}") if scene.level == "spatial" else written
 
 
 def kept_course(found: Trade) -> KeptCourse:
