@@ -198,6 +198,11 @@ class Simulation:
     table : of operating points, for level ``steady``; the one on disk where absent.  Without one each of them is solved.
     start : sample in whose positions and speeds to begin, see `reset`.
     nodes : temperatures of the thermal network's nodes to begin with, see `reset`.
+
+    Raises
+    ------
+    IntegrationError
+        The scene asks for a corrected table, and there is none on disk; or as of `reset`.
     """
 
     def __init__(
@@ -213,6 +218,11 @@ class Simulation:
         self._tables = ()  # what the level's workspace is made of besides the parameters
         if self._level.advance_profile is not None:
             kept = cached_table(scene) if table is None else (table,)
+            if kept is None and scene.table.correction != "none":
+                raise IntegrationError(
+                    f"table.correction = {scene.table.correction}: there is no such table of {scene.name} for its block table; "
+                    "`bearing-sim table` with this scene builds it"
+                )
             self._tables = kept[:1] if kept else ()
         self.reset(inputs, nodes, start)
 

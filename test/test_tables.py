@@ -19,7 +19,6 @@ from bearing_sim.levels.steady import table_builder as store
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import contour_period, empty_table, mirror_axis, monotone_slopes, radius_at
 from bearing_sim.levels.steady.table_builder import (
-    Span,
     assembled,
     build_table,
     cached_table,
@@ -29,12 +28,12 @@ from bearing_sim.levels.steady.table_builder import (
     read_table,
     solve_points,
     solve_scene,
-    span_of,
     table_hash,
     table_path,
     write_table,
 )
 from bearing_sim.model.params import lubricate, pack
+from bearing_sim.model.table_span import Span, span_of
 from bearing_sim.physics.raceway import tabulated
 from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene.contour import outer_contour

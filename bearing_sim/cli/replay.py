@@ -175,7 +175,7 @@ def _choice(scene, course) -> dict:
     import numpy as np
 
     from bearing_sim.cli.table import build_with_progress
-    from bearing_sim.levels.steady.table_builder import span_of
+    from bearing_sim.model.table_span import span_of
     from bearing_sim.simulation import Simulation
 
     fastest = float(np.abs(course.values["shaft_speed"]).max())

@@ -92,7 +92,8 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
     workers : number of threads; None: all cores.
     rebuild : whether to build it even if it exists.
     """
-    from bearing_sim.levels.steady.table_builder import cached_table, obtain_table
+    from bearing_sim.levels.steady.table_builder import cached_table
+    from bearing_sim.studies.correction import obtain_corrected_table
 
     kept = None if rebuild else cached_table(scene, temperatures)
     if kept is not None:
@@ -100,7 +101,7 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
     click.echo(f"building the table of operating points of {scene.name}, once for this bearing and oil ...", err=True)
     # The number of points is not known in advance; the bar approaches 100 % as a typical number is reached.
     with progress_bar("operating points", 1.0) as show:
-        return obtain_table(scene, temperatures, workers, lambda solved: show(1.0 - math.exp(-solved / 15_000)), rebuild)
+        return obtain_corrected_table(scene, temperatures, workers, lambda solved: show(1.0 - math.exp(-solved / 15_000)), rebuild)
 
 
 def _condition(text, scene) -> tuple[float, float, float, float]:
@@ -129,7 +130,8 @@ def _answers(scene, table, condition) -> dict:
 
 
 def _report(scene, table, quality, answers) -> dict:
-    from bearing_sim.levels.steady.table_builder import span_of, table_path
+    from bearing_sim.levels.steady.table_builder import table_path
+    from bearing_sim.model.table_span import span_of
 
     return {
         "scene": scene.name,

@@ -15,21 +15,22 @@ import hashlib
 import itertools
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
 from scipy.special import ndtr, ndtri
 
 from bearing_sim.estimation.lives import SlipAndOil
+from bearing_sim.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
 from bearing_sim.files.kept_arrays import read_arrays, write_arrays
 from bearing_sim.files.limits import RESPONSE_FILE
 from bearing_sim.levels.steady.table import contour_period, mirror_axis
-from bearing_sim.levels.steady.table_builder import FOLDER, span_of
+from bearing_sim.levels.steady.table_builder import FOLDER
 from bearing_sim.model.params import pack
+from bearing_sim.model.table_span import span_of
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import Range, ranges_of, value_at
@@ -59,7 +60,6 @@ _NARROWEST = np.array([1e-9, 1e-11, 1e-11, 1e-13, 1e-6, 1e-6, 1e-9])  # widths o
 _RESOLVED = 1e-3  # of the width of a band; where less than that is left to fit at most operating points, it is the noise of the level
 _CIRCLE = 0.6  # radius of the circle that stands for the angle, beside coordinates from -1 to 1
 _SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES = (0.5, 1.0, 2.0), (1.0, 2.0, 4.0), (0.35, 0.7, 1.4)  # from the best of which a search starts
-_SEARCHED, _STEP, _STEEPEST = 150, 0.4, 4.0  # metrics that are tried, first step and largest value of a scale's logarithm or a slope
 _GOOD = 1e-3  # of the width of a band; where operating points left out are met to that no metric is searched for
 _WIDEST = 50.0  # logarithm of a width that a spline may reach
 _SMALL = 0.2  # of the width of a band; errors of smaller departures do not follow them (found by cross validation)
@@ -94,9 +94,15 @@ class Domain(NamedTuple):
     mirror: float
 
 
-def domain_of(scene: Scene) -> Domain:
-    """Return the operating points that the response of a scene must answer for: those of its table (block ``table``)."""
-    span, contour = span_of(scene), pack(scene).raceways.contour
+def domain_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> Domain:
+    """Return the operating points that the response of a scene must answer for: those of its table (block ``table``).
+
+    Parameters
+    ----------
+    scene : of any level.
+    temperatures : lowest and highest oil temperature [K], instead of the scene's.
+    """
+    span, contour = span_of(scene, temperatures), pack(scene).raceways.contour
     period, mirror = contour_period(contour), mirror_axis(contour)
     return Domain(
         (_SLOWEST * span.maximum_speed, span.maximum_speed),
@@ -216,7 +222,7 @@ def transformed(answers: np.ndarray) -> np.ndarray:
 def restored(scaled: np.ndarray) -> np.ndarray:
     """Return answers in their units again, the inverse of `transformed`."""
     found = np.array(scaled, float)
-    found[..., _SLIP] = _restored_slip(found[..., _SLIP])
+    found[..., _SLIP] = restored_slip(found[..., _SLIP])
     found[..., _LOGARITHMIC] = np.exp(found[..., _LOGARITHMIC])
     return found
 
@@ -231,23 +237,24 @@ def add_slip_and_oil(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAn
     effects : of the scene's bearing.
     """
     if effects.follows_slip:
-        scaled[:, :, _LIFE] += effects.by_slip(conditions, _restored_slip(scaled[:, :, _SLIP]))
+        scaled[:, :, _LIFE] += effects.by_slip(conditions, restored_slip(scaled[:, :, _SLIP]))
     scaled[:, :, _MODIFIED] += scaled[:, :, _LIFE] - scaled[:, :1, _LIFE] + _by_oil(scaled, conditions, effects)
 
 
 def _without_slip_and_oil(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAndOil) -> np.ndarray:
     """Return answers without what `add_slip_and_oil` adds; the parameters are its."""
     found = scaled.copy()
-    found[:, :, _LIFE] -= effects.by_slip(conditions, _restored_slip(scaled[:, :, _SLIP]))
+    found[:, :, _LIFE] -= effects.by_slip(conditions, restored_slip(scaled[:, :, _SLIP]))
     found[:, :, _MODIFIED] -= scaled[:, :, _LIFE] - scaled[:, :1, _LIFE] + _by_oil(scaled, conditions, effects)
     return found
 
 
 def _by_oil(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAndOil) -> np.ndarray:
-    return effects.by_oil(conditions, _restored_slip(scaled[:, 0, _SLIP]), scaled[:, :, _LIFE], scaled[:, :, _RATIO])
+    return effects.by_oil(conditions, restored_slip(scaled[:, 0, _SLIP]), scaled[:, :, _LIFE], scaled[:, :, _RATIO])
 
 
-def _restored_slip(scaled: np.ndarray) -> np.ndarray:
+def restored_slip(scaled: np.ndarray) -> np.ndarray:
+    """Return slip from `slip_scale`."""
     return np.interp(scaled, _SLIP_SCALES, _SLIPS)
 
 
@@ -390,14 +397,14 @@ class ResponseModel(NamedTuple):
         -------
         proportions and least errors, each of shape (n,).
         """
-        there = _embedded(coordinates(np.asarray(conditions, float), self.domain), self.domain) @ self.metrics[column]
+        there = embedded(coordinates(np.asarray(conditions, float), self.domain), self.domain) @ self.metrics[column]
         centres = self.centres @ self.metrics[column]
         distances = np.square(there[:, None] - centres).sum(axis=-1)
         near = np.argsort(distances, axis=1)[:, :_NEIGHBOURS]
         weights = 1.0 / (np.take_along_axis(distances, near, axis=1) + 1e-9)
         squares = np.square(self.relative_errors[near, column])
         proportions = np.sqrt((weights * squares).sum(axis=1) / weights.sum(axis=1))
-        widths = np.exp(np.minimum(_functions(there, centres) @ self.weights[:, column, 1], _WIDEST))
+        widths = np.exp(np.minimum(spline_functions(there, centres) @ self.weights[:, column, 1], _WIDEST))
         return proportions, proportions * _SMALL * widths
 
     def varied_answers(self) -> list[int]:
@@ -423,8 +430,8 @@ class Interpolation:
     def coefficients(self, conditions: np.ndarray) -> np.ndarray:
         """Return what `ResponseModel.condition_coefficients` does; zeros for all other answers."""
         model, conditions = self._model, np.asarray(conditions, float)
-        there = _embedded(coordinates(conditions, model.domain), model.domain) @ self._metrics
-        found = np.moveaxis(_functions(there, self._centres) @ self._weights, 0, 1)
+        there = embedded(coordinates(conditions, model.domain), model.domain) @ self._metrics
+        found = np.moveaxis(spline_functions(there, self._centres) @ self._weights, 0, 1)
         departures = found[:, :, 2:] * np.exp(found[:, :, 1:2])
         coefficients = np.zeros((len(conditions), len(ANSWERS), found.shape[2] - 1))
         coefficients[:, self._answers, 0] = found[:, :, 0] - departures @ model.own_basis[1:]
@@ -433,55 +440,14 @@ class Interpolation:
         return coefficients
 
 
-def _embedded(there: np.ndarray, domain: Domain) -> np.ndarray:
-    """Return coordinates with the angle as a point on a circle, without those that do not vary, shape (n, c)."""
+def embedded(there: np.ndarray, domain: Domain) -> np.ndarray:
+    """Return `coordinates` with the angle as a point on a circle, without those that do not vary, shape (n, c)."""
     columns = [there[:, 0], there[:, 1]]
     if domain.temperatures[1] > domain.temperatures[0]:
         columns.append(there[:, 2])
     if domain.period:
         columns += [_CIRCLE * np.cos(there[:, 3]), _CIRCLE * np.sin(there[:, 3])]
     return np.stack(columns, axis=1)
-
-
-def _functions(there: np.ndarray, centres: np.ndarray) -> np.ndarray:
-    """Return the functions of the operating point: cubes of the distances from the centres, and planes.
-
-    They are polyharmonic splines (J. Duchon, Lect. Notes Math. 571 (1977) 85).
-
-    Parameters
-    ----------
-    there : coordinates of operating points, scaled, shape (..., n, c).
-    centres : likewise, shape (..., k, c).
-
-    Returns
-    -------
-    shape (..., n, k + c + 1).
-    """
-    square = np.square(there).sum(axis=-1)[..., None] + np.square(centres).sum(axis=-1)[..., None, :] - 2.0 * there @ np.swapaxes(centres, -1, -2)
-    square = np.maximum(square, 0.0)
-    return np.concatenate([square * np.sqrt(square), np.ones((*there.shape[:-1], 1)), there], axis=-1)
-
-
-def _spline_matrix(centres: np.ndarray) -> np.ndarray:
-    """Return the matrix of the splines through values at centres, shape (k + c + 1, k + c + 1)."""
-    square = _functions(centres, centres)
-    planes = square[:, len(centres) :]
-    return np.block([[square[:, : len(centres)], planes], [planes.T, np.zeros((planes.shape[1],) * 2)]])
-
-
-def _spline_weights(centres: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the weights of `_functions` that pass through values at the centres, shapes (k, v) and (k + c + 1, v)."""
-    padded = np.concatenate([values, np.zeros((centres.shape[1] + 1, values.shape[1]))])
-    return np.linalg.solve(_spline_matrix(centres), padded)
-
-
-def _left_out(centres: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return by how much the spline through all centres but one misses the values there, shape (k, v).
-
-    S. Rippa, Adv. Comput. Math. 11 (1999) 193: the weight over the diagonal of the inverse.
-    """
-    inverse = np.linalg.inv(_spline_matrix(centres))[: len(centres), : len(centres)]
-    return inverse @ values / np.diagonal(inverse)[:, None]
 
 
 def _legendre(positions: np.ndarray, degree: int) -> np.ndarray:
@@ -542,7 +508,7 @@ def fit_response(
     scaled = transformed(answers).reshape(len(nodes), -1, len(ANSWERS))
     kept = np.isfinite(scaled[:, :, :4]).all(axis=(1, 2))
     there = coordinates(nodes[kept], domain)
-    centres = _embedded(there, domain)
+    centres = embedded(there, domain)
     if len(centres) < 4 * (centres.shape[1] + 1):
         raise ValueError(f"{len(centres)} of {len(nodes)} operating points have answers; expected {4 * (centres.shape[1] + 1)} or more")
     widths = _widths(np.nan_to_num(scaled[kept, 1:] - scaled[kept, :1]))
@@ -554,7 +520,7 @@ def fit_response(
     values = _node_values(np.nan_to_num(scaled[kept, 0]), np.nan_to_num(departures), widths, basis, is_product)
     change = basis[1:, 1:] - basis[0, 1:]
     metrics = _best_metrics(centres, domain, values, change, departures)
-    weights = np.stack([_spline_weights(centres @ metric, values[:, column]) for column, metric in enumerate(metrics)], axis=1)
+    weights = np.stack([spline_weights(centres @ metric, values[:, column]) for column, metric in enumerate(metrics)], axis=1)
     left = [
         _departures_left_out(centres @ metric, values[:, [column]], change, departures[:, :, [column]])[:, :, 0]
         for column, metric in enumerate(metrics)
@@ -609,7 +575,7 @@ def _departures_left_out(centres: np.ndarray, values: np.ndarray, change: np.nda
     change : of the polynomials from the scene's own values, shape (m - 1, j - 1).
     departures : shape (k, m - 1, a).
     """
-    found = values - _left_out(centres, values.reshape(len(values), -1)).reshape(values.shape)
+    found = values - left_out(centres, values.reshape(len(values), -1)).reshape(values.shape)
     coefficients = found[:, :, 2:] * np.exp(np.minimum(found[:, :, 1:2], _WIDEST))
     return np.swapaxes(coefficients @ change.T, 1, 2) - departures
 
@@ -625,41 +591,19 @@ def _best_metrics(centres: np.ndarray, domain: Domain, values: np.ndarray, chang
     axes = [_SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES][:columns]
     starts = [np.concatenate([np.log(chosen), np.zeros(columns * (columns - 1) // 2)]) for chosen in itertools.product(*axes)]
     widths = np.exp(values[:, :, 1])
-    missed = [_missed(_metric(start, centres.shape[1], columns), centres, values, change, departures, widths) for start in starts]
+    missed = [_missed(metric_of(start, centres.shape[1], columns), centres, values, change, departures, widths) for start in starts]
     metrics = []
     for answer, best in enumerate(np.argmin(missed, axis=0)):
         start, one = starts[best], [answer]
         if missed[best][answer] > _GOOD:
-            start = _searched(
+            start = searched(
                 start,
                 lambda logarithms: _missed(
-                    _metric(logarithms, centres.shape[1], columns), centres, values[:, one], change, departures[:, :, one], widths[:, one]
+                    metric_of(logarithms, centres.shape[1], columns), centres, values[:, one], change, departures[:, :, one], widths[:, one]
                 )[0],
             )
-        metrics.append(_metric(start, centres.shape[1], columns))
+        metrics.append(metric_of(start, centres.shape[1], columns))
     return np.array(metrics)
-
-
-def _searched(start: np.ndarray, missed: Callable[[np.ndarray], float]) -> np.ndarray:
-    """Return parameters of `_metric` that miss least, by J. A. Nelder and R. Mead's simplex (Comput. J. 7 (1965) 308), shape of ``start``."""
-    simplex = start + np.concatenate([np.zeros((1, len(start))), _STEP * np.eye(len(start))])
-    found = minimize(
-        lambda parameters: missed(parameters) if np.abs(parameters).max() <= _STEEPEST else math.inf,
-        start,
-        method="Nelder-Mead",
-        options={"maxfev": _SEARCHED, "initial_simplex": simplex},
-    )
-    return found.x
-
-
-def _metric(parameters: np.ndarray, size: int, columns: int) -> np.ndarray:
-    """Return a metric by the logarithms of the scales of its first columns and the slopes between these, shape (size, size)."""
-    found = np.eye(size)
-    scales = np.exp(parameters[:columns])
-    found[range(columns), range(columns)] = scales
-    rows, others = np.triu_indices(columns, 1)
-    found[rows, others] = parameters[columns:] * scales[others]
-    return found
 
 
 def _missed(

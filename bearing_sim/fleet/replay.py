@@ -23,8 +23,9 @@ from bearing_sim.inputs.csv_text import TableError
 from bearing_sim.inputs.log import InputLogError
 from bearing_sim.inputs.profile import judge
 from bearing_sim.levels.steady.table import Table as OperatingPoints
-from bearing_sim.levels.steady.table_builder import Span, obtain_table, span_of, table_path
+from bearing_sim.levels.steady.table_builder import obtain_table, table_path
 from bearing_sim.model.plausibility import minimum_load
+from bearing_sim.model.table_span import Span, span_of
 from bearing_sim.model.validity import cell
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.runtime.replay import Replay, replay

@@ -328,6 +328,8 @@ class SteadyTable:
     # With a law of heat the table has an axis for how far the clearance has closed, as far as these differences between the rings need.
     minimum_difference: quantity("delta_degC", "least temperature of the inner ring over the outer one's", -300.0, 300.0, "K") = -20.0
     maximum_difference: quantity("delta_degC", "largest temperature of the inner ring over the outer one's", -300.0, 300.0, "K") = 40.0
+    # planar: operating points are corrected by what level planar settles in at some hundred of them, measured once for this bearing and oil
+    correction: Literal["none", "planar"] = "none"  # which level's pocket forces, whirl and vibration the table contains
 
     @check
     def _spans_something(self) -> list[str]:

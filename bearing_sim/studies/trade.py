@@ -19,11 +19,13 @@ import numpy as np
 
 from bearing_sim.levels.level import LEVELS
 from bearing_sim.levels.steady.table import Table, empty_table
-from bearing_sim.levels.steady.table_builder import obtain_table, span_of
+from bearing_sim.levels.steady.table_builder import obtain_table
+from bearing_sim.model.table_span import span_of
 from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, complete_overrides
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Integration, Scene, tolerance_overrides
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+from bearing_sim.studies.correction import obtain_corrected_table
 from bearing_sim.studies.trade_course import BIN, Course, Window, bin_edges, built_in, cage_rate, turned
 from bearing_sim.sweep.table import new_figure
 from bearing_sim.sweep.tasks import Journal, Task, program_hash, run_tasks, task
@@ -130,7 +132,8 @@ class Trade(NamedTuple):
 def settings_of(level: str, quick: bool = False) -> list[Setting]:
     """Return the settings of a level: tolerances, fixed steps, numbers of slices; only one for a table."""
     if LEVELS[level].advance_profile is not None:
-        return [Setting(level, "table", ())]
+        plain = Setting(level, "table", ("table.correction=none",))
+        return [plain] if quick else [plain, Setting(level, "table corrected by planar", ("table.correction=planar",))]
     found = [
         Setting(level, f"tolerances x {factor:g}", tuple(tolerance_overrides(factor)) if factor != 1.0 else ())
         for factor in ((1.0,) if quick else _FACTORS)
@@ -206,7 +209,9 @@ def trade(
     scenes = [load_scene(name, [*overrides, f"level={setting.level}", *setting.overrides]) for setting in settings]
     if "steady" in wanted:
         scenes = [_spanning(scene, found) if scene.level == "steady" else scene for scene in scenes]
-        _table_of(next(scene for scene in scenes if scene.level == "steady"), _temperatures(found))  # before its time is taken
+        for scene in scenes:
+            if scene.level == "steady":  # before its time is taken
+                obtain_corrected_table(scene, _temperatures(found), workers)
     tasks = [task for scene in tight for task in _tasks(scene, found, 1)]
     tasks += [task for scene in scenes for task in _tasks(scene, found, _REPEATS)]
     with Journal(journal) as kept:

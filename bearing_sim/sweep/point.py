@@ -92,6 +92,11 @@ def run_until_settled(scene: Scene, duration: float = DURATION, longest: float |
     IntegrationError
         The run stopped early, or there is no thermal equilibrium.
     """
+    if scene.level == "steady" and scene.table.correction != "none":
+        raise IntegrationError(
+            f"table.correction = {scene.table.correction}: points at level steady are solved for one by one, without a table; "
+            "use table.correction=none, or the level of the correction"
+        )
     run = Simulation(scene, table=empty_table() if scene.level == "steady" else None, start=start)
     shortest = shortest_run(scene, duration)
     longest = longest_run(scene) if longest is None else max(longest, shortest)

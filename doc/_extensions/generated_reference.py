@@ -435,6 +435,7 @@ EVENTS = {
     "validity.flange": ("WARN", "the film between rollers' ends and flanges is used outside of its range"),
     "validity.land": ("WARN", "the film of the guide lands is used outside of its range"),
     "validity.heat": ("WARN", "a conductance of the thermal network is extrapolated"),
+    "validity.level": ("WARN", "a level of fidelity is used outside of what its corrected table covers"),
     "validity.life": ("WARN", "life or static safety are outside of the standards' range, such as P above 0.5 C_r"),
     "validity.oil": ("WARN", "properties of the oil are extrapolated"),
     "validity.pocket": ("WARN", "the film of the pockets is used outside of its range"),

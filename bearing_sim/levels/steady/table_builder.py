@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import platformdirs
@@ -27,13 +27,11 @@ from bearing_sim.levels.steady.model import look_up_conditions, new_work, solve_
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import AXES, Table, contour_period, mirror_axis, monotone_slopes, new_look_up
 from bearing_sim.model.params import Lubrication, Params, lubricate, pack
-from bearing_sim.model.running_clearance import mounted
+from bearing_sim.model.table_span import Span, span_of
 from bearing_sim.model.temperatures import lubricate_scene
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.numerics.cores import cores
-from bearing_sim.physics.growth import Temperatures, excess_growth, growth_at
 from bearing_sim.physics.rating_life import rating_life_revolutions
-from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 
 _SLIP_FLOOR = 2.5e-4  # absolute error of slip that is allowed besides
@@ -46,22 +44,8 @@ _CHECKS = 400
 _CHUNK = 16  # conditions solved in one go by a thread
 _FIRST_SPEEDS, _FIRST_LOADS = (0.0, 0.08, 0.2, 0.4, 0.6, 0.8, 1.0), (0.0, 0.005, 0.03, 0.08, 0.15, 0.25, 0.5, 1.0)
 _FIRST_TEMPERATURES, _FIRST_ANGLES, _FIRST_GROWTHS = 4, 6, 5
-_LOAD_FRACTION = 0.5  # of the dynamic load rating: what ISO/TS 16281 is for
-_SPEED_FRACTION = 1.2  # of the operating speed
 _NO_DRIVE = Drive(*(0.0,) * len(Drive._fields))  # of conditions, which bring their own
 _OILS = 9  # temperatures at which the oil goes into the hash
-
-
-class Span(NamedTuple):
-    """What a table spans."""
-
-    maximum_speed: float  # [rad/s]
-    maximum_load: float  # [N]
-    minimum_temperature: float  # [K]
-    maximum_temperature: float  # [K]
-    reverse: bool  # whether reverse rotation is wanted, too
-    minimum_growth: float = 0.0  # of the inner raceway beyond that of a bearing of one temperature [m]
-    maximum_growth: float = 0.0
 
 
 class Quality(NamedTuple):
@@ -77,13 +61,32 @@ class Quality(NamedTuple):
     slip_error_95: float  # 95th percentile
     life_error: float  # relative
     life_error_95: float
+    correction_slip_error: float = math.nan  # of a correction, at points left out of it, root mean square; NaN without one
+    correction_life_error: float = math.nan  # relative, likewise
+
+
+class Corrects(Protocol):
+    """What takes operating points of this level to what another one settles in (`bearing_sim.estimation.correction`)."""
+
+    slip_error: float  # at points left out, root mean square
+    life_error: float  # relative, likewise
+
+    def applied(self, conditions: np.ndarray, answers: np.ndarray) -> np.ndarray:
+        """Return corrected answers to conditions, shapes (n, 5) and (n, len(ANSWER))."""
 
 
 class Solver:
     """Solves for operating points on several threads and remembers them."""
 
-    def __init__(self, params: Params, lubrication: Callable[[float], Lubrication], workers: int | None, progress: Callable[[int], None]):
-        self._params, self._lubrication, self._progress = params, lubrication, progress
+    def __init__(
+        self,
+        params: Params,
+        lubrication: Callable[[float], Lubrication],
+        workers: int | None,
+        progress: Callable[[int], None],
+        correction: Corrects | None = None,
+    ):
+        self._params, self._lubrication, self._progress, self._correction = params, lubrication, progress, correction
         self._lubrications: dict[float, Lubrication] = {}
         self._known: dict[tuple, np.ndarray] = {}
         self._local = threading.local()
@@ -111,6 +114,8 @@ class Solver:
         for temperature in {chunk[0][2] for chunk in chunks} - self._lubrications.keys():
             self._lubrications[temperature] = self._lubrication(temperature)
         for chunk, answers in zip(chunks, self._pool.map(self._solve_chunk, chunks)):
+            if self._correction is not None:
+                answers = self._correction.applied(np.array(chunk), answers)
             self._known.update(zip(chunk, answers))
             self._progress(self.solved)
         return np.array([self._known[key] for key in keys])
@@ -137,6 +142,7 @@ def build_table(
     workers: int | None = None,
     progress: Callable[[int], None] = lambda solved: None,
     most_nodes: int | None = None,
+    correction: Corrects | None = None,
 ) -> tuple[Table, Quality]:
     """Build a table.
 
@@ -149,13 +155,14 @@ def build_table(
     workers : threads; as many as the machine has cores where absent.
     progress : called now and then with the number of operating points solved for.
     most_nodes : refinement ends before a grid of more; 60,000, or 200,000 with an axis of growth, where absent.
+    correction : of the operating points; they are those of this level where absent.
 
     Returns
     -------
     table, quality
     """
     began = time.perf_counter()
-    with Solver(params, lubrication, workers, progress) as solver:
+    with Solver(params, lubrication, workers, progress, correction) as solver:
         grid = _Grid(params, solver, span, tolerance)
         grid.refine(most_nodes or (_MOST_WARM_NODES if span.maximum_growth > span.minimum_growth else _MOST_NODES))
         table = grid.table()
@@ -172,6 +179,7 @@ def build_table(
             tolerance,
             float(np.mean(fractions <= 1.0)),
             *(float(np.nanquantile(error, q)) for error in (slip, life) for q in (1.0, 0.95)),
+            *((math.nan, math.nan) if correction is None else (correction.slip_error, correction.life_error)),
         )
     return table, quality
 
@@ -301,37 +309,6 @@ class _Grid:
 FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "tables"
 
 
-def span_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> Span:
-    """Return what the table of a scene spans.
-
-    Parameters
-    ----------
-    scene : its block ``table`` says it, or leaves it to operating speed and load rating.
-    temperatures : lowest and highest oil temperature [K], instead of the scene's.
-    """
-    wanted, bearing, limits = scene.table, scene.bearing, scene.accepted_inputs
-    speed = wanted.maximum_speed or min(_SPEED_FRACTION * abs(scene.operating.shaft_speed) or limits.maximum_speed, limits.maximum_speed)
-    low, high = temperatures or (wanted.minimum_temperature, wanted.maximum_temperature)
-    if scene.heat.law != "none":  # its films are warmer than the oil that comes in
-        low, high = min(low, wanted.minimum_temperature), max(high, wanted.maximum_temperature)
-    reverse = limits.reverse_rotation or scene.operating.shaft_speed < 0.0
-    return Span(
-        float(speed), float(wanted.maximum_load or _LOAD_FRACTION * rate(bearing).dynamic), float(low), float(high), bool(reverse), *_growths(scene)
-    )
-
-
-def _growths(scene: Scene) -> tuple[float, float]:
-    """Return the least and the largest growth that a table covers [m]: by the differences of temperature that the scene names."""
-    if scene.heat.law == "none" or scene.bearing.dimensions_at == "running":
-        return 0.0, 0.0
-    parts, ends = mounted(scene.bearing, scene.mounting), []
-    for warmer in (scene.table.minimum_difference, scene.table.maximum_difference):
-        middle = parts.expansion.reference
-        solids = Temperatures(middle + warmer, middle + warmer, middle + 0.5 * warmer, middle, middle)
-        ends.append(float(excess_growth(0.0, middle, growth_at(parts, solids), parts)))
-    return min(ends), max(ends)
-
-
 def table_hash(scene: Scene, span: Span) -> str:
     """Return a hash of what a table's numbers depend on: bearing, oil at the temperatures of the span, tolerance and this program."""
     params = pack(scene)
@@ -341,6 +318,8 @@ def table_hash(scene: Scene, span: Span) -> str:
     bearing = params.rollers, params.raceways, params.cage, params.mounted, params.variants, params.envelope, life
     for number in _numbers((bearing, oils, span, scene.table.tolerance)):
         digest.update(number)
+    if scene.table.correction != "none":  # by a level with masses and a support
+        digest.update(repr((scene.table.correction, scene.bearing, scene.support, scene.dynamics)).encode())
     return digest.hexdigest()[:24]
 
 
@@ -398,6 +377,7 @@ def obtain_table(
     workers: int | None = None,
     progress: Callable[[int], None] = lambda solved: None,
     rebuild: bool = False,
+    correction: Callable[[], Corrects] | None = None,
 ) -> tuple[Table, Quality]:
     """Return the table of a scene, from disk or built and kept there.
 
@@ -408,13 +388,22 @@ def obtain_table(
     workers : threads; as many as the machine has cores where absent.
     progress : called now and then with the number of operating points solved for.
     rebuild : whether to build it even if there is one.
+    correction : makes the correction that a scene with `table.correction` asks for, if a table has to be built.
+
+    Raises
+    ------
+    ValueError
+        The scene asks for a correction, no such table is on disk, and nothing is given to make one.
     """
     span = span_of(scene, temperatures)
     path = table_path(scene, span)
     found = None if rebuild else read_table(path)
     if found is None:
-        params = pack(scene)
-        found = build_table(params, lambda kelvin: lubricate(scene.lubricant, params, kelvin), span, float(scene.table.tolerance), workers, progress)
+        if scene.table.correction != "none" and correction is None:
+            raise ValueError(f"table.correction = {scene.table.correction}: there is no such table of {scene.name} yet; bearing-sim table builds it")
+        params, made = pack(scene), correction() if correction is not None else None
+        lubrication, tolerance = (lambda kelvin: lubricate(scene.lubricant, params, kelvin)), float(scene.table.tolerance)
+        found = build_table(params, lubrication, span, tolerance, workers, progress, correction=made)
         try:
             write_table(path, *found)
         except OSError:  # a table that cannot be kept is as good for this run

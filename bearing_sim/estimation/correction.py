@@ -1,0 +1,252 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What level ``planar`` adds to the operating points of level ``steady``: a correction of their table, measured at some hundred points.
+
+Rollers with play press on their pockets several times harder than rollers that are locked to them, the cage rubs on its land off its centre, and
+passing rollers shake the inner ring.  Level ``planar`` computes all that; its settled means cost a tenth of a second of a core a point.  Here the
+difference to level ``steady`` is a spline over the operating points, as smooth as the points that are left out of it ask for:
+
+    s(S') = s(S) + c_S,    P'_n = P_n exp(c_n),    W'_k = W_k + c_k W_shaft,
+
+S slip, s the scale of `bearing_sim.estimation.response.slip_scale`, P_n the equivalent loads of both rings, whole and by laminae, and the factor
+that oil gives to life, W_k powers by cause, W_shaft that of the shaft.  No c exceeds what was found at any of the points.  Such corrections of a
+fast model by a few runs of an accurate one are known as multi-fidelity models (M. C. Kennedy and A. O'Hagan, Biometrika 87 (2000) 1).
+
+The errors of the correction are those at points left out of it.  Where ``planar`` settles in one state from ideal rolling and in another from more
+slip, the correction is that of the state from ideal rolling, and the point is kept among `Correction.two_states`.
+"""
+
+import hashlib
+import itertools
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.estimation.response import CONDITIONS, Domain, coordinates, embedded, restored_slip, slip_scale
+from bearing_sim.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
+from bearing_sim.files.kept_arrays import read_arrays, write_arrays
+from bearing_sim.files.limits import RESPONSE_FILE
+from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.levels.steady.table_builder import FOLDER
+from bearing_sim.numerics.compilation import sources_hash
+from bearing_sim.scene.heat import NoHeat
+from bearing_sim.scene.scene import Scene
+
+VERSION = 1  # of the files
+SHARED = tuple(column for column in range(len(ANSWER)) if column != ANSWER.lag)
+"""Columns of `bearing_sim.levels.steady.operating_point.ANSWER` that are corrected: all but the lag."""
+_FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)
+_POWERS = slice(ANSWER.shaft_power, len(ANSWER))
+_LEAST_POWER = 1e-9  # W; of a shaft that puts in less no share is taken
+_SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES = (1.0, 2.0), (0.5, 1.0), (0.35, 0.7)  # from the best of which a search starts
+_SMOOTHING = (0.0, 1e-3, 1e-2, 1e-1)  # that are tried
+_LARGEST_SLIP_ERROR, _LARGEST_LIFE_ERROR = 0.01, 0.1  # larger ones are of jumps from one state to another, which no spline follows
+_NEIGHBOURS = 8  # points whose errors tell that between them
+_LIFE_EXPONENT = 4.0  # by which an error of a load is one of a life (ISO 281 for line contact: 10/3; of laminae, ISO/TS 16281: 9/2)
+_SLIP, _LOAD = SHARED.index(ANSWER.cage_slip), SHARED.index(ANSWER.inner_lamina_load)
+
+
+class Correction(NamedTuple):
+    """A correction of the table of one bearing; see the module.
+
+    Attributes
+    ----------
+    domain : operating points that it is for; slower and lighter ones are corrected as the slowest and lightest.
+    conditions : operating points that were measured, columns `bearing_sim.estimation.response.CONDITIONS`, shape (k, 4).
+    metrics : by which coordinates are multiplied before distances count, for slip and powers, and for loads; shape (2, c, c).
+    smoothing : of the splines for slip and powers, and for loads; shape (2,).
+    changes : what was found at the points, columns `SHARED` on the scales of the module, shape (k, 18).
+    errors : at each point where it is left out: of slip [1] and of life, relative; shape (k, 2).
+    two_states : conditions at which level ``planar`` has two states, and the slip of each, from ideal rolling first; shape (m, 6).
+    failed : points that have no answer at one of the levels.
+    seconds : that the points took.
+    """
+
+    domain: Domain
+    conditions: np.ndarray
+    metrics: np.ndarray
+    smoothing: np.ndarray
+    changes: np.ndarray
+    errors: np.ndarray
+    two_states: np.ndarray
+    failed: int
+    seconds: float
+
+    @property
+    def slip_error(self) -> float:
+        """Root mean square of the error of slip at points left out [1]; of those with two states none counts."""
+        return self._error_of_one_state(0)
+
+    @property
+    def life_error(self) -> float:
+        """Root mean square of the relative error of life at points left out, likewise."""
+        return self._error_of_one_state(1)
+
+    def _error_of_one_state(self, column):
+        jumping = (self.conditions[:, None] == self.two_states[:, : len(CONDITIONS)]).all(axis=2).any(axis=1)
+        kept = self.errors[~jumping, column]
+        return float(np.sqrt(np.mean(np.square(kept)))) if len(kept) else math.inf
+
+    def applied(self, conditions: np.ndarray, answers: np.ndarray) -> np.ndarray:
+        """Return corrected answers of level ``steady``.
+
+        Parameters
+        ----------
+        conditions : columns `bearing_sim.estimation.response.CONDITIONS`, further ones count for nothing, shape (n, 4 or more).
+        answers : columns `bearing_sim.levels.steady.operating_point.ANSWER`, shape (n, 19).
+
+        Returns
+        -------
+        answers of the same shape; NaN stays NaN.
+        """
+        changes = np.zeros_like(answers)
+        changes[:, SHARED] = self._changes_at(np.asarray(conditions, float)[:, : len(CONDITIONS)])
+        return changed(answers, changes)
+
+    def errors_near(self, conditions: np.ndarray) -> np.ndarray:
+        """Return the root mean square of the errors of the nearest points [1, 1], of slip and of life; shape (n, 2)."""
+        there, centres = self._there(np.asarray(conditions, float)) @ self.metrics[0], self._there(self.conditions) @ self.metrics[0]
+        distances = np.square(there[:, None] - centres).sum(axis=-1)
+        near = np.argsort(distances, axis=1)[:, :_NEIGHBOURS]
+        return np.sqrt(np.mean(np.square(self.errors[near]), axis=1))
+
+    def _there(self, conditions):
+        return embedded(coordinates(conditions, self.domain), self.domain)
+
+    def _changes_at(self, conditions):
+        there, centres, found = self._there(conditions), self._there(self.conditions), np.empty((len(conditions), len(SHARED)))
+        for metric, smoothing, columns in zip(self.metrics, self.smoothing, _columns()):
+            weights = spline_weights(centres @ metric, self.changes[:, columns], smoothing)
+            found[:, columns] = spline_functions(there @ metric, centres @ metric) @ weights
+        return np.clip(found, self.changes.min(axis=0), self.changes.max(axis=0))
+
+
+def _columns() -> tuple[list[int], list[int]]:
+    """Return which columns of `SHARED` go with slip, and which with loads."""
+    loads = [SHARED.index(column) for column in range(*_FACTORS.indices(len(ANSWER)))]
+    return [column for column in range(len(SHARED)) if column not in loads], loads
+
+
+def changed(answers: np.ndarray, changes: np.ndarray) -> np.ndarray:
+    """Return answers changed by what a correction adds, on its scales; columns `ANSWER`, shapes (n, 19)."""
+    found = answers.copy()
+    found[:, ANSWER.cage_slip] = restored_slip(slip_scale(answers[:, ANSWER.cage_slip]) + changes[:, ANSWER.cage_slip])
+    found[:, _FACTORS] *= np.exp(changes[:, _FACTORS])
+    found[:, _POWERS] += changes[:, _POWERS] * answers[:, [ANSWER.shaft_power]]
+    return found
+
+
+def changes_between(answers: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Return what makes answers of level ``steady`` those of another level, the inverse of `changed`; columns `ANSWER`, shapes (n, 19)."""
+    found = np.zeros_like(answers)
+    found[:, ANSWER.cage_slip] = slip_scale(others[:, ANSWER.cage_slip]) - slip_scale(answers[:, ANSWER.cage_slip])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found[:, _FACTORS] = np.log(others[:, _FACTORS] / answers[:, _FACTORS])
+        shaft = answers[:, [ANSWER.shaft_power]]
+        found[:, _POWERS] = np.where(np.abs(shaft) > _LEAST_POWER, (others - answers)[:, _POWERS] / shaft, 0.0)
+    return np.where(answers == others, 0.0, found)  # no load at both: no change
+
+
+def fit_correction(domain: Domain, conditions: np.ndarray, answers: np.ndarray, others: np.ndarray, seconds: float = 0.0) -> Correction:
+    """Return the correction that takes answers of level ``steady`` to those of level ``planar``.
+
+    Parameters
+    ----------
+    domain : of the scene.
+    conditions : columns `bearing_sim.estimation.response.CONDITIONS`, shape (k, 4).
+    answers, others : of level ``steady``, and of ``planar`` from ideal rolling; columns `ANSWER`, shape (k, 19); points where one of them has NaN
+        are left out.
+    seconds : that the points took.
+
+    Raises
+    ------
+    ValueError
+        Too few points have answers.
+    """
+    changes = changes_between(answers, others)[:, SHARED]
+    kept = np.isfinite(changes).all(axis=1)
+    there = embedded(coordinates(conditions[kept], domain), domain)
+    least = 4 * (there.shape[1] + 1)
+    if len(there) < least:
+        raise ValueError(f"{len(there)} of {len(conditions)} operating points have answers at both levels; expected {least} or more")
+    changes, slips = changes[kept], others[kept, ANSWER.cage_slip]
+    metrics, smoothing, errors = [], [], []
+    for column, largest in ((_SLIP, _LARGEST_SLIP_ERROR), (_LOAD, _LARGEST_LIFE_ERROR)):
+        values = changes[:, [column]]
+        to_error = _slip_errors(slips) if column == _SLIP else _life_errors
+        metric, chosen = _best_spline(there, domain, values, to_error, largest)
+        metrics.append(metric)
+        smoothing.append(chosen)
+        errors.append(to_error(left_out(there @ metric, values, chosen)[:, 0]))
+    nothing = np.zeros((0, len(CONDITIONS) + 2))
+    failed = int(np.count_nonzero(~kept))
+    return Correction(domain, conditions[kept], np.array(metrics), np.array(smoothing), changes, np.stack(errors, axis=1), nothing, failed, seconds)
+
+
+def _slip_errors(slips):
+    """Return the function from errors on the scale of slip to errors of slip at slips."""
+    return lambda errors: restored_slip(slip_scale(slips) + errors) - slips
+
+
+def _life_errors(errors):
+    return np.expm1(_LIFE_EXPONENT * np.abs(np.clip(errors, -2.0, 2.0)))
+
+
+def _best_spline(there, domain, values, to_error, largest):
+    """Return metric and smoothing whose spline misses the points that are left out least; errors above ``largest`` count alike."""
+    columns = 3 if domain.temperatures[1] > domain.temperatures[0] else 2
+    axes = [_SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES][:columns]
+    starts = [np.concatenate([np.log(chosen), np.zeros(columns * (columns - 1) // 2)]) for chosen in itertools.product(*axes)]
+
+    def missed(parameters, smoothing):
+        errors = to_error(left_out(there @ metric_of(parameters, there.shape[1], columns), values, smoothing)[:, 0])
+        return float(np.minimum(np.abs(errors), largest).mean()) if np.isfinite(errors).all() else math.inf
+
+    scored = [(missed(start, smoothing), k, smoothing) for k, start in enumerate(starts) for smoothing in _SMOOTHING]
+    _, best, smoothing = min(scored)
+    found = searched(starts[best], lambda parameters: missed(parameters, smoothing))
+    return metric_of(found, there.shape[1], columns), smoothing
+
+
+def correction_digest(scene: Scene, domain: Domain) -> str:
+    """Return a hash of what a correction depends on: bearing, mounting, support, oil and life of the scene, operating points, this program."""
+    parts = (scene.bearing, scene.mounting, scene.support, scene.lubricant, scene.life, scene.dynamics, domain, VERSION)
+    return hashlib.sha256("\n".join([sources_hash(), *map(repr, parts)]).encode()).hexdigest()[:24]
+
+
+def correction_path(scene: Scene, domain: Domain) -> Path:
+    """Return where the correction of a scene is kept: among the tables of operating points."""
+    return FOLDER / f"{correction_digest(scene, domain)}.correction.npz"
+
+
+def measured_scene(scene: Scene, level: str) -> Scene:
+    """Return the scene whose points are measured at a level: without a law of heat, whose effect on the clearance the table knows by itself."""
+    return replace(scene.at_level(level), heat=NoHeat())
+
+
+_ARRAYS = ("conditions", "metrics", "smoothing", "changes", "errors", "two_states")
+
+
+def write_correction(path: Path, correction: Correction) -> None:
+    """Write a correction: a reader finds the old file or the new one, never a part.  Raises OSError, also if another process is writing it."""
+    domain = correction.domain
+    ends = np.array([*domain.speeds, *domain.loads, *domain.temperatures, domain.period, domain.mirror])
+    arrays = {name: getattr(correction, name) for name in _ARRAYS} | {"domain": ends, "made": np.array([correction.failed, correction.seconds])}
+    write_arrays(path, arrays)
+
+
+def read_correction(path: Path) -> Correction | None:
+    """Return a correction from disk, or None where there is none, or none that is whole."""
+    try:
+        file = read_arrays(path, RESPONSE_FILE)
+        ends = file["domain"].tolist()
+        domain = Domain((ends[0], ends[1]), (ends[2], ends[3]), (ends[4], ends[5]), ends[6], ends[7])
+        failed, seconds = file["made"].tolist()
+        conditions, metrics, smoothing, changes, errors, two_states = (np.ascontiguousarray(file[name], float) for name in _ARRAYS)
+        whole = changes.shape == (len(conditions), len(SHARED)) and errors.shape == (len(conditions), 2) and metrics.shape[0] == len(smoothing) == 2
+        found = Correction(domain, conditions, metrics, smoothing, changes, errors, two_states, int(failed), seconds)
+        return found if whole and all(np.isfinite(each).all() for each in (conditions, metrics, smoothing, changes)) else None
+    except Exception:  # whatever a broken file makes its reader raise, the correction is built again
+        return None

@@ -1,0 +1,191 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Operating points at level ``planar``, from which the correction of a table of level ``steady`` is fitted, and the tables that have it.
+
+Points are spread evenly at first (a scrambled Sobol' sequence).  More are added where those that are there leave most in doubt: far from all of
+them, in the neighbourhood of those that are missed most when they are left out; their number doubles each time.
+"""
+
+import math
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from scipy.stats import qmc
+
+from bearing_sim.estimation.correction import Correction, correction_path, fit_correction, measured_scene, read_correction, write_correction
+from bearing_sim.estimation.response import conditions_at, coordinates, domain_of, embedded
+from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.levels.steady.table import Table
+from bearing_sim.levels.steady.table_builder import Quality, obtain_table, solve_points
+from bearing_sim.model.params import pack
+from bearing_sim.model.sample import OBSERVABLES
+from bearing_sim.physics.rating_life import rating_life_revolutions
+from bearing_sim.scene.scene import Scene
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+from bearing_sim.sweep.settling import Outcome, advance_until_settled, cage_turn
+from bearing_sim.sweep.tasks import Journal, run_tasks, task
+
+FIRST_POINTS, MOST_POINTS = 256, 512
+SLIP_GOAL, LIFE_GOAL = 5e-4, 0.01  # errors at points left out, root mean square, below which no more points are added
+_BATCH = 8  # points of a task
+_CANDIDATES = 4096
+_PURSUED = 10.0  # times the goals; larger errors, such as at a jump from one state to another, do not draw more points
+_NEIGHBOURS = 8
+_SHORTEST, _LONGEST = 24.0, 400.0  # turns of an ideal cage
+_TELLING = 0.02  # slip from which on another state is looked for
+_MORE = 2.0  # times the slip found, at which the search for another state begins
+_APART = 0.005  # slips of two states differ by more
+_MEANS = tuple(name for name in ANSWER._fields if name in {each.name for each in OBSERVABLES})
+_LOADS = ("inner_equivalent_load", "outer_equivalent_load", "inner_lamina_load", "outer_lamina_load")
+
+
+def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> dict:
+    """Return what levels ``steady`` and ``planar`` settle in at operating points, as lists.
+
+    Parameters
+    ----------
+    scene : without a law of heat.
+    conditions : columns `bearing_sim.estimation.response.CONDITIONS`.
+
+    Returns
+    -------
+    ``steady``, ``planar`` : columns `bearing_sim.levels.steady.operating_point.ANSWER`, NaN where there is no answer.
+    ``other_slip`` : in which ``planar`` settles from more slip; NaN where that was not tried.
+    """
+    steady, planar = solve_points(scene, np.array(conditions)), scene.at_level("planar")
+    found, other = np.full((len(conditions), len(ANSWER)), math.nan), np.full(len(conditions), math.nan)
+    for k, (speed, load, kelvin, angle) in enumerate(conditions):
+        inputs = Inputs(speed, load * math.cos(angle), load * math.sin(angle), kelvin)
+        try:
+            run = Simulation(planar, inputs)
+            found[k] = _answers(_settled(run, inputs), planar)
+            slip = found[k, ANSWER.cage_slip]
+            if _TELLING <= slip < 0.5:
+                run = Simulation(planar, inputs, start=_slipping(Simulation(planar, inputs), min(_MORE * slip, 0.9)))
+                other[k] = _settled(run, inputs).slip
+        except IntegrationError:
+            continue
+    return {"steady": steady.tolist(), "planar": found.tolist(), "other_slip": other.tolist()}
+
+
+def _settled(run: Simulation, inputs: Inputs) -> Outcome:
+    turn = cage_turn(run.scene) * abs(run.scene.operating.shaft_speed / inputs.shaft_speed)
+    return advance_until_settled(run, _SHORTEST * turn, _LONGEST * turn)
+
+
+def _slipping(run: Simulation, slip: float) -> np.void:
+    """Return the sample of a run's start with a cage that slips; rollers go with it and spin as they would without slip."""
+    sample = run.sample.copy()
+    for name in ("cage_speed", "orbital_speed"):
+        sample[name] *= 1.0 - slip
+    return sample
+
+
+def _answers(outcome: Outcome, scene: Scene) -> np.ndarray:
+    """Return the means of a settled run as an answer of level ``steady``; its lag is NaN."""
+    window, answers = outcome.window, np.full(len(ANSWER), math.nan)
+    for name in _MEANS:
+        answers[ANSWER._fields.index(name)] = float(window[name].mean())
+    answers[ANSWER.cage_slip] = outcome.slip
+    loads = [float(np.mean(window[name] ** 4) ** 0.25) for name in _LOADS]
+    life = pack(scene).life
+    with np.errstate(divide="ignore"):
+        mean = 1.0 / float(np.mean(1.0 / window["l10r"]))  # damage adds up
+    revolutions = mean * 3600.0 * abs(float(window["shaft_speed"][-1])) / (2.0 * math.pi)
+    given = rating_life_revolutions(*loads[2:], life) if min(loads[2:]) > 0.0 else math.inf
+    scale = (given / revolutions) ** 0.25 if math.isfinite(given) and math.isfinite(revolutions) else 1.0
+    answers[ANSWER.inner_equivalent_load : ANSWER.outer_lamina_load + 1] = np.array(loads) * scale
+    return answers
+
+
+def obtain_correction(
+    scene: Scene, temperatures: tuple[float, float] | None = None, workers: int | None = None, dask: str | None = None,
+    progress: Callable[[int, int], None] = lambda done, total: None, rebuild: bool = False, most: int = MOST_POINTS,
+) -> Correction:  # fmt: skip
+    """Return the correction of a scene, from disk or measured and kept there; an interrupted measurement resumes from its journal.
+
+    Parameters
+    ----------
+    scene : its level does not matter.
+    temperatures : lowest and highest oil temperature [K], instead of the scene's.
+    workers, dask : see `bearing_sim.sweep.tasks.run_tasks`.
+    progress : called with the number of points measured and that of all.
+    rebuild : whether to measure it even if there is one.
+    most : points.
+
+    Raises
+    ------
+    ValueError
+        Level ``planar`` cannot compute the scene, or too few points have answers.
+    ClusterError, JournalInUse
+        See `bearing_sim.sweep.tasks`.
+    """
+    domain = domain_of(scene, temperatures)
+    path = correction_path(scene, domain)
+    found = None if rebuild else read_correction(path)
+    if found is None:
+        journal = path.with_suffix(".journal")
+        found = _measured(scene, domain, journal, workers, dask, progress, most)
+        write_correction(path, found)
+        journal.unlink(missing_ok=True)
+    return found
+
+
+def _measured(scene, domain, path: Path, workers, dask, progress, most) -> Correction:
+    began, plain = time.perf_counter(), measured_scene(scene, "slip")
+    spread = conditions_at(qmc.Sobol(d=4, scramble=True, seed=np.random.default_rng(1)).random(min(FIRST_POINTS, most)), domain)
+    conditions, rows = np.zeros((0, 4)), []
+    with Journal(path) as journal:
+        while True:
+            tasks = [
+                task("planar", measured_points, plain, tuple(map(tuple, spread[first : first + _BATCH].tolist())))
+                for first in range(0, len(spread), _BATCH)
+            ]
+            done = len(conditions)
+            rows += run_tasks(tasks, journal, workers, dask, lambda k, total: progress(done + _BATCH * k, most))
+            conditions = np.concatenate([conditions, spread])
+            found = _fitted(domain, conditions, rows, time.perf_counter() - began)
+            if len(conditions) >= most or (found.slip_error <= SLIP_GOAL and found.life_error <= LIFE_GOAL):
+                return found
+            spread = _doubtful(found, min(len(conditions), most - len(conditions)), len(conditions))
+
+
+def _fitted(domain, conditions, rows, seconds) -> Correction:
+    nothing = [[math.nan] * len(ANSWER)] * _BATCH
+    steady, planar = (np.array([answer for row in rows for answer in row.get(level, nothing)]) for level in ("steady", "planar"))
+    other = np.array([slip for row in rows for slip in row.get("other_slip", [math.nan] * _BATCH)])
+    count = len(conditions)
+    steady, planar, other = steady[:count], planar[:count], other[:count]
+    planar[:, ANSWER.lag] = steady[:, ANSWER.lag] = 0.0
+    two = np.abs(other - planar[:, ANSWER.cage_slip]) > _APART
+    states = np.column_stack([conditions[two], planar[two, ANSWER.cage_slip], other[two]])
+    return fit_correction(domain, conditions, steady, planar, seconds)._replace(two_states=states)
+
+
+def _doubtful(found: Correction, count: int, seed: int) -> np.ndarray:
+    """Return conditions at which a correction is least sure, each a candidate that is far from the others."""
+    candidates = conditions_at(qmc.Sobol(d=4, scramble=True, seed=np.random.default_rng(seed)).random(_CANDIDATES), found.domain)
+    errors = found.errors_near(candidates) / [SLIP_GOAL, LIFE_GOAL]
+    weights = np.sqrt(np.square(np.minimum(errors, _PURSUED)).sum(axis=1))
+    there, chosen = (embedded(coordinates(each, found.domain), found.domain) @ found.metrics[0] for each in (candidates, found.conditions))
+    distances = np.sqrt(np.square(there[:, None] - chosen).sum(axis=-1).min(axis=1))
+    picked = []
+    for _ in range(count):
+        best = int(np.argmax(weights * distances))
+        picked.append(best)
+        distances = np.minimum(distances, np.sqrt(np.square(there - there[best]).sum(axis=1)))
+    return candidates[picked]
+
+
+def obtain_corrected_table(
+    scene: Scene, temperatures: tuple[float, float] | None = None, workers: int | None = None,
+    progress: Callable[[int], None] = lambda solved: None, rebuild: bool = False,
+) -> tuple[Table, Quality]:  # fmt: skip
+    """Return the table of a scene, corrected where its block ``table`` asks for that.
+
+    Parameters and errors are those of `obtain_table` and `obtain_correction`.
+    """
+    if scene.table.correction == "none":
+        return obtain_table(scene, temperatures, workers, progress, rebuild)
+    return obtain_table(scene, temperatures, workers, progress, rebuild, lambda: obtain_correction(scene, temperatures, workers, rebuild=rebuild))

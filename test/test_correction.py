@@ -1,0 +1,161 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The correction of tables of level steady by points of level planar."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.stats import qmc
+
+from bearing_sim.estimation.correction import (
+    changed,
+    changes_between,
+    correction_path,
+    fit_correction,
+    read_correction,
+    write_correction,
+)
+from bearing_sim.estimation.response import Domain, conditions_at
+from bearing_sim.levels.steady import table_builder
+from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.levels.steady.table_builder import look_up
+from bearing_sim.model.table_span import span_of
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+from bearing_sim.studies import correction as studied
+from bearing_sim.sweep.point import run_until_settled
+
+DOMAIN = Domain((100.0, 5000.0), (10.0, 5000.0), (330.0, 430.0), 2.0 * math.pi / 3.0, 0.0)
+FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)
+POWERS = slice(ANSWER.shaft_power, len(ANSWER))
+
+
+def at_random(count, seed=3):
+    return conditions_at(qmc.Sobol(d=4, scramble=True, seed=np.random.default_rng(seed)).random(count), DOMAIN)
+
+
+def made_up(conditions):
+    """Return smooth answers of two levels: the second slips more the faster the shaft turns, with a peak of loads, and loses more in pockets."""
+    speed, load, kelvin, angle = conditions.T
+    steady = np.zeros((len(conditions), len(ANSWER)))
+    steady[:, ANSWER.cage_slip] = 0.1 * (speed / 5000.0) ** 2 / (1.0 + load / 2000.0)
+    steady[:, FACTORS] = load[:, None] * np.array([1.0, 1.1, 1.2, 1.3, 1e-3])
+    steady[:, ANSWER.shaft_power] = 1e-4 * speed**2
+    steady[:, ANSWER.pocket_power] = 0.1 * steady[:, ANSWER.shaft_power]
+    planar = steady.copy()
+    planar[:, ANSWER.cage_slip] *= 1.2 + 0.2 * np.tanh((kelvin - 380.0) / 50.0) + 0.05 * np.cos(3.0 * angle)
+    planar[:, FACTORS.start : FACTORS.stop - 1] *= (1.0 + 0.1 * np.exp(-((np.log(speed / 2000.0) / 0.7) ** 2)))[:, None]
+    planar[:, ANSWER.pocket_power] += 0.05 * steady[:, ANSWER.shaft_power]
+    planar[:, ANSWER.shaft_power] *= 1.05
+    return steady, planar
+
+
+@pytest.fixture(scope="module")
+def made():
+    conditions = at_random(256)
+    return fit_correction(DOMAIN, conditions, *made_up(conditions))
+
+
+def test_what_a_change_adds_is_what_is_between_two_answers():
+    steady, planar = made_up(at_random(64))
+    assert changed(steady, changes_between(steady, planar)) == pytest.approx(planar, rel=1e-5)  # a table restores slip
+    assert not changes_between(steady, steady).any()
+    unloaded = steady.copy()
+    unloaded[:, FACTORS] = 0.0
+    assert not changes_between(unloaded, unloaded).any()  # a bearing without load: nothing over nothing
+
+
+def test_a_correction_meets_points_that_it_has_not_seen_as_well_as_it_says(made):
+    conditions = at_random(512, seed=7)
+    steady, planar = made_up(conditions)
+    found = made.applied(conditions, steady)
+    missed = found[:, ANSWER.cage_slip] - planar[:, ANSWER.cage_slip]
+    assert np.sqrt(np.mean(missed**2)) < 2.0 * made.slip_error < 0.1 * np.abs(steady - planar)[:, ANSWER.cage_slip].max()
+    lives = (planar[:, ANSWER.inner_lamina_load] / found[:, ANSWER.inner_lamina_load]) ** 4
+    assert np.sqrt(np.mean((lives - 1.0) ** 2)) < 2.0 * made.life_error < 0.05
+    shares = found[:, ANSWER.pocket_power] / planar[:, ANSWER.pocket_power]
+    assert shares == pytest.approx(1.0, abs=0.02)
+
+
+def test_answers_that_do_not_exist_stay_so_and_a_lag_stays_what_it_is(made):
+    conditions = at_random(4)
+    steady, _ = made_up(conditions)
+    steady[1], steady[:, ANSWER.lag] = math.nan, 0.02
+    found = made.applied(conditions, steady)
+    assert np.isnan(found[1, ANSWER.cage_slip]) and np.isfinite(found[0]).all() and (found[[0, 2, 3], ANSWER.lag] == 0.02).all()
+
+
+def test_beyond_its_points_a_correction_is_bounded_by_the_largest_that_was_found(made):
+    far = np.array([[1e-3, 1e-3, 200.0, 0.0], [1e5, 1e7, 900.0, 2.0]])
+    steady, _ = made_up(at_random(2))
+    changes = changes_between(steady, made.applied(far, steady))
+    assert (changes[:, ANSWER.cage_slip] <= made.changes[:, 0].max() + 1e-6).all()
+    assert (changes[:, ANSWER.cage_slip] >= made.changes[:, 0].min() - 1e-6).all()
+
+
+def test_points_without_an_answer_are_left_out_and_too_few_of_them_are_refused():
+    conditions = at_random(128)
+    steady, planar = made_up(conditions)
+    planar[:28] = math.nan
+    assert (found := fit_correction(DOMAIN, conditions, steady, planar)).failed == 28 and len(found.conditions) == 100
+    planar[10:] = math.nan
+    with pytest.raises(ValueError, match="0 of 128 operating points have answers at both levels; expected 24 or more"):
+        fit_correction(DOMAIN, conditions, steady, planar)
+
+
+def test_a_correction_comes_back_from_disk_and_a_damaged_file_counts_as_none(made, tmp_path):
+    path = tmp_path / "one.correction.npz"
+    write_correction(path, made)
+    conditions = at_random(8)
+    steady, _ = made_up(conditions)
+    assert np.array_equal(read_correction(path).applied(conditions, steady), made.applied(conditions, steady))
+    path.write_bytes(path.read_bytes()[:-100])
+    assert read_correction(path) is None and read_correction(tmp_path / "absent") is None
+
+
+def test_without_a_table_a_scene_that_asks_for_a_correction_says_how_one_is_built(tmp_path, monkeypatch):
+    monkeypatch.setattr(table_builder, "FOLDER", tmp_path)
+    scene = load_scene("deng2017_table1", ["level=steady", "table.correction=planar"])
+    with pytest.raises(IntegrationError, match="there is no such table .*`bearing-sim table`"):
+        Simulation(scene)
+    with pytest.raises(ValueError, match="bearing-sim table builds it"):
+        table_builder.obtain_table(scene)
+    with pytest.raises(IntegrationError, match="solved for one by one"):
+        run_until_settled(scene)
+
+
+def test_tables_with_and_without_a_correction_are_kept_apart():
+    plain, corrected = (load_scene("deng2017_table1", ["level=steady", f"table.correction={word}"]) for word in ("none", "planar"))
+    assert table_builder.table_path(plain, span_of(plain)) != table_builder.table_path(corrected, span_of(corrected))
+    domain = studied.domain_of(corrected)
+    heavier = load_scene(plain, ["bearing.cage.mass=2 kg"])  # which changes nothing at level steady
+    assert correction_path(plain, domain) == correction_path(corrected, domain) != correction_path(heavier, domain)
+
+
+@pytest.mark.long
+def test_a_corrected_table_slips_and_lives_as_level_planar_does(tmp_path, monkeypatch):
+    for module in (table_builder, studied):
+        monkeypatch.setattr(module, "FOLDER", tmp_path, raising=False)
+    monkeypatch.setattr(studied, "correction_path", lambda scene, domain: tmp_path / "correction.npz")
+    monkeypatch.setattr(studied, "FIRST_POINTS", 64)
+    narrow = ("table.maximum_load=1500N", "table.maximum_speed=46000rpm", "level=steady", "table.correction=planar", "table.tolerance=0.1")
+    scene = load_scene("deng2017_table1", narrow)
+    kelvin = scene.lubricant.temperature
+    found = studied.obtain_correction(scene, (kelvin, kelvin), most=64)
+    assert len(found.conditions) == 64 and found.slip_error < 0.005
+    table, quality = table_builder.obtain_table(scene, (kelvin, kelvin), correction=lambda: found)
+    assert quality.correction_slip_error == found.slip_error
+    for rpm, load in ((38_000.0, 700.0), (12_000.0, 300.0)):
+        speed = rpm * math.pi / 30.0
+        planar = Simulation(load_scene(scene, ["level=planar", "table.correction=none"]), Inputs(speed, load, 0.0, kelvin))
+        turn = 4.0 * math.pi / speed
+        planar.advance(60 * turn)
+        slip = float(planar.advance(60 * turn, samples=400)["cage_slip"].mean())
+        plain, corrected = (
+            look_up(each, np.array([[speed, load, kelvin, 0.0]]))[0, ANSWER.cage_slip] for each in (_plain_table(scene, kelvin), table)
+        )
+        assert abs(corrected - slip) < 0.3 * abs(plain - slip), (rpm, plain, corrected, slip)
+
+
+def _plain_table(scene, kelvin):
+    return table_builder.obtain_table(load_scene(scene, ["table.correction=none"]), (kelvin, kelvin))[0]
