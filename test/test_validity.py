@@ -76,6 +76,7 @@ GREASE = "lubricant={grease: lithium NLGI 2, temperature: 70 degC}"
 FULL = "bearing.cage={guidance: full_complement}"
 PAPER = "deng2017_table1"
 HOT = ("heat.law=given",)
+CORRECTED = ("level=steady", "table.correction=planar")
 NETWORK = ("heat.law=network", "level=steady")
 
 # Law: the command and what drives the law out of its range; the command and what keeps it inside.
@@ -89,6 +90,7 @@ def carried(stiffness, length, clearance):
 
 NJ = "bearing.flanges={inner: one, outer: both}"
 CASES = {
+    "table_correction": (("loads", PAPER, *CORRECTED, "table.maximum_load=400 N"), ("loads", PAPER, *CORRECTED)),
     "oil_4109_class": (("run", "motor", *VG_320, AVIATION_FIT), ("run", "motor")),
     "oil_4109_base": (("loads", "motor", "lubricant.oil=ISO VG 32", AVIATION_FIT), ("loads", "motor", "lubricant.oil=DEF STAN 91-101")),
     "estimated_rollers": (("run", "motor", "bearing.estimated=[{field: roller.count, by: a guess, low: 15, high: 17}]"), ("run", "motor")),

@@ -144,7 +144,37 @@ def _report(scene, table, quality, answers) -> dict:
         "period_deg": math.degrees(table.period),
         "both_senses": not math.isnan(table.mirror) or table.nodes.shape[0] == 2,
         **quality._asdict(),
+        "correction": _correction_of(scene),
         "points": answers,
+    }
+
+
+def _correction_of(scene) -> dict | None:
+    """Return what the correction of a scene's table was measured from and how sure it is, or None where there is none."""
+    from bearing_sim.estimation.correction import correction_path, read_correction
+    from bearing_sim.estimation.response import domain_of
+
+    found = read_correction(correction_path(scene, domain_of(scene))) if scene.table.correction != "none" else None
+    if found is None:
+        return None
+    return {
+        "level": scene.table.correction,
+        "points": len(found.conditions),
+        "failed": found.failed,
+        "seconds": found.seconds,
+        "slip_error": found.slip_error,
+        "life_error": found.life_error,
+        "two_states": [
+            {
+                "speed_rpm": speed * 30 / math.pi,
+                "load": load,
+                "oil_temperature_c": kelvin - 273.15,
+                "load_angle_deg": math.degrees(angle),
+                "slip": own,
+                "slip_from_more": other,
+            }
+            for speed, load, kelvin, angle, own, other in found.two_states.tolist()
+        ],
     }
 
 
@@ -187,7 +217,30 @@ def _print(report) -> None:
             ("error of life", f"{100 * report['life_error']:.2f} % at most, 95 % below {100 * report['life_error_95']:.2f}"),
         ],
     )
+    if report["correction"] is not None:
+        _print_correction(report["correction"])
     for point in report["points"]:
         rows = [(name, f"{of_table:.6g} (solved: {solved:.6g})") for name, (of_table, solved) in point["table_and_solution"].items()]
         where = f"{point['speed_rpm']:.6g} rpm, {point['load']:.6g} N, {point['oil_temperature_c']:.6g} degC, {point['load_angle_deg']:.6g} deg"
         print_table(where + ("" if point["held"] else ": outside the table"), rows)
+
+
+def _print_correction(report) -> None:
+    """Print how sure a correction is, and where level planar has two states."""
+    rows = [
+        ("measured", f"at {report['points']} operating points in {report['seconds']:.3g} s; {report['failed']} more have no answer"),
+        ("error of slip", f"{100 * report['slip_error']:.3f} points, root mean square at points left out"),
+        ("error of life", f"{100 * report['life_error']:.2f} %, likewise"),
+    ]
+    if states := report["two_states"]:
+        speeds, loads = ([state[name] for state in states] for name in ("speed_rpm", "load"))
+        example = states[len(states) // 2]
+        rows += [
+            ("two states", f"at {len(states)} points, {min(speeds):.5g} to {max(speeds):.5g} rpm and {min(loads):.3g} to {max(loads):.3g} N"),
+            (
+                "",
+                f"such as {100 * example['slip']:.1f} % from ideal rolling, which the table has, and {100 * example['slip_from_more']:.1f} % from "
+                f"more slip at {example['speed_rpm']:.5g} rpm and {example['load']:.3g} N",
+            ),
+        ]
+    print_table(f"correction by level {report['level']}", rows)

@@ -165,7 +165,7 @@ def complete_overrides(scene) -> tuple[str, ...]:
     """Return the overrides that give another scene the steps, tolerances and slices of this one, whatever its own are."""
     integration, absolute = scene.integration, scene.integration.absolute_tolerance
     if scene.level == "steady":
-        return ("integration.fixed_step=null",)
+        return ("integration.fixed_step=null", f"table.correction={scene.table.correction}")
     fields = {f"absolute_tolerance.{name}": getattr(absolute, name) for name in ("position", "play", "speed")}
     fields |= {name: getattr(integration, name) for name in ("relative_tolerance", "maximum_step", "fixed_step")}
     written = tuple(f"integration.{name}={'null' if value is None else repr(float(value))}" for name, value in fields.items())
