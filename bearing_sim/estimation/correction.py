@@ -46,6 +46,8 @@ _LARGEST_SLIP_ERROR, _LARGEST_LIFE_ERROR = 0.01, 0.1  # larger ones are of jumps
 _NEIGHBOURS = 8  # points whose errors tell that between them
 _LIFE_EXPONENT = 4.0  # by which an error of a load is one of a life (ISO 281 for line contact: 10/3; of laminae, ISO/TS 16281: 9/2)
 _SLIP, _LOAD = SHARED.index(ANSWER.cage_slip), SHARED.index(ANSWER.inner_lamina_load)
+_LOADS = [SHARED.index(column) for column in range(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)]
+_COLUMNS = ([column for column in range(len(SHARED)) if column not in _LOADS], _LOADS)  # of `SHARED`: what goes with slip, and with loads
 
 
 class Correction(NamedTuple):
@@ -56,7 +58,7 @@ class Correction(NamedTuple):
     domain : operating points that it is for; slower and lighter ones are corrected as the slowest and lightest.
     conditions : operating points that were measured, columns `bearing_sim.estimation.response.CONDITIONS`, shape (k, 4).
     metrics : by which coordinates are multiplied before distances count, for slip and powers, and for loads; shape (2, c, c).
-    smoothing : of the splines for slip and powers, and for loads; shape (2,).
+    weights : of `bearing_sim.estimation.splines.spline_functions`, columns `SHARED`, shape (k + c + 1, 18).
     changes : what was found at the points, columns `SHARED` on the scales of the module, shape (k, 18).
     errors : at each point where it is left out: of slip [1] and of life, relative; shape (k, 2).
     two_states : conditions at which level ``planar`` has two states, and the slip of each, from ideal rolling first; shape (m, 6).
@@ -67,7 +69,7 @@ class Correction(NamedTuple):
     domain: Domain
     conditions: np.ndarray
     metrics: np.ndarray
-    smoothing: np.ndarray
+    weights: np.ndarray
     changes: np.ndarray
     errors: np.ndarray
     two_states: np.ndarray
@@ -117,16 +119,9 @@ class Correction(NamedTuple):
 
     def _changes_at(self, conditions):
         there, centres, found = self._there(conditions), self._there(self.conditions), np.empty((len(conditions), len(SHARED)))
-        for metric, smoothing, columns in zip(self.metrics, self.smoothing, _columns()):
-            weights = spline_weights(centres @ metric, self.changes[:, columns], smoothing)
-            found[:, columns] = spline_functions(there @ metric, centres @ metric) @ weights
+        for metric, columns in zip(self.metrics, _COLUMNS):
+            found[:, columns] = spline_functions(there @ metric, centres @ metric) @ self.weights[:, columns]
         return np.clip(found, self.changes.min(axis=0), self.changes.max(axis=0))
-
-
-def _columns() -> tuple[list[int], list[int]]:
-    """Return which columns of `SHARED` go with slip, and which with loads."""
-    loads = [SHARED.index(column) for column in range(*_FACTORS.indices(len(ANSWER)))]
-    return [column for column in range(len(SHARED)) if column not in loads], loads
 
 
 def changed(answers: np.ndarray, changes: np.ndarray) -> np.ndarray:
@@ -172,17 +167,17 @@ def fit_correction(domain: Domain, conditions: np.ndarray, answers: np.ndarray, 
     if len(there) < least:
         raise ValueError(f"{len(there)} of {len(conditions)} operating points have answers at both levels; expected {least} or more")
     changes, slips = changes[kept], others[kept, ANSWER.cage_slip]
-    metrics, smoothing, errors = [], [], []
-    for column, largest in ((_SLIP, _LARGEST_SLIP_ERROR), (_LOAD, _LARGEST_LIFE_ERROR)):
+    metrics, errors, weights = [], [], np.empty((len(there) + there.shape[1] + 1, len(SHARED)))
+    for columns, column, largest in zip(_COLUMNS, (_SLIP, _LOAD), (_LARGEST_SLIP_ERROR, _LARGEST_LIFE_ERROR)):
         values = changes[:, [column]]
         to_error = _slip_errors(slips) if column == _SLIP else _life_errors
-        metric, chosen = _best_spline(there, domain, values, to_error, largest)
+        metric, smoothing = _best_spline(there, domain, values, to_error, largest)
         metrics.append(metric)
-        smoothing.append(chosen)
-        errors.append(to_error(left_out(there @ metric, values, chosen)[:, 0]))
+        errors.append(to_error(left_out(there @ metric, values, smoothing)[:, 0]))
+        weights[:, columns] = spline_weights(there @ metric, changes[:, columns], smoothing)
     nothing = np.zeros((0, len(CONDITIONS) + 2))
     failed = int(np.count_nonzero(~kept))
-    return Correction(domain, conditions[kept], np.array(metrics), np.array(smoothing), changes, np.stack(errors, axis=1), nothing, failed, seconds)
+    return Correction(domain, conditions[kept], np.array(metrics), weights, changes, np.stack(errors, axis=1), nothing, failed, seconds)
 
 
 def _slip_errors(slips):
@@ -226,7 +221,7 @@ def measured_scene(scene: Scene, level: str) -> Scene:
     return replace(scene.at_level(level), heat=NoHeat())
 
 
-_ARRAYS = ("conditions", "metrics", "smoothing", "changes", "errors", "two_states")
+_ARRAYS = ("conditions", "metrics", "weights", "changes", "errors", "two_states")
 
 
 def write_correction(path: Path, correction: Correction) -> None:
@@ -244,9 +239,9 @@ def read_correction(path: Path) -> Correction | None:
         ends = file["domain"].tolist()
         domain = Domain((ends[0], ends[1]), (ends[2], ends[3]), (ends[4], ends[5]), ends[6], ends[7])
         failed, seconds = file["made"].tolist()
-        conditions, metrics, smoothing, changes, errors, two_states = (np.ascontiguousarray(file[name], float) for name in _ARRAYS)
-        whole = changes.shape == (len(conditions), len(SHARED)) and errors.shape == (len(conditions), 2) and metrics.shape[0] == len(smoothing) == 2
-        found = Correction(domain, conditions, metrics, smoothing, changes, errors, two_states, int(failed), seconds)
-        return found if whole and all(np.isfinite(each).all() for each in (conditions, metrics, smoothing, changes)) else None
+        conditions, metrics, weights, changes, errors, two_states = (np.ascontiguousarray(file[name], float) for name in _ARRAYS)
+        whole = changes.shape == (len(conditions), len(SHARED)) and errors.shape == (len(conditions), 2) and metrics.shape[0] == 2 and weights.shape[1] == len(SHARED)
+        found = Correction(domain, conditions, metrics, weights, changes, errors, two_states, int(failed), seconds)
+        return found if whole and all(np.isfinite(each).all() for each in (conditions, metrics, weights, changes)) else None
     except Exception:  # whatever a broken file makes its reader raise, the correction is built again
         return None
