@@ -99,7 +99,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
         progress = stack.enter_context(progress_bar(f"running {scene.name}{until}", plan.longest))
         started = time.perf_counter()
         announce_compilation(scene)
-        simulation = Simulation(scene)
+        simulation = Simulation(scene, table=_corrected_table(scene))
         simulation.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
         simulation.reset()
         begin_in_equilibrium(simulation, plan.shortest, plan.longest)
@@ -131,6 +131,16 @@ class _Plan(NamedTuple):
     longest: float  # s
     interval: float  # between samples [s]
     samples: int | None  # of a run of given length
+
+
+def _corrected_table(scene):
+    """Return the table that a scene at level steady wants corrected, from disk or built; None for all others, whose points are solved for."""
+    if scene.level != "steady" or scene.table.correction == "none":
+        return None
+    from bearing_sim.cli.table import build_with_progress
+
+    kelvin = scene.lubricant.temperature
+    return build_with_progress(scene, (kelvin, kelvin) if scene.heat.law == "none" else None)[0]
 
 
 def _plan(scene, seconds, most, rate) -> _Plan:
