@@ -1,17 +1,25 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What all tests share: hypothesis without deadlines (the first call compiles) and the same examples every time; a strict rerun.
+"""What all tests share: hypothesis without deadlines (the first call compiles) and the same examples every time; no kept fronts; a strict rerun.
 
 On several cores (``pytest -n auto --dist loadgroup``) the files run side by side, but never two that run something in real time.
 """
 
+import atexit
+import os
+import shutil
 import signal
 import subprocess
+import tempfile
 
 import pytest
 from hypothesis import settings
 
 settings.register_profile("bearing_sim", deadline=None, derandomize=True)
 settings.load_profile("bearing_sim")
+
+# What somebody has measured on this machine must change no test, also in the processes that tests start.
+os.environ["BEARING_SIM_FRONTS"] = tempfile.mkdtemp(prefix="bearing_sim_fronts_")
+atexit.register(shutil.rmtree, os.environ["BEARING_SIM_FRONTS"], ignore_errors=True)
 
 _REAL_TIME = {
     "test_bench_view",
@@ -20,6 +28,7 @@ _REAL_TIME = {
     "test_fleet",
     "test_frozen_viewer",
     "test_governor",
+    "test_governor_front",
     "test_launch_files",
     "test_live",
     "test_measure",

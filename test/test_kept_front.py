@@ -4,6 +4,7 @@
 import json
 import math
 import multiprocessing
+from unittest.mock import Mock
 
 import pytest
 from click.testing import CliRunner
@@ -149,11 +150,12 @@ def test_complete_overrides_give_any_scene_the_settings_of_the_measured_one():
         assert one.level != "spatial" or other.bearing.roller.slices == measured.bearing.roller.slices
 
 
-WORDS = ("trade", "deng2017_table1", "--course", "start", "--level", "steady", "--level", "slip", "--against", "slip", "--workers", "1", "--json")
+WORDS = ("trade", "deng2017_table1", "--course", "start", "--level", "steady", "--workers", "1", "--json")
 
 
 def test_a_trade_says_where_it_is_kept_unless_it_is_not(folder, monkeypatch):
     monkeypatch.setattr("bearing_sim.studies.trade._FACTORS", (1.0,))
+    monkeypatch.setattr("bearing_sim.studies.trade._REFERENCE", 0.1)
     result = CliRunner().invoke(main, [*WORDS, "--no-keep"])
     assert result.exit_code == 0, result.output
     assert json.loads(result.stdout)["kept"] is None and not folder.exists()
@@ -169,6 +171,13 @@ def test_a_trade_says_where_it_is_kept_unless_it_is_not(folder, monkeypatch):
     }
 
 
+def test_errors_against_a_level_that_leaves_something_out_are_not_kept(folder):
+    result = CliRunner().invoke(main, [*WORDS, "--against", "slip"])
+    assert result.exit_code == 0, result.output
+    assert json.loads(result.stdout)["kept"] is None and not folder.exists()
+    assert "not kept: errors against level slip say nothing of what it leaves out" in result.stderr
+
+
 def test_a_folder_that_cannot_be_written_is_a_warning(folder, monkeypatch):
     folder.write_text("a file stands where the folder should be")
     from bearing_sim.cli import trade as command
@@ -176,5 +185,5 @@ def test_a_folder_that_cannot_be_written_is_a_warning(folder, monkeypatch):
     monkeypatch.setattr("bearing_sim.studies.trade.kept_course", lambda found: course("idle"))
     said = []
     monkeypatch.setattr(command.click, "echo", lambda text, err=False: said.append(text))
-    assert command._keep(scene(), None) is None
+    assert command._keep(scene(), Mock(is_complete=True)) is None
     assert said[0].startswith("warning: the settings are not kept: ")

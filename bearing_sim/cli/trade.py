@@ -151,10 +151,14 @@ def trade(
 
 
 def _keep(scene, found):
-    """Keep the settings of a trade for later; return what is kept for the bearing, or None where that cannot be written."""
+    """Keep the settings of a trade for later; return what is kept for the bearing, or None where that cannot be or says nothing."""
     from bearing_sim.scene.kept_front import keep
     from bearing_sim.studies.trade import kept_course
 
+    if not found.is_complete:
+        level = found.reference_level
+        click.echo(f"not kept: errors against level {level} say nothing of what it leaves out; leave out --against, or give planar", err=True)
+        return None
     try:
         return keep(scene, kept_course(found))
     except OSError as error:

@@ -29,7 +29,9 @@ from bearing_sim.files.limits import JSON_FILE
 from bearing_sim.files.outputs import RefusedOutput, replaced
 from bearing_sim.files.reading import read_bytes
 
-FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "fronts"
+VARIABLE = "BEARING_SIM_FRONTS"
+"""Environment variable that names another folder for measured fronts than that in the user's cache."""
+FOLDER = Path(os.environ.get(VARIABLE) or Path(platformdirs.user_cache_dir("bearing_sim")) / "fronts")
 _PACKAGE = Path(__file__).resolve().parents[1]
 _SOURCES = ("numerics/*.py", "physics/*.py", "levels/**/*.py", "model/*.py", "simulation.py", "studies/trade.py", "studies/trade_course.py")
 _FORMAT = 1

@@ -21,6 +21,7 @@ from bearing_sim.levels.level import LEVELS
 from bearing_sim.levels.steady.table import Table, empty_table
 from bearing_sim.levels.steady.table_builder import obtain_table
 from bearing_sim.model.table_span import span_of
+from bearing_sim.scene.fidelity import WHIRLING
 from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, complete_overrides
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Integration, Scene, tolerance_overrides
@@ -114,6 +115,7 @@ class Trade(NamedTuple):
     own_error : of the reference.
     course : what was measured on.
     left_out : levels that cannot compute the scene, and why.
+    reference_level : of the reference.
     """
 
     measured: list[Traded]
@@ -122,6 +124,12 @@ class Trade(NamedTuple):
     own_error: Errors
     course: Course
     left_out: dict[str, str]
+    reference_level: str = "planar"
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether nothing is left out of the errors: the reference vibrates and whirls, or no level can that computes the scene."""
+        return self.reference_level in WHIRLING or all(level in self.left_out for level in WHIRLING)
 
     @property
     def simulated(self) -> float:
@@ -227,7 +235,7 @@ def trade(
     measured = [one._replace(overrides=complete_overrides(scene)) for one, scene in zip(measured, scenes)]
     described = f"{best} with tolerances x {factors[0]:g}"
     own = _errors(check, reference)
-    return Trade(measured, front_of(measured, own.slip), described, own, found, left_out)
+    return Trade(measured, front_of(measured, own.slip), described, own, found, left_out, best)
 
 
 def front_of(measured: Sequence[Traded], certain: float = 0.0) -> list[int]:
