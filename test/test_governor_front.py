@@ -58,6 +58,22 @@ def test_it_falls_from_the_setting_of_the_scene_along_the_front_to_the_fastest()
     assert names(settings_to_fall(scene("level=slip"), ALL)) == names([SLIP, STEADY])
 
 
+def test_a_corrected_table_that_is_not_on_disk_is_not_fallen_to(monkeypatch):
+    corrected = STEADY._replace(detail="corrected", overrides=("table.correction=planar",), errors=STEADY.errors | {"slip": 0.1})
+    kept = front(STEADY, corrected, PLANAR)
+    monkeypatch.setattr("bearing_sim.runtime.governor.cached_table", lambda scene: None)
+    assert names(settings_to_fall(scene(), kept)) == names([PLANAR, STEADY])
+    monkeypatch.setattr("bearing_sim.runtime.governor.cached_table", lambda scene: scene.table.correction)
+    assert names(settings_to_fall(scene(), kept)) == names([PLANAR, corrected])
+
+
+def test_a_setting_that_cannot_run_at_the_conditions_of_the_scene_is_left_out():
+    impossible = COARSE._replace(detail="impossible", overrides=("integration.fixed_step=9 ms",))
+    made = governor_of(Simulation(scene()), [PLANAR, impossible, COARSE])
+    assert [one.scene.integration.relative_tolerance for one in made._ladder] == [0.03, 0.09]
+    assert made._settings == [PLANAR, COARSE]
+
+
 def test_a_setting_that_is_hardly_faster_is_not_worth_a_change():
     near = setting("planar", "near", 6.0, 0.05, overrides=["integration.relative_tolerance=0.05"])
     assert "planar, near" not in names(settings_to_fall(scene(), front(PLANAR, near, COARSE)))

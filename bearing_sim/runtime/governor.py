@@ -13,8 +13,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from bearing_sim.scene.fidelity import lower_levels
+from bearing_sim.levels.steady.table_builder import cached_table
+from bearing_sim.scene.fidelity import NUMBERS, lower_levels
 from bearing_sim.scene.kept_front import KeptFront, KeptSetting, complete_overrides
+from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
 
@@ -175,8 +177,8 @@ def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
     """Return the settings from that of a scene to the fastest on the kept front of its bearing; empty where nothing is kept for where it operates.
 
     Each is faster than the one before by a quarter at least, and on the front of the settings that the governor can use: at the scene's own level
-    or a lower one that has everything the scene asks for, and without a fixed step, whose code is compiled separately.  Lower levels that were not
-    measured follow at the end, with errors that are not known.
+    or a lower one that has everything the scene asks for; without a fixed step, whose code is compiled separately; and with a corrected table only
+    where it is on disk.  Levels below all measured ones follow at the end, with errors that are not known.
 
     Parameters
     ----------
@@ -188,6 +190,7 @@ def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
     unknown = dict.fromkeys(front.courses[0].own_errors, math.nan)
     overrides, usable = complete_overrides(scene), (scene.level, *lower_levels(scene))
     measured = [one for one in front.settings() if one.level in usable and _is_adaptive(one) and not math.isnan(one.errors["slip"])]
+    measured = [one for one in measured if not _is_corrected(one) or cached_table(with_setting(scene, one)) is not None]
     own = next((one for one in front.settings() if (one.level, one.overrides) == (scene.level, overrides)), None)
     settings = [own or KeptSetting(scene.level, "as in the scene", overrides, math.nan, unknown)]
     slowest = own.real_time_factor if own is not None else max((one.real_time_factor for one in measured if one.level == scene.level), default=0.0)
@@ -195,13 +198,18 @@ def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
         if one.real_time_factor >= _WORTH_A_CHANGE * slowest:
             settings.append(one)
             slowest = one.real_time_factor
-    known = {one.level for one in measured} | {scene.level}
+    lowest = min(NUMBERS[one.level] for one in (settings[0], *measured))
     adaptive = dataclasses.replace(scene.integration, fixed_step=None)
     for level in usable:
-        if level not in known:
+        if NUMBERS[level] < lowest:
             lower = dataclasses.replace(scene, level=level, integration=adaptive)
             settings.append(KeptSetting(level, "not measured", complete_overrides(lower), math.nan, unknown))
     return settings if len(settings) > 1 else []
+
+
+def _is_corrected(setting: KeptSetting) -> bool:
+    """Return whether a setting needs a corrected table, which a node does not build."""
+    return any(each.startswith("table.correction=") and not each.endswith("=none") for each in setting.overrides)
 
 
 def _is_adaptive(setting: KeptSetting) -> bool:

@@ -32,11 +32,12 @@ from bearing_sim.runtime.remembering import note, recall, warm_start
 from bearing_sim.runtime.sink_registry import Sink, SinkRegistry
 from bearing_sim.runtime.solver import Solver, WallTimeSolver
 from bearing_sim.runtime.solver_threads import SolverThreads
+from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.fidelity import lower_levels
 from bearing_sim.scene.kept_front import KeptSetting
 from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.scene import Scene, Thresholds
-from bearing_sim.simulation import Simulation
+from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.stored_state.keeper import StateKeeper
 from bearing_sim.vibration.meter import CageSpeedMeter
 from bearing_sim.vibration.reading import Block
@@ -82,8 +83,15 @@ def governor_of(simulation: Simulation, settings: Sequence[KeptSetting] = ()) ->
         The scene's own operating conditions cannot be computed at one of them.
     """
     if settings:
-        faster = [warmed_up(with_setting(simulation.scene, setting)) for setting in settings[1:]]
-        return Governor([simulation, *faster], settings=settings)
+        ladder, chosen = [simulation], list(settings[:1])
+        for setting in settings[1:]:
+            try:
+                ladder.append(warmed_up(with_setting(simulation.scene, setting)))
+            except (IntegrationError, SceneError):  # it was measured at other conditions than the scene's own
+                continue
+            chosen.append(setting)
+        if len(ladder) > 1:
+            return Governor(ladder, settings=chosen)
     scene = dataclasses.replace(simulation.scene, integration=dataclasses.replace(simulation.scene.integration, fixed_step=None))
     lower = [warmed_up(dataclasses.replace(scene, level=level)) for level in lower_levels(scene)]
     return Governor([simulation, *lower]) if lower else None

@@ -33,7 +33,8 @@ VARIABLE = "BEARING_SIM_FRONTS"
 """Environment variable that names another folder for measured fronts than that in the user's cache."""
 FOLDER = Path(os.environ.get(VARIABLE) or Path(platformdirs.user_cache_dir("bearing_sim")) / "fronts")
 _PACKAGE = Path(__file__).resolve().parents[1]
-_SOURCES = ("numerics/*.py", "physics/*.py", "levels/**/*.py", "model/*.py", "simulation.py", "studies/trade.py", "studies/trade_course.py")
+_SOURCES = ("numerics/*.py", "physics/*.py", "levels/**/*.py", "model/*.py", "simulation.py", "estimation/*.py")
+_STUDIES = ("studies/trade.py", "studies/trade_course.py", "studies/correction.py")
 _FORMAT = 1
 _SLACK = 1.25  # factor by which a scene may operate outside of what was measured in speed and load; assumption
 _TEMPERATURE_SLACK = 10.0  # K, likewise
@@ -194,7 +195,7 @@ def _program() -> str:
             digest.update(version(name).encode())
         except PackageNotFoundError:
             pass
-    for pattern in _SOURCES:
+    for pattern in (*_SOURCES, *_STUDIES):
         for path in sorted(_PACKAGE.glob(pattern)):
             digest.update(path.relative_to(_PACKAGE).as_posix().encode() + path.read_bytes())
     return digest.hexdigest()

@@ -41,6 +41,7 @@ _REPEATS = 3
 _MOST_SLICES = 200  # of the settings; edge loads are compared with theirs
 _FIRST_REST, _LONGEST_REST, _RESTS = 20.0, 2000.0, 1e-4  # cage turns in which the start settles, and the change of slip that counts as rest
 _TABLE_HEADROOM = 1.02  # of a table of operating points above the highest speed of a course
+_MORE_SOURCES = ("studies/trade_course.py", "studies/correction.py", "estimation/*.py")  # that results depend on
 _ROUNDED = 5.0  # K, to which the oil temperatures of a table are
 
 
@@ -285,7 +286,7 @@ def _tasks(scene: Scene, course: Course, repeats: int) -> Iterator[Task]:
     kind = f"{scene.level}{'' if scene.integration.fixed_step is None else ', fixed step'}"
     temperatures = _temperatures(course) if scene.level == "steady" else ()
     for window in course.windows:
-        yield task(kind, measure, scene, window, temperatures, repeats, program_hash("studies/trade_course.py"))
+        yield task(kind, measure, scene, window, temperatures, repeats, program_hash(*_MORE_SOURCES))
 
 
 def measure(scene: Scene, window: Window, temperatures: tuple[float, ...], repeats: int, program: str) -> dict:
