@@ -234,6 +234,19 @@ def test_inputs_within_a_window_are_those_of_the_log():
             assert there.oil_temperature == pytest.approx(350.0 + np.floor(window.begin + at), abs=1.0) and there.oil_temperature % 1.0 == 0.0
 
 
+def test_a_table_that_cannot_be_corrected_fails_alone(monkeypatch):
+    plain, corrected = settings_of("steady")
+    monkeypatch.setattr("bearing_sim.studies.trade.settings_of", lambda level, quick: [corrected, SETTING, corrected])
+
+    def refuse(*_):
+        raise ValueError("too few points have answers")
+
+    monkeypatch.setattr("bearing_sim.studies.trade.obtain_corrected_table", refuse)
+    found = trade("deng2017_table1", [], ["slip"], quick=True, against="slip", workers=1)
+    assert [one.failure for one in found.measured] == ["too few points have answers", "", "too few points have answers"]
+    assert found.front == [1]
+
+
 def test_a_flight_is_measured_in_a_few_windows_and_says_so():
     times, inputs, in_gap = log_of(lambda times: np.full(len(times), 4700.0), 4680.0, 1.0)
     course = windows_of("flight.mcap", SCENE, times, inputs, in_gap)

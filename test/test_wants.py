@@ -91,6 +91,13 @@ def test_a_scene_recorded_after_the_choice_is_the_same_without_the_front(monkeyp
     assert "level: spatial" in text and "slip: 0.003" in text
 
 
+def test_a_corrected_table_is_chosen_with_the_command_that_builds_it():
+    keep(HERE, course(*ALL, STEADY._replace(errors=PLANAR.errors, overrides=("integration.fixed_step=null", "table.correction=planar"))))
+    chosen = scene(*AUTO)
+    assert chosen.level == "steady" and chosen.table.correction == "planar"
+    assert chosen.level_reason.endswith("; a node needs its table: bearing-sim table deng2017_table1")
+
+
 def test_edge_loads_have_an_error_only_where_slices_were_measured():
     keep(HERE, course())
     assert scene("level=auto", "wants={edge_loads: 10 %}").bearing.roller.slices == 20

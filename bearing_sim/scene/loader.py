@@ -267,7 +267,7 @@ def _with_level(tree: Mapping, origin: str) -> Mapping:
         for setting in candidates(scene, errors, kept):
             chosen = _with_setting(tree, setting)
             if _is_valid(chosen):
-                return {**chosen, "level_reason": reason_of(setting, errors, kept.at(scene))}
+                return {**chosen, "level_reason": reason_of(setting, errors, kept.at(scene), origin)}
         found = without_measurement(scene, errors, kept, origin)
     if found.level is None:
         detail = {"type": PydanticCustomError("no_level", "{reason}", {"reason": found.reason}), "loc": ("level",), "input": "auto"}

@@ -116,15 +116,24 @@ def able_levels(scene) -> list[str]:
     return levels_with([effect for effect in asked_for(scene) if effect.field != "integration.fixed_step"])
 
 
-def reason_of(setting: KeptSetting, errors: Mapping[str, float], front: KeptFront) -> str:
-    """Return in one line why a setting was chosen: its measured errors beside those wanted, its speed, and on which courses."""
+def reason_of(setting: KeptSetting, errors: Mapping[str, float], front: KeptFront, origin: str) -> str:
+    """Return in one line why a setting was chosen: its measured errors beside those wanted, its speed, and on which courses.
+
+    Parameters
+    ----------
+    setting, errors : see `within`.
+    front : of the courses that count.
+    origin : name of the scene for the command that builds a corrected table.
+    """
     courses = ", ".join(dict.fromkeys(course.name for course in front.courses))
     found = ", ".join(_beside(name, most, setting) for name, most in errors.items())
     factor = setting.real_time_factor
     spare = f"{100.0 * (1.0 - 1.0 / factor):.2g} % of a core to spare" if factor > 1.0 else "too slow to follow a live bearing"
+    corrected = any(each.startswith("table.correction=") and not each.endswith("=none") for each in setting.overrides)
+    table = f"; a node needs its table: bearing-sim table {shlex.quote(origin)}" if corrected else ""
     return (
         f"level {setting.level} chosen with {setting.detail}, the fastest setting whose measured errors keep the wants: {found}; measured on this "
-        f"bearing and machine ({courses}) at {factor:.3g} times real time, {spare}"
+        f"bearing and machine ({courses}) at {factor:.3g} times real time, {spare}{table}"
     )
 
 

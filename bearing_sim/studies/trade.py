@@ -216,17 +216,16 @@ def trade(
     tight = [dataclasses.replace(able[best], integration=able[best].integration.with_tolerances(factor)) for factor in factors]
     settings = [setting for level in wanted for setting in settings_of(level, quick)]
     scenes = [load_scene(name, [*overrides, f"level={setting.level}", *setting.overrides]) for setting in settings]
-    if "steady" in wanted:
-        scenes = [_spanning(scene, found) if scene.level == "steady" else scene for scene in scenes]
-        for scene in scenes:
-            if scene.level == "steady":  # before its time is taken
-                obtain_corrected_table(scene, _temperatures(found), workers)
+    scenes = [_spanning(scene, found) if scene.level == "steady" else scene for scene in scenes]
+    without = {k: why for k, scene in enumerate(scenes) if scene.level == "steady" and (why := _why_no_table(scene, found, workers))}
     tasks = [task for scene in tight for task in _tasks(scene, found, 1)]
-    tasks += [task for scene in scenes for task in _tasks(scene, found, _REPEATS)]
+    tasks += [task for k, scene in enumerate(scenes) if k not in without for task in _tasks(scene, found, _REPEATS)]
     with Journal(journal) as kept:
         results = run_tasks(tasks, kept, workers, None, progress)
     size = len(found.windows)
     runs = [results[begin : begin + size] for begin in range(0, len(results), size)]
+    for k, why in sorted(without.items()):
+        runs.insert(2 + k, [{"failure": why}])
     for run in runs[:2]:
         if failure := _failure(run):
             raise IntegrationError(failure)
@@ -375,6 +374,15 @@ def _temperatures(course: Course) -> tuple[float, float]:
     """Return between which oil temperatures a table is for a course [K]; rounded where they vary, so that courses share tables."""
     low, high = course.extent()["oil_temperature"]
     return (low, high) if low == high else (_ROUNDED * math.floor(low / _ROUNDED), _ROUNDED * math.ceil(high / _ROUNDED))
+
+
+def _why_no_table(scene: Scene, course: Course, workers: int | None) -> str:
+    """Build the table of a scene if it is not on disk, before any time is taken; return why there is none, or an empty text."""
+    try:
+        obtain_corrected_table(scene, _temperatures(course), workers)
+    except (SceneError, ValueError, IntegrationError) as error:
+        return str(error)
+    return ""
 
 
 def _spanning(scene: Scene, course: Course) -> Scene:
