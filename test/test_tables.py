@@ -327,7 +327,7 @@ def test_broken_file_is_built_anew(small, monkeypatch):
     path = table_path(scene, span_of(scene))
     whole = path.read_bytes()
     path.write_bytes(whole[:1000])
-    monkeypatch.setattr(store, "build_table", lambda *_: (table, quality))
+    monkeypatch.setattr(store, "build_table", lambda *_, **__: (table, quality))
     assert Simulation(scene).takes_profiles is False
     assert obtain_table(scene)[1] == quality and read_table(path) is not None
     assert Simulation(scene).takes_profiles is True

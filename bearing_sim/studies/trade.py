@@ -309,6 +309,8 @@ def measure(scene: Scene, window: Window, temperatures: tuple[float, ...], repea
         first = _begun(scene, window, table, start, nodes)
         run = _look_up if first.takes_profiles else _march
         first.advance(1e-6)  # compiles
+        if first.takes_profiles:
+            first.advance_profile(np.full(1, 1e-6), np.array([first.inputs]))
         results, spent = run(_begun(scene, window, table, start, nodes), window)
         for _ in range(repeats - 1):
             if spent > _ENOUGH:

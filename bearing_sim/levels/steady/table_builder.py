@@ -61,8 +61,8 @@ class Quality(NamedTuple):
     slip_error_95: float  # 95th percentile
     life_error: float  # relative
     life_error_95: float
-    correction_slip_error: float = math.nan  # of a correction, at points left out of it, root mean square; NaN without one
-    correction_life_error: float = math.nan  # relative, likewise
+    correction_slip_error: float = 0.0  # of a correction, at points left out of it, root mean square; 0 without one
+    correction_life_error: float = 0.0  # relative, likewise
 
 
 class Corrects(Protocol):
@@ -179,7 +179,7 @@ def build_table(
             tolerance,
             float(np.mean(fractions <= 1.0)),
             *(float(np.nanquantile(error, q)) for error in (slip, life) for q in (1.0, 0.95)),
-            *((math.nan, math.nan) if correction is None else (correction.slip_error, correction.life_error)),
+            *((0.0, 0.0) if correction is None else (correction.slip_error, correction.life_error)),
         )
     return table, quality
 
