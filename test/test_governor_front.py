@@ -180,6 +180,17 @@ def test_the_live_model_publishes_the_setting_and_its_errors():
     assert keys["setting"] == "planar, tolerances x 3" and float(keys["measured slip error [fraction]"]) == pytest.approx(0.0006)
 
 
+@pytest.mark.parametrize(("loads", "is_known"), [((400.0, 1000.0), True), ((2000.0, 5000.0), False)])
+def test_errors_are_published_only_where_they_were_measured(loads, is_known):
+    (measured,) = front(PLANAR, COARSE, extent=EVERYWHERE | {"radial_load": loads}).courses
+    planar = FakeLevel("planar")
+    bench = Bench(simulation=planar, governor=Governor([planar, FakeLevel("planar")], settings=[PLANAR, COARSE], courses=[measured]))
+    bench.run(0.5)  # at 800 N
+    error = bench.live.condition(bench.now_ns).values["measured slip error [fraction]"]
+    bench.live.close()
+    assert math.isnan(error) != is_known
+
+
 def test_without_a_governor_the_errors_are_not_known():
     bench = Bench()
     values = bench.live.condition(bench.now_ns).values

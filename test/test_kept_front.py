@@ -153,6 +153,7 @@ def test_complete_overrides_give_any_scene_the_settings_of_the_measured_one():
 WORDS = ("trade", "deng2017_table1", "--course", "start", "--level", "slip", "--workers", "1", "--json")
 
 
+@pytest.mark.long
 def test_a_trade_says_where_it_is_kept_unless_it_is_not(folder, monkeypatch):
     monkeypatch.setattr("bearing_sim.studies.trade._FACTORS", (1.0,))
     monkeypatch.setattr("bearing_sim.studies.trade._REFERENCE", 0.1)

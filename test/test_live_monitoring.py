@@ -101,6 +101,9 @@ class Fallen:
     def consider(self, simulated, spent):
         return None
 
+    def is_measured_at(self, sample):
+        return True
+
     def restart(self):
         return self._simulation
 

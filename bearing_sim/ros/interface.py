@@ -38,7 +38,7 @@ from bearing_sim.runtime.health import Condition, Phase, not_running
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
 from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene.fidelity import hint
-from bearing_sim.scene.kept_front import KeptSetting, read_front
+from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, read_front
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import messages, with_values
@@ -244,6 +244,7 @@ class BearingInterface:
         self._response: ResponseModel | None = None  # of the bearing to its uncertain fields
         self._governor: Governor | None = None
         self._settings: list[KeptSetting] = []  # measured ones, along which the governor falls
+        self._courses: tuple[KeptCourse, ...] = ()  # that these were measured on
         self._new_governor: Governor | None = None  # made on the warm-up thread, taken over at the next review
         self._compiling: subprocess.Popen | None = None
         self._last_level: Level | None = None
@@ -288,11 +289,12 @@ class BearingInterface:
             self._response = kept_response(self.scene) if self.scene.estimation.is_asked else None
             simulation = warmed_up(self.scene)
             governs = self._shared.governor and not follows_clock(self._node)  # with sim time no time is skipped
-            self._settings = settings_to_fall(self.scene, read_front(self.scene))
+            kept = read_front(self.scene)
+            self._settings, self._courses = settings_to_fall(self.scene, kept), () if kept is None else kept.at(self.scene).courses
             if governs and levels_to_compile(self.scene):
                 self._compiling = start_compiling(self.scene, lower=True)
             elif governs:
-                self._governor = governor_of(simulation, self._settings)
+                self._governor = governor_of(simulation, self._settings, self._courses)
             self._simulation = simulation
         except IntegrationError as error:
             self.error = f"the scene's own operating conditions cannot be computed: {error}"
@@ -579,7 +581,7 @@ class BearingInterface:
     def _make_governor(self) -> None:
         """Make a governor, on the thread of `WarmUp`."""
         try:
-            self._new_governor = governor_of(self._simulation, self._settings)
+            self._new_governor = governor_of(self._simulation, self._settings, self._courses)
         except IntegrationError as error:
             self._logger.warning(f"the governor has no level of lower fidelity to use: {error}")
 

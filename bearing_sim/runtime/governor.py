@@ -13,9 +13,11 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.scene.fidelity import NUMBERS, lower_levels
-from bearing_sim.scene.kept_front import KeptFront, KeptSetting, complete_overrides
+from bearing_sim.scene.kept_front import KeptCourse, KeptFront, KeptSetting, complete_overrides
 from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
@@ -48,10 +50,11 @@ class Governor:
     ladder : simulations of one bearing at its settings, compiled, the wanted one first, each faster than the one before.
     patience : time for which the setting above must be predicted to be fast enough before it is tried again [s].
     settings : those of the ladder as measured (see `settings_to_fall`); empty where nothing is known but the levels.
+    courses : that they were measured on.
     """
 
-    def __init__(self, ladder: Sequence[Simulation], patience: float = 5.0, settings: Sequence[KeptSetting] = ()):
-        self._ladder, self._patience, self._settings = list(ladder), patience, list(settings)
+    def __init__(self, ladder: Sequence[Simulation], patience: float = 5.0, settings: Sequence[KeptSetting] = (), courses: Sequence[KeptCourse] = ()):
+        self._ladder, self._patience, self._settings, self._courses = list(ladder), patience, list(settings), tuple(courses)
         self._cost_ratios = [math.nan] * len(self._ladder)  # cost of a level over that of the one below
         self._begin(0)
         self._wait, self._came_up = patience, False
@@ -90,6 +93,12 @@ class Governor:
     def life_error(self) -> float:
         """Measured error of the life of the setting that runs, relative; NaN where it was not measured."""
         return self._settings[self._rung].errors.get("life", math.nan) if self._settings else math.nan
+
+    def is_measured_at(self, sample: np.void) -> bool:
+        """Return whether errors were measured where a sample operates, or nearly so; true where it is not known on what they were."""
+        load = math.hypot(sample["load_y"], sample["load_z"])
+        point = float(sample["shaft_speed"]), load, float(sample["oil_temperature"])
+        return not self._courses or any(course.covers_point(*point) for course in self._courses)
 
     def _name(self, rung: int) -> str:
         return self._settings[rung].name if self._settings else ""

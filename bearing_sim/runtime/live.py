@@ -34,7 +34,7 @@ from bearing_sim.runtime.solver import Solver, WallTimeSolver
 from bearing_sim.runtime.solver_threads import SolverThreads
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.fidelity import lower_levels
-from bearing_sim.scene.kept_front import KeptSetting
+from bearing_sim.scene.kept_front import KeptCourse, KeptSetting
 from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import IntegrationError, Simulation
@@ -67,7 +67,7 @@ def warmed_up(scene: Scene) -> Simulation:
     return simulation
 
 
-def governor_of(simulation: Simulation, settings: Sequence[KeptSetting] = ()) -> Governor | None:
+def governor_of(simulation: Simulation, settings: Sequence[KeptSetting] = (), courses: Sequence[KeptCourse] = ()) -> Governor | None:
     """Return a governor over a simulation's settings, or its level and the levels of lower fidelity that support its scene; None if there are none.
 
     Their code is compiled or loaded here.  Without measured settings lower levels use the scene's tolerances.
@@ -76,6 +76,7 @@ def governor_of(simulation: Simulation, settings: Sequence[KeptSetting] = ()) ->
     ----------
     simulation : at the wanted setting.
     settings : from that of the simulation to the fastest (see `bearing_sim.runtime.governor.settings_to_fall`); empty where nothing was measured.
+    courses : that they were measured on.
 
     Raises
     ------
@@ -91,7 +92,7 @@ def governor_of(simulation: Simulation, settings: Sequence[KeptSetting] = ()) ->
                 continue
             chosen.append(setting)
         if len(ladder) > 1:
-            return Governor(ladder, settings=chosen)
+            return Governor(ladder, settings=chosen, courses=courses)
     scene = dataclasses.replace(simulation.scene, integration=dataclasses.replace(simulation.scene.integration, fixed_step=None))
     lower = [warmed_up(dataclasses.replace(scene, level=level)) for level in lower_levels(scene)]
     return Governor([simulation, *lower]) if lower else None
@@ -369,7 +370,7 @@ class Model:
         return ""
 
     def _setting_values(self) -> dict[str, object]:
-        """Return the setting that runs and its measured errors for diagnostics; NaN where they were not measured."""
+        """Return the setting that runs and its measured errors for diagnostics; NaN where they were not measured, as at other speeds or loads."""
         return {"setting": self._running_setting or "not measured", **dict.fromkeys(SETTING_ERRORS, math.nan)}
 
     def _take(self, items: Iterable, now: float) -> None:
@@ -579,7 +580,8 @@ class LiveModel(Model):
         return self._governor.setting if self._governor is not None else ""
 
     def _setting_values(self) -> dict[str, object]:
-        if self._governor is None:
+        newest = self.solver.newest
+        if self._governor is None or newest is not None and not self._governor.is_measured_at(newest):
             return super()._setting_values()
         return super()._setting_values() | dict(zip(SETTING_ERRORS, (self._governor.slip_error, self._governor.life_error)))
 

@@ -87,13 +87,15 @@ class KeptCourse(NamedTuple):
 
     def covers(self, scene) -> bool:
         """Return whether a scene operates where this course was measured, or nearly so; a shaft at rest is everywhere."""
-        values = _operating(scene)
-        if values["shaft_speed"] == 0.0:
+        return self.covers_point(scene.operating.shaft_speed, scene.operating.radial_load, scene.lubricant.temperature)
+
+    def covers_point(self, shaft_speed: float, radial_load: float, oil_temperature: float) -> bool:
+        """Return whether this course was measured at a speed [rad/s], load [N] and oil temperature [K], or nearly so; see `covers`."""
+        if shaft_speed == 0.0:
             return True
-        low, high = self.extent["oil_temperature"]
-        if not low - _TEMPERATURE_SLACK <= values["oil_temperature"] <= high + _TEMPERATURE_SLACK:
-            return False
-        return all(self.extent[name][0] / _SLACK <= values[name] <= self.extent[name][1] * _SLACK for name in ("shaft_speed", "radial_load"))
+        (slow, fast), (low, high), (cold, warm) = (self.extent[name] for name in _INPUTS)
+        is_warm = cold - _TEMPERATURE_SLACK <= oil_temperature <= warm + _TEMPERATURE_SLACK
+        return is_warm and slow / _SLACK <= abs(shaft_speed) <= fast * _SLACK and low / _SLACK <= radial_load <= high * _SLACK
 
 
 class KeptFront(NamedTuple):
@@ -150,11 +152,6 @@ def _worst(settings: list[KeptSetting]) -> KeptSetting:
         for name in settings[0].errors
     }
     return settings[0]._replace(errors=errors, real_time_factor=min(one.real_time_factor for one in settings))
-
-
-def _operating(scene) -> dict[str, float]:
-    operating = scene.operating
-    return {"shaft_speed": abs(operating.shaft_speed), "radial_load": operating.radial_load, "oil_temperature": scene.lubricant.temperature}
 
 
 def extent_in_words(extent: Mapping[str, tuple[float, float]]) -> str:

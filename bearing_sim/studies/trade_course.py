@@ -188,6 +188,7 @@ def windows_of(
             f"{name}: the shaft turns for at most {longest:.3g} turns of the cage without a stop or a gap; expected {_FEWEST_TURNS:g} or more in one "
             f"window: give a longer log, or a built-in course ({', '.join(OUTLINES)})"
         )
+    turning = float(sum(span.times[-1] - span.times[0] for span in spans))
     turns = min(turns, longest)
     spans = [span for span in spans if span.turns >= turns * (1.0 - 1e-9)]
     count = max(min(count, math.floor(sum(span.turns for span in spans) / turns * (1.0 + 1e-9))), 1)
@@ -197,7 +198,6 @@ def windows_of(
     for middle in (np.arange(count) + 0.5) / count * reached[-1]:
         index = min(int(np.searchsorted(reached, middle, "right")) - 1, len(spans) - 1)
         windows.append(spans[index].window(spans[index].times[0] + min(middle - reached[index], free[index]), turns))
-    turning = float(sum(span.times[-1] - span.times[0] for span in spans))
     return Course(name, tuple(windows), turning, float(times[-1] - times[0]))
 
 
