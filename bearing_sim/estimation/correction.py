@@ -240,7 +240,8 @@ def read_correction(path: Path) -> Correction | None:
         domain = Domain((ends[0], ends[1]), (ends[2], ends[3]), (ends[4], ends[5]), ends[6], ends[7])
         failed, seconds = file["made"].tolist()
         conditions, metrics, weights, changes, errors, two_states = (np.ascontiguousarray(file[name], float) for name in _ARRAYS)
-        whole = changes.shape == (len(conditions), len(SHARED)) and errors.shape == (len(conditions), 2) and metrics.shape[0] == 2 and weights.shape[1] == len(SHARED)
+        shapes = changes.shape == (len(conditions), len(SHARED)), errors.shape == (len(conditions), 2)
+        whole = all(shapes) and metrics.shape[0] == 2 and weights.shape[1] == len(SHARED)
         found = Correction(domain, conditions, metrics, weights, changes, errors, two_states, int(failed), seconds)
         return found if whole and all(np.isfinite(each).all() for each in (conditions, metrics, weights, changes)) else None
     except Exception:  # whatever a broken file makes its reader raise, the correction is built again
