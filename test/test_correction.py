@@ -128,7 +128,7 @@ def test_without_a_table_a_scene_that_asks_for_a_correction_says_how_one_is_buil
 def test_tables_with_and_without_a_correction_are_kept_apart():
     plain, corrected = (load_scene("deng2017_table1", ["level=steady", f"table.correction={word}"]) for word in ("none", "planar"))
     assert table_builder.table_path(plain, span_of(plain)) != table_builder.table_path(corrected, span_of(corrected))
-    domain = studied.domain_of(corrected)
+    domain = studied.correction_domain(corrected)
     heavier = load_scene(plain, ["bearing.cage.mass=2 kg"])  # which changes nothing at level steady
     assert correction_path(plain, domain) == correction_path(corrected, domain) != correction_path(heavier, domain)
 

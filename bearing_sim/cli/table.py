@@ -152,9 +152,9 @@ def _report(scene, table, quality, answers) -> dict:
 def _correction_of(scene) -> dict | None:
     """Return what the correction of a scene's table was measured from and how sure it is, or None where there is none."""
     from bearing_sim.estimation.correction import correction_path, read_correction
-    from bearing_sim.estimation.response import domain_of
+    from bearing_sim.studies.correction import correction_domain
 
-    found = read_correction(correction_path(scene, domain_of(scene))) if scene.table.correction != "none" else None
+    found = read_correction(correction_path(scene, correction_domain(scene))) if scene.table.correction != "none" else None
     if found is None:
         return None
     return {

@@ -32,6 +32,7 @@ _BATCH = 8  # points of a task
 _CANDIDATES = 4096
 _PURSUED = 10.0  # times the goals; larger errors, such as at a jump from one state to another, do not draw more points
 _NEIGHBOURS = 8
+_SLOWEST = 0.1  # of the largest speed; slower points are corrected as these
 _SHORTEST, _LONGEST = 24.0, 400.0  # turns of an ideal cage
 _TELLING = 0.02  # slip from which on another state is looked for
 _MORE = 2.0  # times the slip found, at which the search for another state begins
@@ -99,6 +100,18 @@ def _answers(outcome: Outcome, scene: Scene) -> np.ndarray:
     return answers
 
 
+def correction_domain(scene: Scene, temperatures: tuple[float, float] | None = None) -> Domain:
+    """Return the operating points over which a correction is measured: those of the response but for slow ones, which hardly differ and take long.
+
+    Parameters
+    ----------
+    scene : of any level.
+    temperatures : lowest and highest oil temperature [K], instead of the scene's.
+    """
+    domain = domain_of(scene, temperatures)
+    return domain._replace(speeds=(_SLOWEST * domain.speeds[1], domain.speeds[1]))
+
+
 def obtain_correction(
     scene: Scene, temperatures: tuple[float, float] | None = None, workers: int | None = None, dask: str | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None, rebuild: bool = False, most: int = MOST_POINTS,
@@ -121,7 +134,7 @@ def obtain_correction(
     ClusterError, JournalInUse
         See `bearing_sim.sweep.tasks`.
     """
-    domain = domain_of(scene, temperatures)
+    domain = correction_domain(scene, temperatures)
     path = correction_path(scene, domain)
     found = None if rebuild else read_correction(path)
     if found is None:
