@@ -14,7 +14,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from bearing_sim.estimation.correction import Correction, correction_path, fit_correction, measured_scene, read_correction, write_correction
-from bearing_sim.estimation.response import conditions_at, coordinates, domain_of, embedded
+from bearing_sim.estimation.response import Domain, conditions_at, coordinates, domain_of, embedded
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import Quality, obtain_table, solve_points
