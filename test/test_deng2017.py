@@ -20,6 +20,8 @@ from bearing_sim.sweep.grid import point_count, read_axis
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, read_table
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
@@ -45,7 +47,6 @@ def column(table, x, y, **fixed):
     return np.array([[row[x], row[y]] for row in sorted(rows, key=lambda row: row[x])]).T
 
 
-@pytest.mark.long
 def test_every_claim_is_judged_at_both_levels_and_every_figure_of_the_paper_is_drawn(about):
     judged = {(each["claim"], each["level"]) for each in about["claims"]}
     assert judged == {(0, "elastic ring")} | {(number, level) for number in range(1, 10) for level in LEVELS}

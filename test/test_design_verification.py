@@ -22,6 +22,8 @@ from bearing_sim.sweep.grid import read_axis
 from bearing_sim.sweep.point import FAILED, OK, REFUSED, UNSETTLED
 from bearing_sim.sweep.tasks import Journal
 
+pytestmark = pytest.mark.long
+
 MIDDLE, NOMINAL_SPEED, NOMINAL_LOAD = 34.8625e-3, 45000 * math.pi / 30, 800.0
 LIMITS = Limits(10.0, 300.0)
 
@@ -245,7 +247,6 @@ def life_at_planar(low, d_value):
     return 1.0 / (1.0 / run.advance(0.2, samples=400)["rating_life"]).mean()
 
 
-@pytest.mark.long
 def test_a_raceway_that_planar_gives_two_thirds_of_the_life_asked_for_is_not_recommended(elliptical):
     report, _ = elliptical
     assert (report["level"], report["verify_level"]) == ("slip", "planar"), "the next level is the default"

@@ -16,6 +16,8 @@ from bearing_sim.cli import study
 from bearing_sim.studies.situations import SITUATIONS
 from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
@@ -51,7 +53,6 @@ def reported(command_output):
     return json.loads(command_output)
 
 
-@pytest.mark.long
 def test_there_are_six(reported):
     assert len(reported) == 6 and list(reported) == [situation.name for situation in SITUATIONS]
 

@@ -20,6 +20,8 @@ from std_srvs.srv import Trigger  # noqa: E402
 from bearing_sim.recording.reader import Recording  # noqa: E402
 from bearing_sim.ros.workers import passed_arguments, process_count, shares  # noqa: E402
 
+pytestmark = pytest.mark.long
+
 NAMES = ("front", "middle", "rear")
 
 
@@ -115,7 +117,6 @@ def fleet(tmp_path_factory):
     one.close()
 
 
-@pytest.mark.long
 @pytest.mark.timeout(280)
 def test_a_node_with_workers_is_one_node_with_the_topics_services_and_statuses_that_it_has_without(fleet):
     assert fleet.change("configure") and fleet.change("activate")
@@ -146,7 +147,6 @@ def test_parameters_of_the_node_reach_the_worker_of_their_bearing_and_are_refuse
     fleet.drive_until(lambda: told() == "76.85", "the model of the worker has the temperature")
 
 
-@pytest.mark.long
 @pytest.mark.timeout(280)
 def test_a_worker_that_is_killed_is_told_and_started_again_and_the_others_go_on(fleet):
     before = fleet.workers()
@@ -158,7 +158,6 @@ def test_a_worker_that_is_killed_is_told_and_started_again_and_the_others_go_on(
     fleet.drive_until(lambda: "SIGKILL" not in fleet.told("front"), "it is told no longer")
 
 
-@pytest.mark.long
 @pytest.mark.timeout(280)
 def test_cleaning_up_ends_the_workers_and_configuring_again_starts_others_which_end_with_the_node_and_complete_recordings(fleet):
     before = fleet.workers()

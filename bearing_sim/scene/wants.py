@@ -15,6 +15,7 @@ from bearing_sim.scene.fidelity import LEVELS, WANTS, WHIRLING, Choice, asked_fo
 from bearing_sim.scene.kept_front import KeptFront, KeptSetting, extent_in_words
 from bearing_sim.scene.quantity import to_si
 
+_ROUNDED = 1.0 + 1e-9  # an error in points and the same one as a fraction are equal
 _LARGEST = 3.0  # times a wanted error that the largest error of any bin or window may be
 
 
@@ -91,6 +92,7 @@ def within(setting: KeptSetting, errors: Mapping[str, float], own: Mapping[str, 
         how = MEASURED[name]
         reference = own.get(how.error, math.nan)
         error = max(setting.errors[how.error], reference) if reference == reference else setting.errors[how.error]
+        most *= _ROUNDED
         if not (how.scale * error <= most and how.scale * setting.errors[how.largest] <= _LARGEST * most):  # NaN fails here
             return False
     return True
