@@ -25,6 +25,8 @@ from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.messages.diagnostics import SUBJECTS  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
 
+pytestmark = pytest.mark.long
+
 pytestmark = pytest.mark.timeout(300)
 ANALYZERS = Path(__file__).resolve().parents[1] / "launch_scripts" / "diagnostic_analyzers.yaml"
 SECOND = 1_000_000_000
@@ -156,7 +158,6 @@ def test_a_healthy_start_from_the_first_report_on_is_never_stale_and_never_an_er
     assert last["bearing_node/front: slip"].hardware_id == "A-17"
 
 
-@pytest.mark.long
 def test_each_fault_is_in_its_subject_of_its_bearing_alone_and_its_cure_is_seen(fleet):
     client = fleet.client
     client.worst = OK
@@ -179,7 +180,6 @@ def test_each_fault_is_in_its_subject_of_its_bearing_alone_and_its_cure_is_seen(
     assert client.worst == ERROR
 
 
-@pytest.mark.long
 def test_a_pause_and_every_state_of_the_node_are_as_healthy_as_a_run_and_its_end_is_stale(fleet):
     client, process = fleet.client, fleet.process
     assert client.call(SetBool, "/front/pause", SetBool.Request(data=True), process).success
@@ -198,7 +198,6 @@ def test_a_pause_and_every_state_of_the_node_are_as_healthy_as_a_run_and_its_end
     assert {level for path, level in levels.items() if path != "/Bearings"} == {STALE}
 
 
-@pytest.mark.long
 def test_under_sim_time_a_clock_that_is_absent_stands_or_jumps_is_told_and_nothing_is_ever_stale(tmp_path):
     domain = fresh_domain()
     parameters = ("use_sim_time:=true", "clock_jump_back:=error", "publish_rate:=10.0")
