@@ -25,9 +25,7 @@ from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.messages.diagnostics import SUBJECTS  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
 
-pytestmark = pytest.mark.long
-
-pytestmark = pytest.mark.timeout(300)
+pytestmark = [pytest.mark.long, pytest.mark.timeout(300)]
 ANALYZERS = Path(__file__).resolve().parents[1] / "launch_scripts" / "diagnostic_analyzers.yaml"
 SECOND = 1_000_000_000
 _STATUSES = 1 + len(SUBJECTS)  # of a bearing
