@@ -34,9 +34,9 @@ from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.heat import NoHeat
 from bearing_sim.scene.scene import Scene
 
-VERSION = 1  # of the files
-SHARED = tuple(column for column in range(len(ANSWER)) if column != ANSWER.lag)
-"""Columns of `bearing_sim.levels.steady.operating_point.ANSWER` that are corrected: all but the lag."""
+VERSION = 2  # of the files
+LIFE_EXPONENT = 4.0
+"""A life falls with this power of the equivalent loads: 4.5 times 8/9 (`bearing_sim.physics.rating_life.rating_life_revolutions`)."""
 _FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)
 _POWERS = slice(ANSWER.shaft_power, len(ANSWER))
 _LEAST_POWER = 1e-9  # W; of a shaft that puts in less no share is taken
@@ -44,10 +44,8 @@ _SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES = (1.0, 2.0), (0.5, 1.0), (0.35
 _SMOOTHING = (0.0, 1e-3, 1e-2, 1e-1)  # that are tried
 _LARGEST_SLIP_ERROR, _LARGEST_LIFE_ERROR = 0.01, 0.1  # larger ones are of jumps from one state to another, which no spline follows
 _NEIGHBOURS = 8  # points whose errors tell that between them
-_LIFE_EXPONENT = 4.0  # by which an error of a load is one of a life (ISO 281 for line contact: 10/3; of laminae, ISO/TS 16281: 9/2)
-_SLIP, _LOAD = SHARED.index(ANSWER.cage_slip), SHARED.index(ANSWER.inner_lamina_load)
-_LOADS = [SHARED.index(column) for column in range(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)]
-_COLUMNS = ([column for column in range(len(SHARED)) if column not in _LOADS], _LOADS)  # of `SHARED`: what goes with slip, and with loads
+_LOADS = list(range(len(ANSWER))[_FACTORS])
+_COLUMNS = ([column for column in range(len(ANSWER)) if column not in _LOADS], _LOADS)  # what goes with slip, and with loads
 
 
 class Correction(NamedTuple):
@@ -58,8 +56,8 @@ class Correction(NamedTuple):
     domain : operating points that it is for; slower and lighter ones are corrected as the slowest and lightest.
     conditions : operating points that were measured, columns `bearing_sim.estimation.response.CONDITIONS`, shape (k, 4).
     metrics : by which coordinates are multiplied before distances count, for slip and powers, and for loads; shape (2, c, c).
-    weights : of `bearing_sim.estimation.splines.spline_functions`, columns `SHARED`, shape (k + c + 1, 18).
-    changes : what was found at the points, columns `SHARED` on the scales of the module, shape (k, 18).
+    weights : of `bearing_sim.estimation.splines.spline_functions`, columns `ANSWER`, shape (k + c + 1, 19).
+    changes : what was found at the points, columns `ANSWER` on the scales of the module, 0 for the lag, shape (k, 19).
     errors : at each point where it is left out: of slip [1] and of life, relative; shape (k, 2).
     two_states : conditions at which level ``planar`` has two states, and the slip of each, from ideal rolling first; shape (m, 6).
     failed : points that have no answer at one of the levels.
@@ -103,9 +101,7 @@ class Correction(NamedTuple):
         -------
         answers of the same shape; NaN stays NaN.
         """
-        changes = np.zeros_like(answers)
-        changes[:, SHARED] = self._changes_at(np.asarray(conditions, float)[:, : len(CONDITIONS)])
-        return changed(answers, changes)
+        return changed(answers, self._changes_at(np.asarray(conditions, float)[:, : len(CONDITIONS)]))
 
     def errors_near(self, conditions: np.ndarray) -> np.ndarray:
         """Return the root mean square of the errors of the nearest points [1, 1], of slip and of life; shape (n, 2)."""
@@ -118,7 +114,7 @@ class Correction(NamedTuple):
         return embedded(coordinates(conditions, self.domain), self.domain)
 
     def _changes_at(self, conditions):
-        there, centres, found = self._there(conditions), self._there(self.conditions), np.empty((len(conditions), len(SHARED)))
+        there, centres, found = self._there(conditions), self._there(self.conditions), np.empty((len(conditions), len(ANSWER)))
         for metric, columns in zip(self.metrics, _COLUMNS):
             found[:, columns] = spline_functions(there @ metric, centres @ metric) @ self.weights[:, columns]
         return np.clip(found, self.changes.min(axis=0), self.changes.max(axis=0))
@@ -160,17 +156,17 @@ def fit_correction(domain: Domain, conditions: np.ndarray, answers: np.ndarray, 
     ValueError
         Too few points have answers.
     """
-    changes = changes_between(answers, others)[:, SHARED]
+    changes = changes_between(answers, others)
     kept = np.isfinite(changes).all(axis=1)
     there = embedded(coordinates(conditions[kept], domain), domain)
     least = 4 * (there.shape[1] + 1)
     if len(there) < least:
         raise ValueError(f"{len(there)} of {len(conditions)} operating points have answers at both levels; expected {least} or more")
     changes, slips = changes[kept], others[kept, ANSWER.cage_slip]
-    metrics, errors, weights = [], [], np.empty((len(there) + there.shape[1] + 1, len(SHARED)))
-    for columns, column, largest in zip(_COLUMNS, (_SLIP, _LOAD), (_LARGEST_SLIP_ERROR, _LARGEST_LIFE_ERROR)):
+    metrics, errors, weights = [], [], np.empty((len(there) + there.shape[1] + 1, len(ANSWER)))
+    for columns, column, largest in zip(_COLUMNS, (ANSWER.cage_slip, ANSWER.inner_lamina_load), (_LARGEST_SLIP_ERROR, _LARGEST_LIFE_ERROR)):
         values = changes[:, [column]]
-        to_error = _slip_errors(slips) if column == _SLIP else _life_errors
+        to_error = _slip_errors(slips) if column == ANSWER.cage_slip else _life_errors
         metric, smoothing = _best_spline(there, domain, values, to_error, largest)
         metrics.append(metric)
         errors.append(to_error(left_out(there @ metric, values, smoothing)[:, 0]))
@@ -186,7 +182,7 @@ def _slip_errors(slips):
 
 
 def _life_errors(errors):
-    return np.expm1(_LIFE_EXPONENT * np.abs(np.clip(errors, -2.0, 2.0)))
+    return np.expm1(LIFE_EXPONENT * np.abs(np.clip(errors, -2.0, 2.0)))
 
 
 def _best_spline(there, domain, values, to_error, largest):
@@ -240,8 +236,8 @@ def read_correction(path: Path) -> Correction | None:
         domain = Domain((ends[0], ends[1]), (ends[2], ends[3]), (ends[4], ends[5]), ends[6], ends[7])
         failed, seconds = file["made"].tolist()
         conditions, metrics, weights, changes, errors, two_states = (np.ascontiguousarray(file[name], float) for name in _ARRAYS)
-        shapes = changes.shape == (len(conditions), len(SHARED)), errors.shape == (len(conditions), 2)
-        whole = all(shapes) and metrics.shape[0] == 2 and weights.shape[1] == len(SHARED)
+        shapes = changes.shape == (len(conditions), len(ANSWER)), errors.shape == (len(conditions), 2)
+        whole = all(shapes) and metrics.shape[0] == 2 and weights.shape[1] == len(ANSWER)
         found = Correction(domain, conditions, metrics, weights, changes, errors, two_states, int(failed), seconds)
         return found if whole and all(np.isfinite(each).all() for each in (conditions, metrics, weights, changes)) else None
     except Exception:  # whatever a broken file makes its reader raise, the correction is built again

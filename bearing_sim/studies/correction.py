@@ -13,17 +13,26 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import qmc
 
-from bearing_sim.estimation.correction import Correction, correction_path, fit_correction, measured_scene, read_correction, write_correction
+from bearing_sim.estimation.correction import (
+    LIFE_EXPONENT,
+    Correction,
+    correction_path,
+    fit_correction,
+    measured_scene,
+    read_correction,
+    write_correction,
+)
 from bearing_sim.estimation.response import Domain, conditions_at, coordinates, domain_of, embedded
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import Quality, obtain_table, solve_points
-from bearing_sim.model.params import pack
+from bearing_sim.model.params import Life, pack
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.physics.rating_life import rating_life_revolutions
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-from bearing_sim.sweep.settling import Outcome, advance_until_settled, cage_turn
+from bearing_sim.studies.trade_course import cage_rate
+from bearing_sim.sweep.settling import Outcome, advance_until_settled
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
 FIRST_POINTS, MOST_POINTS = 256, 512
@@ -31,7 +40,6 @@ SLIP_GOAL, LIFE_GOAL = 5e-4, 0.01  # errors at points left out, root mean square
 _BATCH = 8  # points of a task
 _CANDIDATES = 4096
 _PURSUED = 10.0  # times the goals; larger errors, such as at a jump from one state to another, do not draw more points
-_NEIGHBOURS = 8
 _SLOWEST = 0.1  # of the largest speed; slower points are corrected as these
 _SHORTEST, _LONGEST = 24.0, 120.0  # turns of an ideal cage; cages that skid under little load wander and never rest, their means count
 _TELLING = 0.02  # slip from which on another state is looked for
@@ -55,47 +63,46 @@ def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> 
     ``other_slip`` : in which ``planar`` settles from more slip; NaN where that was not tried.
     """
     steady, planar = solve_points(scene, np.array(conditions)), scene.at_level("planar")
-    found, other = np.full((len(conditions), len(ANSWER)), math.nan), np.full(len(conditions), math.nan)
+    life, found, other = pack(planar).life, np.full((len(conditions), len(ANSWER)), math.nan), np.full(len(conditions), math.nan)
     for k, (speed, load, kelvin, angle) in enumerate(conditions):
         inputs = Inputs(speed, load * math.cos(angle), load * math.sin(angle), kelvin)
         try:
             run = Simulation(planar, inputs)
-            found[k] = _answers(_settled(run, inputs), planar)
+            rolling = run.sample.copy()
+            found[k] = _answers(_settled(run), life)
             slip = found[k, ANSWER.cage_slip]
             if _TELLING <= slip < 0.5:
-                run = Simulation(planar, inputs, start=_slipping(Simulation(planar, inputs), min(_MORE * slip, 0.9)))
-                other[k] = _settled(run, inputs).slip
+                other[k] = _settled(Simulation(planar, inputs, start=_slipping(rolling, _MORE * slip))).slip
         except IntegrationError:
             continue
     return {"steady": steady.tolist(), "planar": found.tolist(), "other_slip": other.tolist()}
 
 
-def _settled(run: Simulation, inputs: Inputs) -> Outcome:
-    turn = cage_turn(run.scene) * abs(run.scene.operating.shaft_speed / inputs.shaft_speed)
+def _settled(run: Simulation) -> Outcome:
+    turn = 1.0 / abs(cage_rate(run.scene, run.inputs.shaft_speed))
     return advance_until_settled(run, _SHORTEST * turn, _LONGEST * turn)
 
 
-def _slipping(run: Simulation, slip: float) -> np.void:
-    """Return the sample of a run's start with a cage that slips; rollers go with it and spin as they would without slip."""
-    sample = run.sample.copy()
+def _slipping(rolling: np.void, slip: float) -> np.void:
+    """Return the sample of ideal rolling with a cage that slips, by 90 % at most; rollers go with it and spin as they would without slip."""
+    sample, slip = rolling.copy(), min(slip, 0.9)
     for name in ("cage_speed", "orbital_speed"):
         sample[name] *= 1.0 - slip
     return sample
 
 
-def _answers(outcome: Outcome, scene: Scene) -> np.ndarray:
+def _answers(outcome: Outcome, life: Life) -> np.ndarray:
     """Return the means of a settled run as an answer of level ``steady``; its lag is NaN."""
     window, answers = outcome.window, np.full(len(ANSWER), math.nan)
     for name in _MEANS:
         answers[ANSWER._fields.index(name)] = float(window[name].mean())
     answers[ANSWER.cage_slip] = outcome.slip
-    loads = [float(np.mean(window[name] ** 4) ** 0.25) for name in _LOADS]
-    life = pack(scene).life
+    loads = [float(np.mean(window[name] ** LIFE_EXPONENT) ** (1.0 / LIFE_EXPONENT)) for name in _LOADS]
     with np.errstate(divide="ignore"):
         mean = 1.0 / float(np.mean(1.0 / window["l10r"]))  # damage adds up
     revolutions = mean * 3600.0 * abs(float(window["shaft_speed"][-1])) / (2.0 * math.pi)
     given = rating_life_revolutions(*loads[2:], life) if min(loads[2:]) > 0.0 else math.inf
-    scale = (given / revolutions) ** 0.25 if math.isfinite(given) and math.isfinite(revolutions) else 1.0
+    scale = (given / revolutions) ** (1.0 / LIFE_EXPONENT) if math.isfinite(given) and math.isfinite(revolutions) else 1.0
     answers[ANSWER.inner_equivalent_load : ANSWER.outer_lamina_load + 1] = np.array(loads) * scale
     return answers
 
@@ -113,7 +120,7 @@ def correction_domain(scene: Scene, temperatures: tuple[float, float] | None = N
 
 
 def obtain_correction(
-    scene: Scene, temperatures: tuple[float, float] | None = None, workers: int | None = None, dask: str | None = None,
+    scene: Scene, temperatures: tuple[float, float] | None = None, workers: int | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None, rebuild: bool = False, most: int = MOST_POINTS,
 ) -> Correction:  # fmt: skip
     """Return the correction of a scene, from disk or measured and kept there; an interrupted measurement resumes from its journal.
@@ -122,16 +129,18 @@ def obtain_correction(
     ----------
     scene : its level does not matter.
     temperatures : lowest and highest oil temperature [K], instead of the scene's.
-    workers, dask : see `bearing_sim.sweep.tasks.run_tasks`.
-    progress : called with the number of points measured and that of all.
+    workers : see `bearing_sim.sweep.tasks.run_tasks`.
+    progress : called with the number of points measured and the most that there may be.
     rebuild : whether to measure it even if there is one.
     most : points.
 
     Raises
     ------
+    SceneError
+        Level ``planar`` cannot compute the scene.
     ValueError
-        Level ``planar`` cannot compute the scene, or too few points have answers.
-    ClusterError, JournalInUse
+        Too few points have answers.
+    JournalInUse
         See `bearing_sim.sweep.tasks`.
     """
     domain = correction_domain(scene, temperatures)
@@ -139,24 +148,22 @@ def obtain_correction(
     found = None if rebuild else read_correction(path)
     if found is None:
         journal = path.with_suffix(".journal")
-        found = _measured(scene, domain, journal, workers, dask, progress, most)
+        found = _measured(scene, domain, journal, workers, progress, most)
         write_correction(path, found)
         journal.unlink(missing_ok=True)
     return found
 
 
-def _measured(scene, domain, path: Path, workers, dask, progress, most) -> Correction:
+def _measured(scene, domain, path: Path, workers, progress, most) -> Correction:
     began, plain = time.perf_counter(), measured_scene(scene, "slip")
     spread = conditions_at(qmc.Sobol(d=4, scramble=True, seed=np.random.default_rng(1)).random(min(FIRST_POINTS, most)), domain)
     conditions, rows = np.zeros((0, 4)), []
     with Journal(path) as journal:
         while True:
-            tasks = [
-                task("planar", measured_points, plain, tuple(map(tuple, spread[first : first + _BATCH].tolist())))
-                for first in range(0, len(spread), _BATCH)
-            ]
-            done = len(conditions)
-            rows += run_tasks(tasks, journal, workers, dask, lambda k, total: progress(done + _BATCH * k, most))
+            batches = [tuple(map(tuple, spread[first : first + _BATCH].tolist())) for first in range(0, len(spread), _BATCH)]
+            tasks, done = [task("planar", measured_points, plain, batch) for batch in batches], len(conditions)
+            results = run_tasks(tasks, journal, workers, progress=lambda k, total: progress(done + _BATCH * k, most))
+            rows += [result if "planar" in result else _no_answers(len(batch)) for result, batch in zip(results, batches)]
             conditions = np.concatenate([conditions, spread])
             found = _fitted(domain, conditions, rows, time.perf_counter() - began)
             if len(conditions) >= most or (found.slip_error <= SLIP_GOAL and found.life_error <= LIFE_GOAL):
@@ -164,13 +171,14 @@ def _measured(scene, domain, path: Path, workers, dask, progress, most) -> Corre
             spread = _doubtful(found, min(len(conditions), most - len(conditions)), len(conditions))
 
 
+def _no_answers(count: int) -> dict:
+    """Return the result of so many points whose worker was lost, in the form of `measured_points`."""
+    nothing = [[math.nan] * len(ANSWER)] * count
+    return {"steady": nothing, "planar": nothing, "other_slip": [math.nan] * count}
+
+
 def _fitted(domain, conditions, rows, seconds) -> Correction:
-    nothing = [[math.nan] * len(ANSWER)] * _BATCH
-    steady, planar = (np.array([answer for row in rows for answer in row.get(level, nothing)]) for level in ("steady", "planar"))
-    other = np.array([slip for row in rows for slip in row.get("other_slip", [math.nan] * _BATCH)])
-    count = len(conditions)
-    steady, planar, other = steady[:count], planar[:count], other[:count]
-    planar[:, ANSWER.lag] = steady[:, ANSWER.lag] = 0.0
+    steady, planar, other = (np.concatenate([row[name] for row in rows]) for name in ("steady", "planar", "other_slip"))
     two = np.abs(other - planar[:, ANSWER.cage_slip]) > _APART
     states = np.column_stack([conditions[two], planar[two, ANSWER.cage_slip], other[two]])
     return fit_correction(domain, conditions, steady, planar, seconds)._replace(two_states=states)
@@ -191,14 +199,11 @@ def _doubtful(found: Correction, count: int, seed: int) -> np.ndarray:
     return candidates[picked]
 
 
-def obtain_corrected_table(
-    scene: Scene, temperatures: tuple[float, float] | None = None, workers: int | None = None,
-    progress: Callable[[int], None] = lambda solved: None, rebuild: bool = False,
-) -> tuple[Table, Quality]:  # fmt: skip
+def obtain_corrected_table(scene: Scene, temperatures: tuple[float, float] | None = None, workers: int | None = None) -> tuple[Table, Quality]:
     """Return the table of a scene, corrected where its block ``table`` asks for that.
 
     Parameters and errors are those of `obtain_table` and `obtain_correction`.
     """
     if scene.table.correction == "none":
-        return obtain_table(scene, temperatures, workers, progress, rebuild)
-    return obtain_table(scene, temperatures, workers, progress, rebuild, lambda: obtain_correction(scene, temperatures, workers, rebuild=rebuild))
+        return obtain_table(scene, temperatures, workers)
+    return obtain_table(scene, temperatures, workers, correction=lambda: obtain_correction(scene, temperatures, workers))
