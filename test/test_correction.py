@@ -5,8 +5,10 @@ import math
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from scipy.stats import qmc
 
+from bearing_sim.cli.main import main
 from bearing_sim.estimation.correction import (
     changed,
     changes_between,
@@ -125,6 +127,14 @@ def test_without_a_table_a_scene_that_asks_for_a_correction_says_how_one_is_buil
         run_until_settled(scene)
 
 
+def test_a_scene_that_level_planar_cannot_compute_is_refused_by_the_command_with_its_reason(tmp_path, monkeypatch):
+    monkeypatch.setattr(table_builder, "FOLDER", tmp_path)
+    fields = ("bearing.cage={guidance: full_complement}", "table.correction=planar")
+    result = CliRunner().invoke(main, ["table", "nu215_rig", *(word for each in fields for word in ("--set", each))])
+    assert result.exit_code == 2 and "level planar would ignore it" in result.output, result.output
+    assert isinstance(result.exception, SystemExit)  # no traceback
+
+
 def test_tables_with_and_without_a_correction_are_kept_apart():
     plain, corrected = (load_scene("deng2017_table1", ["level=steady", f"table.correction={word}"]) for word in ("none", "planar"))
     assert table_builder.table_path(plain, span_of(plain)) != table_builder.table_path(corrected, span_of(corrected))
@@ -135,8 +145,7 @@ def test_tables_with_and_without_a_correction_are_kept_apart():
 
 @pytest.mark.long
 def test_a_corrected_table_slips_and_lives_as_level_planar_does(tmp_path, monkeypatch):
-    for module in (table_builder, studied):
-        monkeypatch.setattr(module, "FOLDER", tmp_path, raising=False)
+    monkeypatch.setattr(table_builder, "FOLDER", tmp_path)
     monkeypatch.setattr(studied, "correction_path", lambda scene, domain: tmp_path / "correction.npz")
     monkeypatch.setattr(studied, "FIRST_POINTS", 64)
     narrow = ("table.maximum_load=1500N", "table.maximum_speed=46000rpm", "level=steady", "table.correction=planar", "table.tolerance=0.1")

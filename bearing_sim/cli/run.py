@@ -92,14 +92,14 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
     suggest_level(scene)
     warn_of_scene(scene)
     plan = _plan(scene, seconds, most, rate)
-    estimation = estimation_with_progress(scene)
+    estimation, corrected = estimation_with_progress(scene), _corrected_table(scene)
     with as_file_error(), as_failed_run(IntegrationError), ExitStack() as stack:
         sinks = _sinks(stack, scene, seconds, plan.interval, out, rrd)
         until = "" if seconds else f" until it has settled, at most {plan.longest:.4g} s"
         progress = stack.enter_context(progress_bar(f"running {scene.name}{until}", plan.longest))
         started = time.perf_counter()
         announce_compilation(scene)
-        simulation = Simulation(scene, table=_corrected_table(scene))
+        simulation = Simulation(scene, table=corrected)
         simulation.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
         simulation.reset()
         begin_in_equilibrium(simulation, plan.shortest, plan.longest)

@@ -92,16 +92,24 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
     workers : number of threads; None: all cores.
     rebuild : whether to build it even if it exists.
     """
-    from bearing_sim.levels.steady.table_builder import cached_table
-    from bearing_sim.studies.correction import obtain_corrected_table
+    from bearing_sim.levels.steady.table_builder import cached_table, obtain_table
+    from bearing_sim.scene.loader import SceneError
+    from bearing_sim.studies.correction import obtain_correction
+    from bearing_sim.sweep.tasks import JournalInUse
 
     kept = None if rebuild else cached_table(scene, temperatures)
     if kept is not None:
         return kept
     click.echo(f"building the table of operating points of {scene.name}, once for this bearing and oil ...", err=True)
+    correction = None
+    if (level := scene.table.correction) != "none":
+        with as_usage_error(SceneError, ValueError, JournalInUse), progress_bar(f"operating points at level {level}", 1.0) as show:
+            correction = obtain_correction(scene, temperatures, workers, lambda done, most: show(done / most), rebuild)
     # The number of points is not known in advance; the bar approaches 100 % as a typical number is reached.
     with progress_bar("operating points", 1.0) as show:
-        return obtain_corrected_table(scene, temperatures, workers, lambda solved: show(1.0 - math.exp(-solved / 15_000)), rebuild)
+        return obtain_table(
+            scene, temperatures, workers, lambda solved: show(1.0 - math.exp(-solved / 15_000)), rebuild, correction and (lambda: correction)
+        )
 
 
 def _condition(text, scene) -> tuple[float, float, float, float]:
