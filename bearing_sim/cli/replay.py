@@ -1,7 +1,6 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim replay``: run the model on a recorded log, or compute a recorded run again."""
 
-import math
 import time
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -28,9 +27,6 @@ from bearing_sim.cli.reporting import (
     warn_of_scene,
     warnings_report,
 )
-
-_HEADROOM = 1.02  # of a table of operating points above the speeds of a log
-_ROUNDED = 5.0  # [K] to which the oil temperatures of a table are
 
 
 @click.command("replay", cls=WritingCommand)
@@ -169,22 +165,17 @@ def _choice(scene, course) -> dict:
     """Return the model to replay with: at level steady its table, for the log's speeds and oil temperatures."""
     if scene.level != "steady":
         return {}
-    from dataclasses import replace
     from functools import partial
 
     import numpy as np
 
     from bearing_sim.cli.table import build_with_progress
-    from bearing_sim.model.table_span import span_of
+    from bearing_sim.model.table_span import rounded_temperatures, spanning
     from bearing_sim.simulation import Simulation
 
-    fastest = float(np.abs(course.values["shaft_speed"]).max())
-    if scene.table.maximum_speed is None and fastest > span_of(scene).maximum_speed:
-        scene = replace(scene, table=replace(scene.table, maximum_speed=_HEADROOM * fastest))  # else each operating point is solved by itself
+    scene = spanning(scene, float(np.abs(course.values["shaft_speed"]).max()))  # else each faster operating point is solved by itself
     kelvin = np.append(course.values.get("oil_temperature", ()), [] if "oil_temperature" in course.stamps else scene.lubricant.temperature)
-    ends = float(kelvin.min()), float(kelvin.max())
-    if ends[0] < ends[1]:  # rounded, so that logs of one machine share a table
-        ends = _ROUNDED * math.floor(ends[0] / _ROUNDED), _ROUNDED * math.ceil(ends[1] / _ROUNDED)
+    ends = rounded_temperatures(float(kelvin.min()), float(kelvin.max()))
     return {"model": partial(Simulation, table=build_with_progress(scene, ends)[0])}
 
 

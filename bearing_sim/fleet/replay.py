@@ -25,7 +25,7 @@ from bearing_sim.inputs.profile import judge
 from bearing_sim.levels.steady.table import Table as OperatingPoints
 from bearing_sim.levels.steady.table_builder import obtain_table, table_path
 from bearing_sim.model.plausibility import minimum_load
-from bearing_sim.model.table_span import Span, span_of
+from bearing_sim.model.table_span import HEADROOM, Span, rounded_temperatures, span_of
 from bearing_sim.model.validity import cell
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.runtime.replay import Replay, replay
@@ -42,8 +42,6 @@ UNKNOWN = "unknown inputs"
 STATUSES = (OK, UNKNOWN, FAILED, REFUSED, UNAVAILABLE)
 
 _SOURCES = ("estimation/*.py", "fleet/*.py", "inputs/*.py", "messages/*.py", "monitoring/*.py", "recording/*.py", "runtime/*.py", "sweep/tasks.py")
-_HEADROOM = 1.02  # of a table of operating points above the speeds of the logs
-_ROUNDED = 5.0  # [K] to which the oil temperatures of a table are
 _TABLES_KEPT = 4  # by a worker
 
 # By name: unit, name in `bearing_sim.runtime.replay.Replay.band_statistics`, by what the unit is smaller than that there, meaning.
@@ -238,13 +236,11 @@ def _spanning(scenes: Sequence[Scene], surveys: Sequence[dict]) -> tuple[Scene, 
     spans, fastest = [span_of(scene) for scene in scenes], max(found["fastest"] for found in surveys)
     speed = max(span.maximum_speed for span in spans)
     if fastest > speed:
-        speed = float(f"{_HEADROOM * fastest:.2g}")
+        speed = float(f"{HEADROOM * fastest:.2g}")
         speed = speed if speed >= fastest else 1.1 * speed
-    low, high = min(found["coldest"] for found in surveys), max(found["warmest"] for found in surveys)
-    if low < high:
-        low, high = _ROUNDED * math.floor(low / _ROUNDED), _ROUNDED * math.ceil(high / _ROUNDED)
+    temperatures = rounded_temperatures(min(found["coldest"] for found in surveys), max(found["warmest"] for found in surveys))
     table = with_fields(scenes[0].table, maximum_speed=speed, maximum_load=max(span.maximum_load for span in spans))
-    return with_fields(scenes[0], table=table), (low, high)
+    return with_fields(scenes[0], table=table), temperatures
 
 
 def survey(bearing: Bearing) -> dict:

@@ -1,6 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What a table of operating points of level ``steady`` spans: speeds, loads, temperatures, and how far the inner raceway grows."""
 
+import math
+from dataclasses import replace
 from typing import NamedTuple
 
 from bearing_sim.model.running_clearance import mounted
@@ -10,6 +12,9 @@ from bearing_sim.scene.scene import Scene
 
 _LOAD_FRACTION = 0.5  # of the dynamic load rating: what ISO/TS 16281 is for
 _SPEED_FRACTION = 1.2  # of the operating speed
+HEADROOM = 1.02
+"""Highest speed of a table over that of the course that it is for."""
+_ROUNDED = 5.0  # K, to which oil temperatures are
 
 
 class Span(NamedTuple):
@@ -53,3 +58,15 @@ def _growths(scene: Scene) -> tuple[float, float]:
         solids = Temperatures(middle + warmer, middle + warmer, middle + 0.5 * warmer, middle, middle)
         ends.append(float(excess_growth(0.0, middle, growth_at(parts, solids), parts)))
     return min(ends), max(ends)
+
+
+def spanning(scene: Scene, fastest: float) -> Scene:
+    """Return a scene whose table covers a shaft speed [rad/s], unless its block ``table`` says up to which it goes."""
+    if scene.table.maximum_speed is not None or fastest <= span_of(scene).maximum_speed:
+        return scene
+    return replace(scene, table=replace(scene.table, maximum_speed=HEADROOM * fastest))
+
+
+def rounded_temperatures(low: float, high: float) -> tuple[float, float]:
+    """Return between which oil temperatures a table is [K], from the lowest and highest of a course; rounded, so that courses share tables."""
+    return (low, high) if low == high else (_ROUNDED * math.floor(low / _ROUNDED), _ROUNDED * math.ceil(high / _ROUNDED))

@@ -20,7 +20,7 @@ import numpy as np
 from bearing_sim.levels.level import LEVELS
 from bearing_sim.levels.steady.table import Table, empty_table
 from bearing_sim.levels.steady.table_builder import obtain_table
-from bearing_sim.model.table_span import span_of
+from bearing_sim.model.table_span import rounded_temperatures, spanning
 from bearing_sim.scene.fidelity import WHIRLING
 from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, complete_overrides
 from bearing_sim.scene.loader import SceneError, load_scene
@@ -40,9 +40,7 @@ _ENOUGH = 1.0  # s of processor time after which a setting is not timed again
 _REPEATS = 3
 _MOST_SLICES = 200  # of the settings; edge loads are compared with theirs
 _FIRST_REST, _LONGEST_REST, _RESTS = 20.0, 2000.0, 1e-4  # cage turns in which the start settles, and the change of slip that counts as rest
-_TABLE_HEADROOM = 1.02  # of a table of operating points above the highest speed of a course
 _MORE_SOURCES = ("studies/trade_course.py", "studies/correction.py", "estimation/*.py")  # that results depend on
-_ROUNDED = 5.0  # K, to which the oil temperatures of a table are
 
 
 class Setting(NamedTuple):
@@ -216,7 +214,8 @@ def trade(
     tight = [dataclasses.replace(able[best], integration=able[best].integration.with_tolerances(factor)) for factor in factors]
     settings = [setting for level in wanted for setting in settings_of(level, quick)]
     scenes = [load_scene(name, [*overrides, f"level={setting.level}", *setting.overrides]) for setting in settings]
-    scenes = [_spanning(scene, found) if scene.level == "steady" else scene for scene in scenes]
+    fastest = found.extent()["shaft_speed"][1]
+    scenes = [spanning(scene, fastest) if scene.level == "steady" else scene for scene in scenes]
     without = {k: why for k, scene in enumerate(scenes) if scene.level == "steady" and (why := _why_no_table(scene, found, workers))}
     tasks = [task for scene in tight for task in _tasks(scene, found, 1)]
     tasks += [task for k, scene in enumerate(scenes) if k not in without for task in _tasks(scene, found, _REPEATS)]
@@ -373,9 +372,8 @@ def _begun(scene: Scene, window: Window, table: Table | None, start: np.void | N
 
 
 def _temperatures(course: Course) -> tuple[float, float]:
-    """Return between which oil temperatures a table is for a course [K]; rounded where they vary, so that courses share tables."""
-    low, high = course.extent()["oil_temperature"]
-    return (low, high) if low == high else (_ROUNDED * math.floor(low / _ROUNDED), _ROUNDED * math.ceil(high / _ROUNDED))
+    """Return between which oil temperatures a table is for a course [K]."""
+    return rounded_temperatures(*course.extent()["oil_temperature"])
 
 
 def _why_no_table(scene: Scene, course: Course, workers: int | None) -> str:
@@ -385,14 +383,6 @@ def _why_no_table(scene: Scene, course: Course, workers: int | None) -> str:
     except (SceneError, ValueError, IntegrationError) as error:
         return str(error)
     return ""
-
-
-def _spanning(scene: Scene, course: Course) -> Scene:
-    """Return a scene at level steady whose table covers the speeds of a course."""
-    fastest = course.extent()["shaft_speed"][1]
-    if scene.table.maximum_speed is not None or fastest <= span_of(scene).maximum_speed:
-        return scene
-    return dataclasses.replace(scene, table=dataclasses.replace(scene.table, maximum_speed=_TABLE_HEADROOM * fastest))
 
 
 _tables: dict[str, Table] = {}
