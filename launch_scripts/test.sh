@@ -12,9 +12,9 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 install_package test
 
 cd "$here"
-case "${1-} $#" in
-" 0") chosen="not long" ;;
-"--long 1") chosen="long" ;;
+case "$*" in
+"") chosen="not long" ;;
+"--long") chosen="long" ;;
 *) chosen="" ;;
 esac
 if [ -n "$chosen" ]; then # on all cores

@@ -100,13 +100,6 @@ def test_of_several_courses_the_worst_counts_and_what_one_lacks_is_not_known():
     assert found == {"slip": (9.0, 2.5), "planar": (5.0, 0.05)}
 
 
-def test_the_front_of_kept_settings_is_what_nothing_beats():
-    ones = [setting("steady", 900.0, 2.0), setting("slip", 12.0, 2.1), setting("planar", 5.0, 0.05), setting("planar", 1.0, 0.0004, detail="x"),
-            setting("planar", 0.5, 0.0001, detail="y")]  # fmt: skip
-    front = keep(scene(), course("idle", *[one._replace(overrides=(one.detail,)) for one in ones])).front()
-    assert [(one.level, one.detail) for one in front] == [("steady", "tolerances x 1"), ("planar", "tolerances x 1"), ("planar", "x")]
-
-
 def test_a_course_holds_where_it_was_measured():
     one = course("idle")
     inside = ("operating.shaft_speed=2000 rad/s", "operating.radial_load=500 N", "lubricant.temperature=375 K")

@@ -74,6 +74,11 @@ def test_errors_that_the_reference_cannot_tell_apart_do_not_lengthen_the_front()
     assert front_of(ones, 0.015) == [0, 1]
 
 
+def test_the_front_ends_where_errors_fall_below_that_of_the_reference():
+    ones = measured([(900.0, 2.0), (12.0, 2.1), (5.0, 0.05), (1.0, 0.0004), (0.5, 0.0001)])
+    assert front_of(ones, 0.0005) == [0, 2, 3]
+
+
 def test_a_failed_setting_is_on_no_front():
     ones = [*measured([(1.0, 0.1)]), Traded(SETTING, math.nan, NO_ERRORS, "ran out of steps")]
     assert front_of(ones) == [0]

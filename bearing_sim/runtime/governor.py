@@ -199,7 +199,7 @@ def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
     unknown = dict.fromkeys(front.courses[0].own_errors, math.nan)
     overrides, usable = complete_overrides(scene), (scene.level, *lower_levels(scene))
     measured = [one for one in front.settings() if one.level in usable and _is_adaptive(one) and not math.isnan(one.errors["slip"])]
-    measured = [one for one in measured if not _is_corrected(one) or cached_table(with_setting(scene, one)) is not None]
+    measured = [one for one in measured if not one.is_corrected or cached_table(with_setting(scene, one)) is not None]
     own = next((one for one in front.settings() if (one.level, one.overrides) == (scene.level, overrides)), None)
     settings = [own or KeptSetting(scene.level, "as in the scene", overrides, math.nan, unknown)]
     slowest = own.real_time_factor if own is not None else max((one.real_time_factor for one in measured if one.level == scene.level), default=0.0)
@@ -214,11 +214,6 @@ def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
             lower = dataclasses.replace(scene, level=level, integration=adaptive)
             settings.append(KeptSetting(level, "not measured", complete_overrides(lower), math.nan, unknown))
     return settings if len(settings) > 1 else []
-
-
-def _is_corrected(setting: KeptSetting) -> bool:
-    """Return whether a setting needs a corrected table, which a node does not build."""
-    return any(each.startswith("table.correction=") and not each.endswith("=none") for each in setting.overrides)
 
 
 def _is_adaptive(setting: KeptSetting) -> bool:
@@ -243,8 +238,7 @@ def recorded_settings(record: Mapping[str, str]) -> tuple[dict[str, KeptSetting]
         The record is none of `governor_record`.
     """
     try:
-        found = [KeptSetting(each["level"], "", tuple(each["overrides"]), math.nan, {}) for each in json.loads(record["settings"])]
-        names = [str(each["name"]) for each in json.loads(record["settings"])]
-        return dict(zip(names, found)), str(record["running"])
+        found = {str(each["name"]): KeptSetting(each["level"], "", tuple(each["overrides"]), math.nan, {}) for each in json.loads(record["settings"])}
+        return found, str(record["running"])
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"the settings of the governor in the recording cannot be read: {error!r}") from None

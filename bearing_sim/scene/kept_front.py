@@ -66,6 +66,11 @@ class KeptSetting(NamedTuple):
         """Name in messages."""
         return f"{self.level}, {self.detail}"
 
+    @property
+    def is_corrected(self) -> bool:
+        """Whether the setting needs a corrected table, which a node does not build."""
+        return any(each.startswith("table.correction=") and not each.endswith("=none") for each in self.overrides)
+
 
 class KeptCourse(NamedTuple):
     """What was measured on one course.
@@ -131,18 +136,6 @@ class KeptFront(NamedTuple):
         names = {name for course in self.courses for name in course.own_errors}
         known = {name: [each for course in self.courses if not math.isnan(each := course.own_errors.get(name, math.nan))] for name in names}
         return {name: max(values, default=math.nan) for name, values in known.items()}
-
-    def front(self) -> list[KeptSetting]:
-        """Return the settings that no other beats in both speed and slip error, the fastest first; errors below the reference's own are equal."""
-        own = self.own_errors().get("slip", math.nan)
-        certain = 0.0 if math.isnan(own) else own
-        front, least = [], math.inf
-        for setting in self.settings():
-            error = max(setting.errors["slip"], certain)
-            if error < least:
-                front.append(setting)
-                least = error
-        return front
 
 
 def _worst(settings: list[KeptSetting]) -> KeptSetting:
