@@ -1,9 +1,10 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """How compiled code is made, where its machine code is cached, and how it is called without looking at types each time.
 
-``@kernel`` compiles a law, or a concrete entry point with everything bound.  ``@template`` compiles a function that takes kernels as
-its leading arguments; it is inlined where it is called and never recursive.  A one-line kernel that binds a template is a full
-specialisation, which the on-disk cache can serve to the next process.  A kernel passed as an argument at run time never could be.
+``@kernel`` compiles a law, or a concrete entry point with everything bound; ``@fused`` does the same, but its callers absorb it.
+``@template`` compiles a function that takes kernels as its leading arguments; it is inlined where it is called and never recursive.  A
+one-line kernel that binds a template is a full specialisation, which the on-disk cache can serve to the next process.  A kernel passed
+as an argument at run time never could be.
 
 Numba's own cache looks only at the file of the function that it compiles, so it would serve stale code after a change of a law in
 another file.  The cache folder is therefore named by a hash of every source that compiled code comes from.
@@ -46,7 +47,16 @@ def _compiled(function, **options):
 
 def kernel(function):
     """Compile a law, or an entry point with all its laws bound."""
-    return _compiled(function)
+    return _compiled(function, forceinline=False)
+
+
+def fused(function):
+    """Compile a law into every compiled function that calls it.
+
+    For laws that take the parameters of a bearing: a call copies them, hundreds of numbers, which took a third of the time of a step.
+    Rarely called laws stay kernels, so that the code of a step fits the cache of a processor.
+    """
+    return _compiled(function, forceinline=True)
 
 
 def template(function):

@@ -110,3 +110,9 @@ def cosine_sine(turn):
 exponential = np.exp if numba.config.DISABLE_JIT else _vector_exponential
 logarithm = np.log if numba.config.DISABLE_JIT else _vector_logarithm
 ninth_root = (lambda x: x ** (1.0 / 9.0)) if numba.config.DISABLE_JIT else _vector_ninth_root
+
+
+@template
+def power(x, exponent):
+    """Return x to a power, for positive x, accurate to 2e-11 times the exponent; without the call that the power of `math` takes."""
+    return exponential(exponent * logarithm(x))

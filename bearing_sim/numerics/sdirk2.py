@@ -36,23 +36,22 @@ def sdirk2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t,
     if abs(memory.derivative_time[0] - t) < 0.01 * h:
         for i in range(y.shape[0]):
             slope[i] = next_slope[i]
-    predict(y, shift, slope, model, work, first)
-    outcome = solve_implicit(
-        rhs, rhs_and_jacobian, factor, solve, error_norm,
-        t + shift, y, shift, _ENOUGH, first, rate, change, model, work, counts,
-    )  # fmt: skip
-    if outcome != OK:
-        return outcome
     for i in range(y.shape[0]):
-        error[i] = (first[i] - y[i]) * per_shift  # the first stage's slope
-        known[i] = y[i] + (1.0 - GAMMA) * h * error[i]
-    predict(known, shift, error, model, work, result)
-    outcome = solve_implicit(
-        rhs, rhs_and_jacobian, factor, solve, error_norm,
-        t + h, known, shift, _ENOUGH, result, rate, change, model, work, counts,
-    )  # fmt: skip
-    if outcome != OK:
-        return outcome
+        known[i] = y[i]
+    for stage in range(2):
+        # a loop and not two texts: the kernels are compiled into it, and both copies would not fit the instruction cache
+        predict(known, shift, slope if stage == 0 else error, model, work, result)
+        outcome = solve_implicit(
+            rhs, rhs_and_jacobian, factor, solve, error_norm,
+            t + (h if stage else shift), known, shift, _ENOUGH, result, rate, change, model, work, counts,
+        )  # fmt: skip
+        if outcome != OK:
+            return outcome
+        if stage == 0:
+            for i in range(y.shape[0]):
+                first[i] = result[i]
+                error[i] = (result[i] - y[i]) * per_shift
+                known[i] = y[i] + (1.0 - GAMMA) * h * error[i]
     for i in range(y.shape[0]):
         next_slope[i] = (result[i] - known[i]) * per_shift
         error[i] = shift * (next_slope[i] - error[i])

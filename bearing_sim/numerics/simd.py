@@ -129,6 +129,29 @@ def _store(context, array, block, row, value):
     return types.void(array, block, row, value), generate
 
 
+def _run(context, builder, signature, arguments):
+    array = context.make_array(signature.args[0])(context, builder, arguments[0])
+    pointer = builder.gep(array.data, [_index(context, builder, arguments[1], signature.args[1])])
+    return builder.bitcast(pointer, _VECTOR.as_pointer())
+
+
+@intrinsic
+def _load_run(context, x, first):
+    def generate(context, builder, signature, arguments):
+        return builder.load(_run(context, builder, signature, arguments), align=8)
+
+    return lanes_type(x, first), generate
+
+
+@intrinsic
+def _store_run(context, x, first, value):
+    def generate(context, builder, signature, arguments):
+        builder.store(arguments[2], _run(context, builder, signature, arguments), align=8)
+        return context.get_dummy_value()
+
+    return types.void(x, first, value), generate
+
+
 @intrinsic
 def _gather(context, table, index, column):
     def generate(context, builder, signature, arguments):
@@ -238,6 +261,12 @@ if numba.config.DISABLE_JIT:
     def store(array, block, row, value):
         array[block, row] = value
 
+    def load_run(x, first):
+        return x[first : first + LANES].copy()
+
+    def store_run(x, first, value):
+        x[first : first + LANES] = value
+
     def gather(table, index, column):
         return table[index.astype(int), column]
 
@@ -255,7 +284,7 @@ if numba.config.DISABLE_JIT:
 
     square_root, floor, magnitude, larger, smaller = np.sqrt, np.floor, np.abs, np.maximum, np.minimum
 else:
-    load, store, gather = _load, _store, _gather
+    load, store, gather, load_run, store_run = _load, _store, _gather, _load_run, _store_run
     spread, total, highest, where_positive = _broadcast, _sum, _highest, _where_positive
     square_root, floor, magnitude = _unary("sqrt"), _unary("floor"), _unary("fabs")
     larger, smaller = _choice(">"), _choice("<")
@@ -294,10 +323,13 @@ def spread_runs(x, first, runs, count, rows):
     runs, count : how many runs, and numbers in each.
     rows : see `new_rows`.
     """
+    whole = count // LANES
     for k in range(runs):
         start = first + k * count
-        for j in range(count):
-            rows[j // LANES, k, j % LANES] = x[start + j]
+        for block in range(whole):
+            store(rows, block, k, load_run(x, start + block * LANES))
+        for lane in range(count - whole * LANES):
+            rows[whole, k, lane] = x[start + whole * LANES + lane]
 
 
 @template
@@ -312,7 +344,10 @@ def fill_lanes(rows, runs, count):
 @template
 def collect_runs(rows, row, runs, count, x, first):
     """Copy rows, starting at ``row``, back into runs, starting at ``first``; parameters as of `spread_runs`."""
+    whole = count // LANES
     for k in range(runs):
         start = first + k * count
-        for j in range(count):
-            x[start + j] = rows[j // LANES, row + k, j % LANES]
+        for block in range(whole):
+            store_run(x, start + block * LANES, load(rows, block, row + k))
+        for lane in range(count - whole * LANES):
+            x[start + whole * LANES + lane] = rows[whole, row + k, lane]

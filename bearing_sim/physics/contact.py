@@ -5,7 +5,7 @@ import math
 from typing import NamedTuple
 
 from bearing_sim.numerics.compilation import kernel, template
-from bearing_sim.numerics.elementary import exponential, logarithm, ninth_root
+from bearing_sim.numerics.elementary import ninth_root
 from bearing_sim.numerics.simd import larger, where_positive
 
 # Assumption: below these the powers of the fits diverge; both are far below anything that carries torque.
@@ -36,10 +36,9 @@ class ContactRow(NamedTuple):
     rate: int = 15  # its time derivative [m/s]
     stiffness: int = 16  # dQ by penetration [N/m]
     damping: int = 17  # dQ by its rate [N s/m]
-    log_penetration: int = 18
-    resistance: int = 19  # F_R, against the motion of each surface through the contact [N]
-    resistance_d_rolling: int = 20  # its slopes [N s/m]
-    resistance_d_load: int = 21
+    resistance: int = 18  # F_R, against the motion of each surface through the contact [N]
+    resistance_d_rolling: int = 19  # its slopes [N s/m]
+    resistance_d_load: int = 20
 
 
 CONTACT = ContactRow()
@@ -85,13 +84,7 @@ def line_penetration(force, stiffness):
 
 
 @template
-def log_penetration(penetration):
-    """Return ln(penetration), finite where there is none (lanes)."""
-    return logarithm(larger(penetration, TINY))
-
-
-@template
-def damped_line_contact(penetration, log, rate, stiffness, damping):
+def damped_line_contact(penetration, rate, stiffness, damping):
     """Return Q = K delta^(10/9) (1 + a delta'), never below 0, and its derivatives.
 
     Damping that vanishes with the penetration: K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440.  Deng 2017 states no
@@ -99,7 +92,7 @@ def damped_line_contact(penetration, log, rate, stiffness, damping):
 
     Parameters
     ----------
-    penetration, log : delta [m] and `log_penetration` of it (lanes).
+    penetration : delta [m] (lanes).
     rate : d(delta)/dt [m/s] (lanes).
     stiffness : K [N/m^(10/9)].
     damping : a [s/m].
@@ -108,7 +101,7 @@ def damped_line_contact(penetration, log, rate, stiffness, damping):
     -------
     load [N], d_penetration [N/m], d_rate [N s/m]
     """
-    root = stiffness * exponential(log * (1.0 / 9.0))
+    root = stiffness * ninth_root(larger(penetration, TINY))
     elastic = root * larger(penetration, 0.0)
     factor = 1.0 + damping * rate
     pressed = where_positive(factor, where_positive(penetration, 1.0, 0.0), 0.0)

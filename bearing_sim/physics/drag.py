@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import fused, kernel
+from bearing_sim.numerics.elementary import exponential, logarithm, power
 
 # Drag coefficient C_d of a long cylinder across a flow by Re = rho v D_w/eta, interpolated in logarithms and constant beyond the table.
 # Assumption: read off the curve for one cylinder in an unbounded flow that textbooks show (H. Schlichting, Boundary-Layer Theory); the
@@ -116,7 +117,7 @@ def bath_drag(level, kinematic_viscosity, rollers, raceways, bore_diameter, outs
     return Bath(displacing * lever, rubbing * lever)
 
 
-@kernel
+@fused
 def roller_drag(cage_speed, shaft_speed, params, lubrication):
     """Return the drag on one roller along the orbit [N], against it, and its derivative by the cage's speed [N s].
 
@@ -131,12 +132,12 @@ def roller_drag(cage_speed, shaft_speed, params, lubrication):
     density = mixture_density(shaft_speed, lubrication)
     force, d_speed = churning_force(radius * cage_speed, density, lubrication.viscosity, 2.0 * params.rollers.radius, params.rollers.length)
     square, exponent = cage_speed * cage_speed + _STILL * _STILL, 0.5 * (1.0 + _SLOWED)
-    rubbing = bath.rubbing * square**exponent
+    rubbing = bath.rubbing * power(square, exponent)
     force += (bath.displacing * abs(cage_speed) + rubbing) * cage_speed
     return force, radius * d_speed + 2.0 * bath.displacing * abs(cage_speed) + rubbing * (1.0 + 2.0 * exponent * cage_speed * cage_speed / square)
 
 
-@kernel
+@fused
 def churning_force(speed, density, viscosity, roller_diameter, roller_length):
     """Return the drag on a roller that moves across the mixture [N], and its derivative by speed [N s/m].
 
@@ -152,22 +153,22 @@ def churning_force(speed, density, viscosity, roller_diameter, roller_length):
     reynolds = density * magnitude * roller_diameter / viscosity
     if reynolds < 1e-12:
         return 0.0, 0.0
-    logarithm = math.log(reynolds)
+    log_reynolds = logarithm(reynolds)
     segment = 0
-    while segment < _REYNOLDS.shape[0] - 2 and logarithm > _REYNOLDS[segment + 1]:
+    while segment < _REYNOLDS.shape[0] - 2 and log_reynolds > _REYNOLDS[segment + 1]:
         segment += 1
     exponent = (_DRAG_COEFFICIENT[segment + 1] - _DRAG_COEFFICIENT[segment]) / (_REYNOLDS[segment + 1] - _REYNOLDS[segment])
-    if logarithm > _REYNOLDS[-1]:  # constant beyond the table
+    if log_reynolds > _REYNOLDS[-1]:  # constant beyond the table
         exponent = 0.0
-        logarithm = _REYNOLDS[-1]
-    coefficient = math.exp(_DRAG_COEFFICIENT[segment] + exponent * (logarithm - _REYNOLDS[segment]))
-    if logarithm >= _REYNOLDS[-1]:
-        coefficient = math.exp(_DRAG_COEFFICIENT[-1])
+        log_reynolds = _REYNOLDS[-1]
+    coefficient = exponential(_DRAG_COEFFICIENT[segment] + exponent * (log_reynolds - _REYNOLDS[segment]))
+    if log_reynolds >= _REYNOLDS[-1]:
+        coefficient = exponential(_DRAG_COEFFICIENT[-1])
     force = 0.5 * density * coefficient * roller_length * roller_diameter * speed * magnitude
     return force, (2.0 + exponent) * force / speed
 
 
-@kernel
+@fused
 def cylinder_torque(relative_speed, radius, clearance, width, density, viscosity):
     """Return the torque between coaxial cylinders in the mixture [N m] and its derivative by relative speed [N m s].
 
@@ -190,16 +191,16 @@ def cylinder_torque(relative_speed, radius, clearance, width, density, viscosity
     petroff = 2.0 * math.pi * viscosity * radius**3 * width / clearance
     reynolds = density * abs(relative_speed) * radius * clearance / viscosity
     factor, exponent = 1.0, 0.0
-    vortices = 1.3 * (reynolds * math.sqrt(clearance / radius) / 41.0) ** 0.539
+    vortices = 1.3 * power(reynolds * math.sqrt(clearance / radius) / 41.0, 0.539)
     if vortices > factor:
         factor, exponent = vortices, 0.539
-    turbulence = 3.0 * (reynolds / 2500.0) ** 0.856
+    turbulence = 3.0 * power(reynolds / 2500.0, 0.856)
     if turbulence > factor:
         factor, exponent = turbulence, 0.856
     return petroff * factor * relative_speed, petroff * factor * (1.0 + exponent)
 
 
-@kernel
+@fused
 def end_face_torque(speed, outer_radius, inner_radius, density, viscosity):
     """Return the drag on both end faces of a rotating annulus [N m], against its rotation, and its derivative by speed [N m s].
 
@@ -219,13 +220,13 @@ def end_face_torque(speed, outer_radius, inner_radius, density, viscosity):
     if reynolds < 1e-12:
         return 0.0, 0.0
     turbulent_fraction = min(max((reynolds - 2.5e5) / 1e5, 0.0), 1.0)
-    coefficient = (1.0 - turbulent_fraction) * 3.87 / math.sqrt(reynolds) + turbulent_fraction * 0.146 * reynolds**-0.2
+    coefficient = (1.0 - turbulent_fraction) * 3.87 / math.sqrt(reynolds) + turbulent_fraction * 0.146 * power(reynolds, -0.2)
     exponent = 1.5 + 0.3 * turbulent_fraction
     torque = 0.5 * density * speed * magnitude * (outer_radius**5 - inner_radius**5) * coefficient
     return torque, exponent * torque / speed
 
 
-@kernel
+@fused
 def bore_torque(cage_speed, shaft_speed, params, lubrication):
     """Return the torque of the mixture in the cage's bore, which the inner ring drives [N m], and minus its derivative by cage speed [N m s].
 
@@ -237,7 +238,7 @@ def bore_torque(cage_speed, shaft_speed, params, lubrication):
     return cylinder_torque(shaft_speed - cage_speed, radius, gap, params.cage.inner_width, density, lubrication.viscosity)
 
 
-@kernel
+@fused
 def mixture_torque(cage_speed, shaft_speed, params, lubrication):
     """Return the torque of the mixture on the cage [N m] and its derivative by cage speed [N m s].
 

@@ -11,7 +11,7 @@ Symbols: e eccentricity of the cage in the lands [m], c their clearance [m], eps
 import math
 from typing import NamedTuple
 
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import fused, kernel, template
 
 _WEDGE = 10.0  # rad/s; assumption: the film's half-circle changes sides smoothly where the wedge speed changes sign
 _SLIDING = 0.1  # m/s; assumption: boundary friction is proportional to the sliding speed well below this
@@ -83,7 +83,7 @@ def _film_coefficients(eccentricity, cage):
     )  # fmt: skip
 
 
-@kernel
+@fused
 def land_film(land, squeeze, cage, viscosity):
     """Return forces y, z [N] and torque [N m] of the guide lands' film on the cage, then their derivatives by y, z, y', z' and omega_c (3 rows of 5).
 
@@ -162,7 +162,7 @@ def _in_plane(n_n, t_n, n_t, t_t, n_y, n_z):
     )
 
 
-@kernel
+@fused
 def land_contact(land, params):
     """Return the contact force of cage and land, its derivatives, and how they approach.
 

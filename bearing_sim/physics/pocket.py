@@ -5,7 +5,7 @@ import math
 
 from bearing_sim.numerics.compilation import template
 from bearing_sim.numerics.simd import larger, magnitude, spread, square_root, total, where_positive
-from bearing_sim.physics.contact import damped_line_contact, log_penetration
+from bearing_sim.physics.contact import damped_line_contact
 
 FRICTION_SPIN = 10.0  # rad/s; assumption: pocket friction is proportional to spin well below this
 
@@ -38,7 +38,7 @@ def wall_force(offset, rate, clearance, film_stiffness, film_damping, stiffness,
     excess = magnitude(offset) - clearance
     if total(where_positive(excess, 1.0, 0.0)) > 0.0:
         side = where_positive(offset, 1.0, -1.0)
-        wall, d_excess, d_wall_rate = damped_line_contact(excess, log_penetration(excess), rate * side, stiffness, damping)
+        wall, d_excess, d_wall_rate = damped_line_contact(excess, rate * side, stiffness, damping)
         force += side * (wall - film_stiffness * larger(excess, 0.0))
         d_offset = where_positive(excess, d_excess, d_offset)
         d_rate += d_wall_rate

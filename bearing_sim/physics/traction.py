@@ -8,7 +8,7 @@ Q is the normal force [N], u the mean rolling speed of both surfaces relative to
 
     mu(s) = (A + B s) exp(-C s) + D = D - (D - B s) exp(-C s),   s = |du|/u,   A = -D,
 
-with B, C and D products of powers of Q and u, so that two logarithms and four exponentials serve a contact where the published form takes
+with B, C and D products of powers of Q and u, so that two logarithms, a root and four exponentials serve a contact where the published form takes
 nine powers.  With mu_x = d mu/dx and e_b, e_c, e_d the exponents of one variable x in B, C, D:
 
     d mu/ds    = [B + C (D - B s)] exp(-C s),
@@ -33,7 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.elementary import exponential, logarithm
 from bearing_sim.numerics.simd import larger, load, magnitude, smaller, spread, square_root, store, where_positive
 from bearing_sim.physics.contact import CONTACT, LOAD_FLOOR, ROLLING_SPEED_FLOOR
@@ -139,7 +139,7 @@ def thermal_eyring_constants(scale, oil, curvature_radius, reduced_modulus, leng
     return TractionConstants(scale, *(0.0,) * 9, EYRING, special)
 
 
-@kernel
+@fused
 def _powers(contacts, first, end, constants):
     """Write D, B, C and exp(-C s) of the contacts in some blocks."""
     for block in range(first, end):
@@ -169,7 +169,7 @@ def _static(contacts, first, end, scale, special):
         store(contacts, block, CONTACT.d_sliding, load(contacts, block, CONTACT.d_sliding) + d_sliding)
 
 
-@kernel
+@fused
 def traction(contacts, inner, outer):
     """Compute the tangential forces of all contacts.
 
@@ -188,9 +188,9 @@ def traction(contacts, inner, outer):
         store(contacts, block, CONTACT.log_load, logarithm(larger(load(contacts, block, CONTACT.load), LOAD_FLOOR)))
     for block in range(blocks):
         rolling = load(contacts, block, CONTACT.rolling)
-        log_speed = 0.5 * logarithm(rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR)
-        store(contacts, block, CONTACT.log_speed, log_speed)
-        store(contacts, block, CONTACT.inverse_speed, exponential(-log_speed))
+        square = rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR
+        store(contacts, block, CONTACT.log_speed, 0.5 * logarithm(square))
+        store(contacts, block, CONTACT.inverse_speed, 1.0 / square_root(square))
     _powers(contacts, 0, blocks // 2, inner)
     _powers(contacts, blocks // 2, blocks, outer)
     for block in range(blocks):

@@ -5,7 +5,7 @@ import math
 
 from bearing_sim.levels.common.model import load_at, shaft_speed_at
 from bearing_sim.model.sample import COLUMN
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.simd import load, spread, square_root, total
 from bearing_sim.physics.growth import clearance_at
 from bearing_sim.physics.rating_life import oil_factors, rate_lives
@@ -88,7 +88,7 @@ def _write_lives(lives, hours, row):
     row[COLUMN.static_safety] = lives.static_safety
 
 
-@kernel
+@fused
 def average_moments(fraction, rows, present_row, contacts, load_row, count, moments):
     """Include the loads of this instant in the running means over all rollers of `bearing_sim.physics.lamina_life.add_load_moments`.
 

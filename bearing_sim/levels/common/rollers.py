@@ -11,7 +11,7 @@ roller's, the tangent p is a right angle ahead of it.
 import math
 
 from bearing_sim.model.sample import COLUMN, SCALARS
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import fused, template
 from bearing_sim.numerics.elementary import cosine_sine
 from bearing_sim.numerics.simd import LANES, floor, load, square_root, store
 from bearing_sim.physics.drag import roller_drag
@@ -153,7 +153,7 @@ def place_outwards(row, block, cage, guidance, rows):
     return offset, rate
 
 
-@kernel
+@fused
 def linear_churning(cage_speed, shaft_speed, model):
     """Return the drag of mixture and bath on a roller, linearised about the cage's speed.
 

@@ -52,9 +52,10 @@ from bearing_sim.levels.planar.state import (
     collect_rates,
     spread_state,
 )
-from bearing_sim.numerics.compilation import kernel, template
-from bearing_sim.numerics.simd import load, magnitude, store, total, where_positive
-from bearing_sim.physics.contact import CONTACT, damped_line_contact, log_penetration
+from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.numerics.elementary import cosine_sine
+from bearing_sim.numerics.simd import load, magnitude, spread, store, total, where_positive
+from bearing_sim.physics.contact import CONTACT, damped_line_contact
 from bearing_sim.physics.drag import mixture_torque
 from bearing_sim.physics.film import resist_rolling
 from bearing_sim.physics.flange import axial_share, flange_friction
@@ -63,7 +64,7 @@ from bearing_sim.physics.pocket import pocket_friction_lanes, wall_force
 from bearing_sim.physics.traction import traction
 
 
-@kernel
+@fused
 def place_in_lands(y, shaft_speed, cage):
     """Return `Land` of a state.
 
@@ -84,7 +85,7 @@ def place_in_lands(y, shaft_speed, cage):
     )
 
 
-@kernel
+@fused
 def border_accelerations(t, y, model, work, rate, with_jacobian):
     """Write the accelerations of ring and cage, but for what the rollers add, into ``rate`` and their derivatives into ``work``."""
     params, drive, own = model.params, model.drive, work.border_own
@@ -101,7 +102,7 @@ def border_accelerations(t, y, model, work, rate, with_jacobian):
         own[THETA, OMEGA] += d_drag / cage.inertia
 
 
-@kernel
+@fused
 def _lands(land, model, own, rate, with_jacobian):
     """Write what the lands do to the cage, and to the ring if they are the inner ring's."""
     params = model.params
@@ -133,16 +134,13 @@ def _lands(land, model, own, rate, with_jacobian):
         react_on_ring(params, own, rate, with_jacobian)
 
 
-@kernel
+@fused
 def normal_forces(params, contacts):
     """Write the normal forces of all contacts and their derivatives."""
     stiffness, damping = params.raceways.stiffness, params.ring.contact_damping
     for block in range(contacts.shape[0]):
-        store(contacts, block, CONTACT.log_penetration, log_penetration(load(contacts, block, CONTACT.penetration)))
-    for block in range(contacts.shape[0]):
         penetration, rate = load(contacts, block, CONTACT.penetration), load(contacts, block, CONTACT.rate)
-        log = load(contacts, block, CONTACT.log_penetration)
-        force, d_penetration, d_rate = damped_line_contact(penetration, log, rate, stiffness, damping)
+        force, d_penetration, d_rate = damped_line_contact(penetration, rate, stiffness, damping)
         store(contacts, block, CONTACT.load, force)
         store(contacts, block, CONTACT.stiffness, d_penetration)
         store(contacts, block, CONTACT.damping, d_rate)
@@ -154,10 +152,11 @@ def _cage(y):
     return y[CAGE_Y], y[CAGE_Z], y[BORDER + CAGE_Y], y[BORDER + CAGE_Z], y[OMEGA]
 
 
-@kernel
+@fused
 def _pocket_forces(y, params, rows):
     """Write how all rollers lie in their pockets along the orbit, and what the pockets do to them."""
-    cage, cage_cosine, cage_sine = params.cage, math.cos(y[THETA]), math.sin(y[THETA])
+    cage, turn = params.cage, y[THETA] * (0.5 / math.pi)
+    cage_cosine, cage_sine = cosine_sine(spread(turn - math.floor(turn)))
     for block in range(rows.shape[0]):
         offset, rate = place_in_pockets(ROLLER, block, _cage(y), cage_cosine, cage_sine, rows)
         force, d_offset, d_rate = wall_force(
@@ -171,7 +170,7 @@ def _pocket_forces(y, params, rows):
         store(rows, block, ROLLER.pocket_friction_d_spin, d_spin)
 
 
-@kernel
+@fused
 def _accelerate(y, churning, model, rows, contacts, rate):
     """Write the accelerations of a block of rollers; add to those of ring and cage what the rollers do to them."""
     for block in range(rows.shape[0]):
@@ -222,7 +221,7 @@ def _accelerate(y, churning, model, rows, contacts, rate):
         rate[OMEGA] += total(present * torque) / cage.inertia
 
 
-@kernel
+@fused
 def equations(t, y, model, work, rate, with_jacobian):
     """Write dy/dt into ``rate`` and, where asked, all derivatives into ``work``.
 

@@ -60,7 +60,7 @@ from bearing_sim.levels.planar.state import (
     R,
 )
 from bearing_sim.model.params import SUPPORT
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.linear_algebra import back_substitute, decompose
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, load, magnitude, spread, spread_runs, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT
@@ -155,7 +155,7 @@ def _inner_rows(put, block, y, params, rows, force, radial_columns, along_column
     _ring_columns(put, block, jacobian, ring_z, 1.0, _turned(radial_columns, along_columns, s, -c), cosine, sine)
 
 
-@kernel
+@fused
 def _inner_jacobian(y, inner_radius, params, rows, contacts, jacobian):
     """Write all rows of ring and rollers as far as the inner contact makes them."""
     for block in range(rows.shape[0]):
@@ -183,7 +183,7 @@ def _inner_jacobian(y, inner_radius, params, rows, contacts, jacobian):
         _inner_rows(store, block, y, params, rows, (radial, along), columns_r, columns_t, columns_spin, d_orbit, d_spin, per_inertia, jacobian)
 
 
-@kernel
+@fused
 def _outer_jacobian(y, churning, params, rows, contacts, jacobian):
     """Add the outer contact, the drag of the mixture and the frame's own rotation to the rows of the rollers."""
     for block in range(rows.shape[0]):
@@ -239,7 +239,7 @@ def _cage_columns(block, jacobian, first, scale, d_position, d_speed):
     store(jacobian, block, first + AT_SPEEDS + THETA, scale * d_speed[2])
 
 
-@kernel
+@fused
 def _pocket_jacobian(y, params, rows, jacobian):
     """Add the pockets to the rows of the rollers, write those of the cage."""
     for block in range(rows.shape[0]):
@@ -314,7 +314,7 @@ def _cage_jacobian(block, params, rows, jacobian, own, at, with_speed, cage_t, l
     _cage_columns(block, jacobian, theta, per_inertia, moved, (with_speed[0] * arm, with_speed[1] * arm, with_speed[2] * arm))
 
 
-@kernel
+@fused
 def roller_jacobian(y, inner_radius, churning, params, rows, contacts, jacobian):
     """Write all derivatives through the rollers; their forces have been written.
 
@@ -584,7 +584,7 @@ def _shifted(jacobian, block, row, position, speed, s):
     return s * (load(jacobian, block, row + speed) + s * load(jacobian, block, row + position))
 
 
-@kernel
+@fused
 def _roller_blocks(block, jacobian, s, rows):
     """Invert the 3x3 matrices I - s (dv'/dv + s dv'/dq) of a block of rollers by cofactors; return whether all are regular."""
     a, b = 1.0 - _shifted(jacobian, block, 0, 0, 2, s), -_shifted(jacobian, block, 0, 1, 3, s)
@@ -606,7 +606,7 @@ def _roller_blocks(block, jacobian, s, rows):
     return total(where_positive(magnitude(determinant), 1.0, 0.0)) == LANES
 
 
-@kernel
+@fused
 def _couplings(block, jacobian, s, rows):
     """Write how a block of rollers and the border act on each other."""
     for m in range(BORDER):
@@ -623,18 +623,22 @@ def _couplings(block, jacobian, s, rows):
         store(rows, block, BELOW + 3 * k + 2, s * load(jacobian, block, first + 4))
 
 
-@kernel
-def _through_rollers(k, m, rows):
-    """Return what a border speed does to another border equation through all rollers, which yield."""
-    radial, orbital, spinning = spread(0.0), spread(0.0), spread(0.0)
+@fused
+def _through_rollers(k, rows):
+    """Return what the border's five speeds do to a border equation through all rollers, which yield (lanes)."""
+    by_0, by_1, by_2, by_3, by_4 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     for block in range(rows.shape[0]):
-        radial += load(rows, block, BELOW + 3 * k) * load(rows, block, RIGHT + m)
-        orbital += load(rows, block, BELOW + 3 * k + 1) * load(rows, block, RIGHT + BORDER + m)
-        spinning += load(rows, block, BELOW + 3 * k + 2) * load(rows, block, RIGHT + 2 * BORDER + m)
-    return total(radial + orbital + spinning)
+        for motion in range(3):
+            below, right = load(rows, block, BELOW + 3 * k + motion), RIGHT + BORDER * motion
+            by_0 += below * load(rows, block, right)
+            by_1 += below * load(rows, block, right + 1)
+            by_2 += below * load(rows, block, right + 2)
+            by_3 += below * load(rows, block, right + 3)
+            by_4 += below * load(rows, block, right + 4)
+    return total(by_0), total(by_1), total(by_2), total(by_3), total(by_4)
 
 
-@kernel
+@fused
 def _passed_by_rollers(k, m, jacobian):
     """Return what a border position and its speed do to a border acceleration through all rollers, which are held."""
     d_position, d_speed = spread(0.0), spread(0.0)
@@ -645,7 +649,7 @@ def _passed_by_rollers(k, m, jacobian):
     return total(d_position), total(d_speed)
 
 
-@kernel
+@fused
 def factor(jacobian, border, s, factored):
     """Factor I - s J.
 
@@ -667,8 +671,9 @@ def factor(jacobian, border, s, factored):
         regular = _roller_blocks(block, jacobian, s, rows) and regular
         _couplings(block, jacobian, s, rows)
     for k in range(BORDER):
+        corner[k, 0], corner[k, 1], corner[k, 2], corner[k, 3], corner[k, 4] = _through_rollers(k, rows)
         for m in range(BORDER):
-            corner[k, m] = (1.0 if k == m else 0.0) - s * (border[k, BORDER + m] + s * border[k, m]) - _through_rollers(k, m, rows)
+            corner[k, m] = (1.0 if k == m else 0.0) - s * (border[k, BORDER + m] + s * border[k, m]) - corner[k, m]
             factored.positions[k, m] = border[k, m]
             if (k < RING) == (m < RING):  # ring and cage meet only in the rollers
                 d_position, d_speed = _passed_by_rollers(k, m, jacobian)
@@ -677,7 +682,7 @@ def factor(jacobian, border, s, factored):
     return decompose(corner, factored.order) and regular
 
 
-@kernel
+@fused
 def _eliminate(block, jacobian, s, x, factored):
     """Reduce a block's right side to speeds, solve for them without the border, and take what they do to it from its own."""
     rows, right = factored.rows, factored.right
@@ -703,7 +708,7 @@ def _eliminate(block, jacobian, s, x, factored):
         x[BORDER + k] += total(passed)
 
 
-@kernel
+@fused
 def _substitute(block, s, x, factored):
     """Complete a block's speeds by what the border does to them, and its positions."""
     rows, right = factored.rows, factored.right
@@ -719,7 +724,7 @@ def _substitute(block, s, x, factored):
     store(right, block, 4, v_2)
 
 
-@kernel
+@fused
 def solve(jacobian, factored, x):
     """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
     s = factored.shift[0]

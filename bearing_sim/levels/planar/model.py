@@ -21,7 +21,8 @@ from bearing_sim.levels.planar.power import planar_powers
 from bearing_sim.levels.planar.state import BLOCK, BORDER, CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, ROLLERS, THETA
 from bearing_sim.model.params import Params
 from bearing_sim.model.sample import COLUMN
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import fused, kernel
+from bearing_sim.numerics.simd import LANES, highest, larger, load_run, magnitude, spread, total
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.lamina_life import equivalent_loads
 
@@ -34,19 +35,19 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     return state
 
 
-@kernel
+@fused
 def rhs(t, y, model, work, rate):
     """Write dy/dt into ``rate``."""
     return equations(t, y, model, work, rate, False)
 
 
-@kernel
+@fused
 def rhs_and_jacobian(t, y, model, work, rate):
     """Write dy/dt into ``rate`` and all derivatives into ``work``."""
     return equations(t, y, model, work, rate, True)
 
 
-@kernel
+@fused
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
     if work.support.shape[0] > 0:
@@ -54,7 +55,7 @@ def factor(shift, work):
     return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
 
 
-@kernel
+@fused
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
     if work.support.shape[0] > 0:
@@ -63,7 +64,7 @@ def solve(work, x):
         jacobian.solve(work.jacobian, work.factored, x)
 
 
-@kernel
+@fused
 def error_norm(t, y, change, model):
     """Return the largest ratio of any state's change to its tolerance.
 
@@ -79,21 +80,29 @@ def error_norm(t, y, change, model):
     count = rollers.count
     if change.shape[0] > ROLLERS + BLOCK * count:
         largest = max(largest, support_change(change) * position)
-    for j in range(ROLLERS, ROLLERS + count):
-        ratio = max(abs(change[j]) * position, abs(change[j + count] - change[THETA]) * offset)
-        ratio = max(ratio, abs(change[j + 3 * count]) * speed, abs(change[j + 4 * count]) * spin)
-        if not ratio <= largest:  # NaN goes through
-            largest = ratio
-    return largest
+    whole, turned = count // LANES, change[THETA]
+    highest_ratio, finite = spread(largest), spread(0.0)
+    for block in range(whole):
+        j = ROLLERS + block * LANES
+        ratio = larger(magnitude(load_run(change, j)) * position, magnitude(load_run(change, j + count) - turned) * offset)
+        ratio = larger(ratio, larger(magnitude(load_run(change, j + 3 * count)) * speed, magnitude(load_run(change, j + 4 * count)) * spin))
+        highest_ratio = larger(highest_ratio, ratio)
+        finite += load_run(change, j) + load_run(change, j + count) + load_run(change, j + 3 * count) + load_run(change, j + 4 * count)
+    largest, passed = highest(highest_ratio), total(finite)
+    for j in range(ROLLERS + whole * LANES, ROLLERS + count):
+        ratio = max(abs(change[j]) * position, abs(change[j + count] - turned) * offset)
+        largest = max(largest, ratio, abs(change[j + 3 * count]) * speed, abs(change[j + 4 * count]) * spin)
+        passed += change[j] + change[j + count] + change[j + 3 * count] + change[j + 4 * count]
+    return largest if math.isfinite(passed) else passed  # a comparison with NaN would lose it
 
 
-@kernel
+@fused
 def step_limit(t, y, model):
     """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.pitch_step`)."""
     return pitch_step(y[OMEGA], model.params.rollers.count, FIFTH_PITCH)
 
 
-@kernel
+@fused
 def average_loads(h, y, model, work):
     """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn."""
     count, turned = model.params.rollers.count, h * y[OMEGA]

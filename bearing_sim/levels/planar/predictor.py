@@ -14,7 +14,7 @@ from bearing_sim.levels.common.rollers import follow_contour
 from bearing_sim.levels.common.support import extrapolate_support
 from bearing_sim.levels.planar.forces import normal_forces
 from bearing_sim.levels.planar.state import BLOCK, BORDER, R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import fused
 from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, square_root, store
 from bearing_sim.physics.contact import CONTACT
 
@@ -22,7 +22,7 @@ _ITERATIONS = 4
 _SETTLED = 0.2  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system
 
 
-@kernel
+@fused
 def _extrapolate(known, shift, slope, count, guess):
     """Extrapolate speeds by their rates, and write the positions that belong to them."""
     for k in range(BORDER):
@@ -35,7 +35,7 @@ def _extrapolate(known, shift, slope, count, guess):
     extrapolate_support(known, shift, slope, ROLLERS + BLOCK * count, guess)
 
 
-@kernel
+@fused
 def _start(known, shift, guess, count, raceways, rows):
     """Write azimuths, the contour and the known terms of each radial equation; let the rollers follow the contour at first."""
     last = count - 1
@@ -49,7 +49,7 @@ def _start(known, shift, guess, count, raceways, rows):
         follow_contour(ROLLER, block, shift, raceways.contour, rows)
 
 
-@kernel
+@fused
 def _balance(guess, shift, inner_radius, params, rows, contacts):
     """Take one Newton step of all radial equations and return the largest change [m].
 
@@ -83,7 +83,7 @@ def _balance(guess, shift, inner_radius, params, rows, contacts):
     return highest(largest)
 
 
-@kernel
+@fused
 def predict(known, shift, slope, model, work, guess):
     """Write a first guess of the solution of guess = known + shift f(guess).
 

@@ -16,7 +16,7 @@ import math
 
 from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import ARROW
 from bearing_sim.numerics.rosenbrock2 import GAMMA
 from bearing_sim.numerics.simd import LANES
@@ -35,7 +35,7 @@ _STICKING = 2.0 / GAMMA  # c of `hold_sticking_contacts`
 _PITCH_POSITIONS = 10  # cage angles over one roller pitch for the equivalent loads
 
 
-@kernel
+@fused
 def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
     """Find ring position and roller loads at a cage angle; results in ``work.loads``; False where it did not converge."""
     rollers, raceways, loads = params.rollers, params.raceways, work.loads
@@ -62,7 +62,7 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
     return converged
 
 
-@kernel
+@fused
 def _tractions(cage_speed, shaft_speed, y, model, work):
     """Compute the tangential forces in all contacts; results in ``work.contacts``."""
     rollers, inner_radius = model.params.rollers, model.params.raceways.inner_radius + work.growth[0]
@@ -83,7 +83,7 @@ def _tractions(cage_speed, shaft_speed, y, model, work):
         resist_rolling(contacts, model.lubrication.rolling_resistance)
 
 
-@kernel
+@fused
 def _leaning_force(cage_speed, params, work):
     """Write into ``work.tangential`` the force along the orbit on each roller [N] that needs no oil.
 
@@ -97,7 +97,7 @@ def _leaning_force(cage_speed, params, work):
         work.tangential[j] = params.variants.contour_slope * (lean / loads[LOAD.radius, j] - coriolis * loads[LOAD.contour_slope, j])
 
 
-@kernel
+@fused
 def _cage_torque(cage_speed, shaft_speed, model):
     """Return the torque of guide lands and mixture on the cage body [N m] and its derivative by cage speed."""
     cage = model.params.cage
@@ -106,7 +106,7 @@ def _cage_torque(cage_speed, shaft_speed, model):
     return lands + mixture, d_lands + d_mixture
 
 
-@kernel
+@fused
 def equations(t, y, model, work, rate, with_jacobian):
     """Evaluate the right-hand side, and the Jacobian where asked; return False where the loads did not balance."""
     params, drive, loads, tangential = model.params, model.drive, work.loads, work.tangential
@@ -175,7 +175,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     return True
 
 
-@kernel
+@fused
 def hold_sticking_contacts(model, work):
     """Make the Jacobian of `equations` steeper for contacts that stick but for sliding within the tolerance of speeds.
 

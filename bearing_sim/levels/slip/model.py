@@ -19,7 +19,7 @@ from bearing_sim.levels.slip.forces import equations, hold_sticking_contacts, la
 from bearing_sim.levels.slip.power import slip_powers, surplus_power
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.linear_algebra import factor_shifted, solve_factored
 from bearing_sim.physics.load_balance import LOAD
 
@@ -33,7 +33,7 @@ def initial_state(params, work, shaft_speed, load_y, load_z):
     return state
 
 
-@kernel
+@fused
 def rhs(t, y, model, work, rate):
     """Write dy/dt into ``rate``; return False where the loads did not balance."""
     return equations(t, y, model, work, rate, False)
@@ -48,7 +48,7 @@ def rhs_and_jacobian(t, y, model, work, rate):
     return equations(t, y, model, work, rate, True)
 
 
-@kernel
+@fused
 def rhs_and_step_jacobian(t, y, model, work, rate):
     """Write dy/dt into ``rate`` and into ``work.jacobian`` the matrix for a step: the Jacobian, steeper where contacts stick."""
     if not equations(t, y, model, work, rate, True):
