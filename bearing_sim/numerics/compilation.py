@@ -7,15 +7,19 @@ one-line kernel that binds a template is a full specialisation, which the on-dis
 as an argument at run time never could be.
 
 Numba's own cache looks only at the file of the function that it compiles, so it would serve stale code after a change of a law in
-another file.  The cache folder is therefore named by a hash of every source that compiled code comes from.
+another file.  The cache folder is therefore named by a hash of every source that compiled code comes from, by the machine's architecture and by
+the number of lanes of its vectors (`bearing_sim.numerics.vector_width`).
 """
 
 import hashlib
+import platform
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numba
 import platformdirs
+
+from bearing_sim.numerics.vector_width import LANES
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 _SOURCES = ("numerics/*.py", "physics/*.py", "levels/**/*.py", "model/params.py", "model/sample.py")
@@ -30,7 +34,7 @@ def sources_hash() -> str:
     return digest.hexdigest()[:16]
 
 
-CACHE_FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "compiled" / sources_hash()
+CACHE_FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "compiled" / f"{sources_hash()}_{platform.machine()}_{LANES}"
 
 
 def _compiled(function, **options):

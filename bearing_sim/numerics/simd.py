@@ -2,7 +2,7 @@
 """SIMD over rollers: a value that is a vector of doubles, with one lane for each of ``LANES`` rollers.
 
 The compiler vectorises loops by itself only where it can prove that arrays do not overlap, and gives up after a few rows.
-With a vector as a type there is nothing to prove: a law that is written for a number computes four rollers per instruction.
+With a vector as a type there is nothing to prove: a law that is written for a number computes ``LANES`` rollers per instruction.
 Without compilation (NUMBA_DISABLE_JIT=1, for a debugger) a vector is a NumPy array of ``LANES`` numbers.
 
 Arrays of lanes have the shape (blocks, rows, LANES), see `new_rows`; a state holds each quantity of all rollers as one run of
@@ -20,8 +20,8 @@ from numba.core.typing.templates import AbstractTemplate, infer_global
 from numba.extending import intrinsic, lower_builtin
 
 from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.vector_width import LANES
 
-LANES = 4  # doubles in a 256-bit register; eight gave no gain where registers have 512 bits
 _CACHE_LINE = 8  # doubles
 
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
