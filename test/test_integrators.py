@@ -8,8 +8,8 @@ import pytest
 from one_equation import factor, failing, no_limit, solve, step_taken
 
 from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.rosenbrock2 import rosenbrock2, rosenbrock2_fixed
-from bearing_sim.numerics.sdirk2 import sdirk2, sdirk2_fixed
+from bearing_sim.numerics.rosenbrock2 import rosenbrock2_attempt
+from bearing_sim.numerics.sdirk2 import sdirk2_attempt
 from bearing_sim.numerics.time_stepping import (
     COUNT,
     NON_FINITE,
@@ -17,11 +17,9 @@ from bearing_sim.numerics.time_stepping import (
     NOT_EVALUATED,
     OK,
     STEP_BUDGET,
-    advance_adaptively,
-    advance_in_fixed_steps,
+    advance_in_steps,
     new_counts,
     new_memory,
-    start_from_known,
 )
 
 # model: (stiffness, fraction of the Jacobian that the method is given, absolute tolerance, time from which all is NaN, longest step that
@@ -50,20 +48,20 @@ def norm(t, y, change, model):
 
 
 @kernel
-def solved_if_short(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h, model, work, memory, counts):
+def solved_if_short(t, y, h, model, work, memory, counts):
     # what contacts do to an iteration: whether it converges depends on the length of the step
     memory.scratch[1, 0] = y[0] + h
     return OK if h <= model[SOLVABLE] else NOT_CONVERGED
 
 
 @kernel
-def unsolved_across_an_impact(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h, model, work, memory, counts):
+def unsolved_across_an_impact(t, y, h, model, work, memory, counts):
     memory.scratch[1, 0] = y[0] + h
     return OK if h <= 2.0**-9 or not t <= model[SOLVABLE] < t + h else NOT_CONVERGED
 
 
 @kernel
-def error_by_length(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h, model, work, memory, counts):
+def error_by_length(t, y, h, model, work, memory, counts):
     memory.scratch[1, 0], memory.scratch[2, 0] = y[0] + h, h
     return OK
 
@@ -74,75 +72,68 @@ def keep_longest(h, y, model, work):
 
 
 @kernel
+def guess_known(known, shift, slope, model, work, guess):
+    guess[0] = known[0]
+
+
+@kernel
+def rosenbrock2_step(t, y, h, model, work, memory, counts):
+    return rosenbrock2_attempt(rate_of, rate_and_jacobian, factor, solve, t, y, h, model, work, memory, counts)
+
+
+@kernel
+def sdirk2_step(t, y, h, model, work, memory, counts):
+    return sdirk2_attempt(rate_of, rate_and_jacobian, guess_known, factor, solve, norm, t, y, h, model, work, memory, counts)
+
+
+@kernel
+def failing_step(t, y, h, model, work, memory, counts):
+    return rosenbrock2_attempt(failing, failing, factor, solve, t, y, h, model, work, memory, counts)
+
+
+@kernel
 def with_error_by_length(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_adaptively(
-        error_by_length, rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, keep_longest,
-        t, end, y, h, longest, budget, model, work, memory, counts,
-    )  # fmt: skip
+    return advance_in_steps(error_by_length, norm, no_limit, keep_longest, False, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_rosenbrock2(t, end, y, h, longest, budget, model, work, memory, counts):
-    return rosenbrock2(
-        rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, y, h, longest, budget, model, work, memory, counts,
-    )  # fmt: skip
-
-
-@kernel
-def by_sdirk2(t, end, y, h, longest, budget, model, work, memory, counts):
-    return sdirk2(
-        rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, y, h, longest, budget, model, work, memory, counts,
-    )  # fmt: skip
-
-
-@kernel
-def by_failing_kernels(t, end, y, h, longest, budget, model, work, memory, counts):
-    return rosenbrock2(
-        failing, failing, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, y, h, longest, budget, model, work, memory, counts,
-    )  # fmt: skip
+    return advance_in_steps(rosenbrock2_step, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_rosenbrock2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return rosenbrock2_fixed(
-        rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, y, h, longest, budget, model, work, memory, counts,
-    )  # fmt: skip
+    return advance_in_steps(rosenbrock2_step, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
+
+
+@kernel
+def by_sdirk2(t, end, y, h, longest, budget, model, work, memory, counts):
+    return advance_in_steps(sdirk2_step, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_sdirk2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return sdirk2_fixed(
-        rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, y, h, longest, budget, model, work, memory, counts,
-    )  # fmt: skip
+    return advance_in_steps(sdirk2_step, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
+
+
+@kernel
+def by_failing_kernels(t, end, y, h, longest, budget, model, work, memory, counts):
+    return advance_in_steps(failing_step, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_failing_kernels_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return rosenbrock2_fixed(
-        failing, failing, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, y, h, longest, budget, model, work, memory, counts,
-    )  # fmt: skip
+    return advance_in_steps(failing_step, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_short_steps_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_fixed_steps(
-        solved_if_short, rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, step_taken,
-        t, end, y, longest, budget, model, work, memory, counts,
-    )  # fmt: skip
+    return advance_in_steps(solved_if_short, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def across_an_impact_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_fixed_steps(
-        unsolved_across_an_impact, rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, step_taken,
-        t, end, y, longest, budget, model, work, memory, counts,
-    )  # fmt: skip
+    return advance_in_steps(unsolved_across_an_impact, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 ADAPTIVE, FIXED = [by_rosenbrock2, by_sdirk2], [by_rosenbrock2_fixed, by_sdirk2_fixed]

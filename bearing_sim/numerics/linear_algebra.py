@@ -25,19 +25,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import fused, kernel
 
 
-@kernel
-def decompose(matrix, order):
+@fused
+def decompose(n, matrix, order):
     """Replace a matrix by its factors L (unit diagonal) and U (its diagonal inverted); return False if it is singular or not finite.
 
     Parameters
     ----------
+    n : size; where it is a constant, the loops are unrolled.
     matrix : shape (n, n).
     order : takes the row of each pivot, int64, shape (n,).
     """
-    n = matrix.shape[0]
     for k in range(n):
         pivot = k
         for i in range(k + 1, n):
@@ -59,10 +59,9 @@ def decompose(matrix, order):
     return True
 
 
-@kernel
-def back_substitute(matrix, order, x):
-    """Replace ``x`` by the solution with the factors of `decompose`."""
-    n = matrix.shape[0]
+@fused
+def back_substitute(n, matrix, order, x):
+    """Replace the first ``n`` numbers of ``x`` by the solution with the factors of `decompose`."""
     for k in range(n):
         pivot = order[k]
         x[k], x[pivot] = x[pivot], x[k]

@@ -13,17 +13,17 @@ out of it.  The embedded method of order 1 is y + h k_1.
 import math
 
 from bearing_sim.numerics.compilation import template
-from bearing_sim.numerics.time_stepping import COUNT, NOT_CONVERGED, NOT_EVALUATED, OK, advance_adaptively, advance_in_fixed_steps
+from bearing_sim.numerics.time_stepping import COUNT, NOT_CONVERGED, NOT_EVALUATED, OK
 
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 
 
 @template
-def rosenbrock2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h, model, work, memory, counts):
-    """Compute one step of ``h`` [s] from (t, y); see `bearing_sim.numerics.time_stepping.advance_adaptively`.
+def rosenbrock2_attempt(rhs, rhs_and_jacobian, factor, solve, t, y, h, model, work, memory, counts):
+    """Compute one step of ``h`` [s] from (t, y); see `bearing_sim.numerics.time_stepping`.
 
-    A step that follows a rejected one keeps rate and Jacobian.  Result and error estimate, the difference to the embedded method,
-    go to rows 1 and 2 of ``memory.scratch``.
+    A step that follows a rejected one keeps rate and Jacobian, unless ``memory.derivative_time`` has been set to NaN.  Result and error
+    estimate, the difference to the embedded method, go to rows 1 and 2 of ``memory.scratch``.
     """
     rate, result, error, first, second = memory.scratch[0], memory.scratch[1], memory.scratch[2], memory.scratch[3], memory.scratch[4]
     if memory.derivative_time[0] != t:
@@ -51,29 +51,3 @@ def rosenbrock2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_nor
         error[i] = 0.5 * (first[i] + second[i])
         result[i] = y[i] + 1.5 * first[i] + 0.5 * second[i]
     return OK
-
-
-@template
-def rosenbrock2(
-    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-    t, end, y, h, maximum_step, budget, model, work, memory, counts,
-):  # fmt: skip
-    """Advance with error control; parameters and results as of `bearing_sim.numerics.time_stepping.advance_adaptively`."""
-    memory.derivative_time[0] = math.nan
-    return advance_adaptively(
-        rosenbrock2_attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-        t, end, y, h, maximum_step, budget, model, work, memory, counts,
-    )  # fmt: skip
-
-
-@template
-def rosenbrock2_fixed(
-    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-    t, end, y, h, maximum_step, budget, model, work, memory, counts,
-):  # fmt: skip
-    """Advance in steps of ``maximum_step``; see `bearing_sim.numerics.time_stepping.advance_in_fixed_steps`."""
-    memory.derivative_time[0] = math.nan
-    return advance_in_fixed_steps(
-        rosenbrock2_attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_taken,
-        t, end, y, maximum_step, budget, model, work, memory, counts,
-    )  # fmt: skip

@@ -13,7 +13,7 @@ import math
 
 from bearing_sim.numerics.compilation import template
 from bearing_sim.numerics.newton import solve_implicit
-from bearing_sim.numerics.time_stepping import INNER_STAGE, OK, advance_adaptively, advance_in_fixed_steps
+from bearing_sim.numerics.time_stepping import INNER_STAGE, OK
 
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 _ENOUGH = 1 / 60  # of the tolerances: the error that the iteration of a stage may leave (assumption)
@@ -21,7 +21,7 @@ _ENOUGH = 1 / 60  # of the tolerances: the error that the iteration of a stage m
 
 @template
 def sdirk2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h, model, work, memory, counts):
-    """Compute one step of ``h`` [s] from (t, y); see `bearing_sim.numerics.time_stepping.advance_adaptively`.
+    """Compute one step of ``h`` [s] from (t, y); see `bearing_sim.numerics.time_stepping`.
 
     The error estimate is the difference to the embedded method of order 1, y + h f(Y_1), filtered by the iteration's matrix so that
     stiff components do not dominate it (L. F. Shampine, L. S. Baca: Error estimators for stiff differential equations, J. Comput.
@@ -58,27 +58,3 @@ def sdirk2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t,
     memory.derivative_time[0], memory.stage_time[0] = t + h, t + shift
     solve(work, error)
     return OK
-
-
-@template
-def sdirk2(
-    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-    t, end, y, h, maximum_step, budget, model, work, memory, counts,
-):  # fmt: skip
-    """Advance with error control; parameters and results as of `bearing_sim.numerics.time_stepping.advance_adaptively`."""
-    return advance_adaptively(
-        sdirk2_attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-        t, end, y, h, maximum_step, budget, model, work, memory, counts,
-    )  # fmt: skip
-
-
-@template
-def sdirk2_fixed(
-    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-    t, end, y, h, maximum_step, budget, model, work, memory, counts,
-):  # fmt: skip
-    """Advance in steps of ``maximum_step``; see `bearing_sim.numerics.time_stepping.advance_in_fixed_steps`."""
-    return advance_in_fixed_steps(
-        sdirk2_attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_taken,
-        t, end, y, maximum_step, budget, model, work, memory, counts,
-    )  # fmt: skip

@@ -333,6 +333,17 @@ def spread_runs(x, first, runs, count, rows):
 
 
 @template
+def spread_run(x, first, count, rows, row):
+    """Copy one run into a row of all blocks; lanes without a roller take the last one's value.  Parameters as of `spread_runs`."""
+    whole = count // LANES
+    for block in range(whole):
+        store(rows, block, row, load_run(x, first + block * LANES))
+    if whole * LANES < count:
+        for lane in range(LANES):
+            rows[whole, row, lane] = x[first + min(whole * LANES + lane, count - 1)]
+
+
+@template
 def fill_lanes(rows, runs, count):
     """Fill lanes without a roller with the last roller's values in the first ``runs`` rows, so that they stay finite."""
     last = count - 1

@@ -1,17 +1,20 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The loops around a time-stepping method: one with error control, one with a fixed step.
+"""The loop around a time-stepping method, with error control or with a fixed step.
 
-Neither loop knows a bearing or a method.  A method comes in as the template ``attempt``, a level as eight kernels:
+It knows no bearing and no method.  A level comes in as kernels:
 
 rhs, rhs_and_jacobian : ``(t, y, model, work, rate)`` write dy/dt into ``rate``, the second also the Jacobian into ``work``;
     return False where they cannot be evaluated.
 predict : ``(known, shift, slope, model, work, guess)`` writes a first guess of the solution of guess = known + shift f(guess),
-    given f a little earlier; `start_from_known` where a level has nothing better.
+    given f a little earlier.
 factor : ``(shift, work)`` factors I - shift J; returns False where it is singular.
 solve : ``(work, x)`` replaces the right side by the solution with the last factorisation.
 error_norm : ``(t, y, change, model)`` returns the largest ratio of any state's change to what the tolerances allow it.
 step_limit : ``(t, y, model)`` returns the longest sensible step [s].
 step_taken : ``(h, y, model, work)`` is called after each accepted step.
+attempt : ``(t, y, h, model, work, memory, counts)`` computes a step of ``h`` [s] from (t, y): a method bound to the kernels above, such as
+    `bearing_sim.numerics.sdirk2.sdirk2_attempt`.  It leaves the result in row 1 of ``memory.scratch`` and the error estimate in row 2, and
+    returns a status.
 
 Compiled code raises nothing: how an advance ended is a value.
 """
@@ -60,12 +63,19 @@ def new_counts() -> np.ndarray:
 
 
 class Control(NamedTuple):
-    """Where each number of the step-size controller stands in ``memory.control`` [s]."""
+    """Where each number of the step-size controller stands in ``memory.control`` [s], or as a count."""
 
     time: int = 0  # of the newest state
     step: int = 1  # being attempted, or taken last
     allowed: int = 2  # by error and bounds, before the step is fitted to the end of the interval
     next_step: int = 3  # that the error allows
+    # of fixed steps
+    start: int = 4  # of the interval
+    length: int = 5  # of a whole step
+    whole: int = 6  # whole steps in the interval
+    done: int = 7  # whole steps done
+    parts_done: int = 8  # parts done of the present one
+    parts: int = 9  # into which it is divided
 
 
 CONTROL = Control()
@@ -84,13 +94,6 @@ class Memory(NamedTuple):
 def new_memory(size: int) -> Memory:
     """Return memory for ``size`` states."""
     return Memory(np.zeros((9, size)), np.zeros(len(CONTROL)), np.full(1, np.nan), np.full(1, np.nan))
-
-
-@kernel
-def start_from_known(known, shift, slope, model, work, guess):
-    """Guess that a stage ends where it starts."""
-    for i in range(known.shape[0]):
-        guess[i] = known[i]
 
 
 # The step-size rule.  The form is standard (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, 2nd ed. 1996, section
@@ -135,62 +138,6 @@ def _reject(error, control):
         control[CONTROL.next_step] = step * _SHRINK_UNSOLVED
 
 
-@template
-def advance_adaptively(
-    attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-    t, end, y, h, maximum_step, budget, model, work, memory, counts,
-):  # fmt: skip
-    """Advance ``y`` in place from ``t`` to ``end``, accepting or rejecting each step by its error.
-
-    Parameters
-    ----------
-    attempt : ``(kernels of the level, t, y, h, model, work, memory, counts)`` computes a step: leaves the result in row 1 of
-        ``memory.scratch`` and the error estimate in row 2, and returns a status.
-    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken : kernels of the level, see the module's docstring.
-    t, end : time, and time to reach [s].
-    y : newest state, changed in place.
-    h : step to try first [s].
-    maximum_step : longest step [s].
-    budget : steps allowed, rejected ones included.
-    memory : of the method.
-    counts : work done, see `Count`; added to.
-
-    Returns
-    -------
-    status : OK, or a key of `REASONS`.
-    h : step to try next [s].
-    """
-    control, result = memory.control, memory.scratch[1]
-    control[CONTROL.time], control[CONTROL.next_step] = t, h
-    while control[CONTROL.time] < end:
-        if budget <= 0:
-            return STEP_BUDGET, control[CONTROL.next_step]
-        budget -= 1
-        _fit(step_limit(control[CONTROL.time], y, model), maximum_step, end, control)
-        step = control[CONTROL.step]
-        outcome = attempt(
-            rhs, rhs_and_jacobian, predict, factor, solve, error_norm, control[CONTROL.time], y, step, model, work, memory, counts,
-        )  # fmt: skip
-        error = math.inf
-        if outcome == OK:
-            error = error_norm(control[CONTROL.time], y, memory.scratch[2], model)
-        finite = math.isfinite(error)
-        if error <= 1.0 or (finite and step <= SMALLEST_STEP):
-            counts[COUNT.steps] += 1
-            if error > 1.0:
-                counts[COUNT.smallest_steps] += 1
-            _accept(error, end, y, result, control)
-            step_taken(step, y, model, work)
-            continue
-        counts[COUNT.rejected_steps] += 1
-        if outcome == NON_FINITE or (outcome == OK and not finite):
-            counts[COUNT.non_finite_steps] += 1
-        _reject(error, control)
-        if control[CONTROL.next_step] < SMALLEST_STEP:
-            return outcome if outcome != OK else NON_FINITE, control[CONTROL.next_step]
-    return OK, control[CONTROL.next_step]
-
-
 _HALVINGS = 10
 _COARSEST_KEPT = 8  # parts into which a divided step stays divided to its end; finer parts are joined again behind the difficulty
 
@@ -203,52 +150,106 @@ def _all_finite(y):
     return True
 
 
-@template
-def advance_in_fixed_steps(
-    attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_taken, t, end, y, h, budget, model, work, memory, counts
-):
-    """Advance ``y`` in place from ``t`` to ``end`` in equal steps without error control, for hard real time.
+@kernel
+def _begin(t, h, end, maximum_step, control):
+    """Prepare both ways of stepping over an interval."""
+    control[CONTROL.time], control[CONTROL.next_step] = t, h
+    whole = math.ceil((end - t) / maximum_step * (1.0 - 1e-9))
+    length = (end - t) / max(whole, 1.0)
+    if abs(length - maximum_step) <= 1e-9 * maximum_step:
+        length = maximum_step  # to the last digit, so that steps do not change from call to call
+    control[CONTROL.start], control[CONTROL.length], control[CONTROL.whole] = t, length, whole
+    control[CONTROL.done], control[CONTROL.parts_done], control[CONTROL.parts] = 0.0, 0.0, 1.0
 
-    The steps are as long as they can be, but not longer than ``h``.  A step that cannot be solved is divided into two halves,
-    those again into halves, and so on ten times at most; parts finer than an eighth are joined again as soon as they are past
-    the difficulty.  A step in eighths costs eleven attempts, one with an impact in it some twenty, and none more than 2^11.
+
+@kernel
+def _fit_part(control):
+    """Set the part of a fixed step to attempt."""
+    length, parts = control[CONTROL.length], control[CONTROL.parts]
+    control[CONTROL.time] = control[CONTROL.start] + length * (control[CONTROL.done] + control[CONTROL.parts_done] / parts)
+    control[CONTROL.step] = length / parts
+
+
+@kernel
+def _accept_part(y, result, control):
+    """Take the result of a part of a fixed step, and join parts that are finer than need be."""
+    for i in range(y.shape[0]):
+        y[i] = result[i]
+    parts_done, parts = control[CONTROL.parts_done] + 1.0, control[CONTROL.parts]
+    while parts > _COARSEST_KEPT and parts_done % 2.0 == 0.0:
+        parts_done, parts = 0.5 * parts_done, 0.5 * parts
+    if parts_done == parts:
+        control[CONTROL.done] += 1.0
+        parts_done, parts = 0.0, 1.0
+    control[CONTROL.parts_done], control[CONTROL.parts] = parts_done, parts
+
+
+@template
+def advance_in_steps(
+    attempt, error_norm, step_limit, step_taken, fixed, t, end, y, h, maximum_step, budget, model, work, memory, counts,
+):  # fmt: skip
+    """Advance ``y`` in place from ``t`` to ``end``, accepting or rejecting each step by its error, or in equal steps.
+
+    Equal steps are for hard real time, and nothing estimates their error.  They are as long as they can be, but not longer than
+    ``maximum_step``.  A step that cannot be solved is divided into two halves, those again into halves, and so on ten times at most; parts
+    finer than an eighth are joined again as soon as they are past the difficulty.  A step in eighths costs eleven attempts, one with an
+    impact in it some twenty, and none more than 2^11.
 
     Parameters
     ----------
-    attempt : of a method, as for `advance_adaptively`.
-    h : longest step [s].
+    attempt, error_norm, step_limit, step_taken : kernels of the level, see the module's docstring.
+    fixed : whether steps are equal.  Both ways share one loop, because most of what there is to compile is the attempt in it.
+    t, end : time, and time to reach [s].
+    y : newest state, changed in place.
+    h : step to try first [s]; fixed steps ignore it.
+    maximum_step : longest step [s].
+    budget : steps allowed, rejected ones included.
+    memory : of the method.
+    counts : work done, see `Count`; added to.
 
-    The other parameters and the results are those of `advance_adaptively`; the step returned is ``h``.
+    Returns
+    -------
+    status : OK, or a key of `REASONS`.
+    h : step to try next [s].
     """
-    result = memory.scratch[1]
-    whole = math.ceil((end - t) / h * (1.0 - 1e-9))
-    length = (end - t) / max(whole, 1.0)
-    if abs(length - h) <= 1e-9 * h:
-        length = h  # to the last digit, so that steps do not change from call to call
-    done, parts_done, parts = 0, 0, 1  # whole steps done; parts of the next one done, of how many
-    while done < whole:
+    control, result = memory.control, memory.scratch[1]
+    _begin(t, h, end, maximum_step, control)
+    while (control[CONTROL.done] < control[CONTROL.whole]) if fixed else (control[CONTROL.time] < end):
         if budget <= 0:
-            return STEP_BUDGET, h
+            return STEP_BUDGET, control[CONTROL.next_step]
         budget -= 1
-        now, step = t + length * (done + parts_done / parts), length / parts
-        outcome = attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, now, y, step, model, work, memory, counts)
-        if outcome == OK and not _all_finite(result):
-            outcome = NON_FINITE
-        if outcome == OK:
+        if fixed:
+            _fit_part(control)
+        else:
+            _fit(step_limit(control[CONTROL.time], y, model), maximum_step, end, control)
+        now, step = control[CONTROL.time], control[CONTROL.step]
+        outcome, error = attempt(now, y, step, model, work, memory, counts), math.inf
+        if outcome == OK and fixed:
+            error = 0.0 if _all_finite(result) else math.nan
+        elif outcome == OK:
+            error = error_norm(now, y, memory.scratch[2], model)
+        finite = math.isfinite(error)
+        if error <= 1.0 or (finite and step <= SMALLEST_STEP):
             counts[COUNT.steps] += 1
-            for i in range(y.shape[0]):
-                y[i] = result[i]
+            if error > 1.0:
+                counts[COUNT.smallest_steps] += 1
+            if fixed:
+                _accept_part(y, result, control)
+            else:
+                _accept(error, end, y, result, control)
             step_taken(step, y, model, work)
-            parts_done += 1
-            while parts > _COARSEST_KEPT and parts_done % 2 == 0:
-                parts_done, parts = parts_done // 2, parts // 2
-            if parts_done == parts:
-                done, parts_done, parts = done + 1, 0, 1
             continue
+        if outcome == OK and not finite:
+            outcome = NON_FINITE
         counts[COUNT.rejected_steps] += 1
         if outcome == NON_FINITE:
             counts[COUNT.non_finite_steps] += 1
-        if parts == 2**_HALVINGS:
-            return outcome, h
-        parts_done, parts = 2 * parts_done, 2 * parts
-    return OK, h
+        if fixed:
+            if control[CONTROL.parts] >= 2.0**_HALVINGS:
+                return outcome, control[CONTROL.next_step]
+            control[CONTROL.parts_done], control[CONTROL.parts] = 2.0 * control[CONTROL.parts_done], 2.0 * control[CONTROL.parts]
+        else:
+            _reject(error, control)
+            if control[CONTROL.next_step] < SMALLEST_STEP:
+                return outcome if outcome != OK else NON_FINITE, control[CONTROL.next_step]
+    return OK, control[CONTROL.next_step]

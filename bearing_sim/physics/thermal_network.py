@@ -402,7 +402,7 @@ def advance_held(duration, temperatures, inlet, ambient, capacities, work):
         for j in range(NODES):
             work.matrix[i, j] = _STAGE * duration * work.balance[i, j]
         work.matrix[i, i] += capacities[i]
-    decompose(work.matrix, work.order)
+    decompose(work.order.shape[0], work.matrix, work.order)
     to_oil, to_ambient = 0.0, 0.0
     for stage in range(2):
         for i in range(NODES):
@@ -416,7 +416,7 @@ def advance_held(duration, temperatures, inlet, ambient, capacities, work):
                 flow -= work.balance[i, j] * work.between[j]
             work.stages[stage, i] = flow
         # the rate of each stage, C k = s - G (T + gamma dt k)
-        back_substitute(work.matrix, work.order, work.stages[stage])
+        back_substitute(work.order.shape[0], work.matrix, work.order, work.stages[stage])
         for i in range(NODES):
             work.between[i] += _STAGE * duration * work.stages[stage, i]
             work.stages[stage, i] *= capacities[i]
@@ -459,9 +459,9 @@ def settle(temperatures, powers, loads, inputs, network, held, work):
                     work.matrix[i, j] = 0.0
                 work.matrix[i, i] = 1.0
                 work.between[i] = temperatures[i]
-        if not decompose(work.matrix, work.order):
+        if not decompose(work.order.shape[0], work.matrix, work.order):
             return False
-        back_substitute(work.matrix, work.order, work.between)
+        back_substitute(work.order.shape[0], work.matrix, work.order, work.between)
         change = 0.0
         for i in range(NODES):
             change = max(change, abs(work.between[i] - temperatures[i]))

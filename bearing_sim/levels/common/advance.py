@@ -2,22 +2,21 @@
 """How every level advances over an interval: a time-stepping method from sample to sample."""
 
 from bearing_sim.numerics.compilation import template
-from bearing_sim.numerics.time_stepping import COUNT, OK
+from bearing_sim.numerics.time_stepping import COUNT, OK, advance_in_steps
 
 
 @template
 def advance_by(
-    method, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken, observe,
+    attempt, error_norm, step_limit, step_taken, observe, fixed,
     t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
 ):  # fmt: skip
     """Advance ``y`` in place by ``duration`` [s] and write evenly spaced samples into ``rows``, the last at the end.
 
     Parameters
     ----------
-    method : template such as `bearing_sim.numerics.rosenbrock2.rosenbrock2`.
-    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken : kernels of the level, see
-        `bearing_sim.numerics.time_stepping`.
+    attempt, error_norm, step_limit, step_taken : kernels of the level, see `bearing_sim.numerics.time_stepping`.
     observe : kernel of the level, writes a sample, see `bearing_sim.levels.slip.model.observe`.
+    fixed : whether steps are equal and nothing controls their error.
     t : time [s].
     h : step to try first [s].
     maximum_step : longest step, or the fixed one [s].
@@ -38,8 +37,8 @@ def advance_by(
     for k in range(samples):
         start, end = t + k * interval, t + (k + 1) * interval
         left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
-        status, h = method(
-            rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
+        status, h = advance_in_steps(
+            attempt, error_norm, step_limit, step_taken, fixed,
             start, end, y, h, maximum_step, left, model, work, memory, counts,
         )  # fmt: skip
         if status != OK:

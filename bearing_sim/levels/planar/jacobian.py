@@ -679,7 +679,7 @@ def factor(jacobian, border, s, factored):
                 d_position, d_speed = _passed_by_rollers(k, m, jacobian)
                 corner[k, m] -= s * (d_speed + s * d_position)
                 factored.positions[k, m] += d_position
-    return decompose(corner, factored.order) and regular
+    return decompose(BORDER, corner, factored.order) and regular
 
 
 @fused
@@ -738,7 +738,7 @@ def solve(jacobian, factored, x):
         x[BORDER + k] += s * through
     for block in range(jacobian.shape[0]):
         _eliminate(block, jacobian, s, x, factored)
-    back_substitute(factored.schur, factored.order, x[BORDER : 2 * BORDER])
+    back_substitute(BORDER, factored.schur, factored.order, x[BORDER : 2 * BORDER])
     for block in range(jacobian.shape[0]):
         _substitute(block, s, x, factored)
     for k in range(BORDER):

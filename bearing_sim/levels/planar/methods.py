@@ -7,23 +7,30 @@ Parameters and results of every function are those of `bearing_sim.levels.common
 from bearing_sim.levels.common.advance import advance_by
 from bearing_sim.levels.planar.model import average_loads, error_norm, factor, observe, rhs, rhs_and_jacobian, solve, step_limit
 from bearing_sim.levels.planar.predictor import predict
-from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.sdirk2 import sdirk2, sdirk2_fixed
+from bearing_sim.numerics.compilation import fused, kernel
+from bearing_sim.numerics.sdirk2 import sdirk2_attempt
+
+
+@fused
+def _attempt(t, y, h, model, work, memory, counts):
+    return sdirk2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h, model, work, memory, counts)
+
+
+@kernel
+def _advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    return advance_by(
+        _attempt, error_norm, step_limit, average_loads, observe, fixed,
+        t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
+    )  # fmt: skip
 
 
 @kernel
 def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance with error control."""
-    return advance_by(
-        sdirk2, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, average_loads, observe,
-        t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
-    )  # fmt: skip
+    return _advance(False, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
 
 
 @kernel
 def advance_fixed(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance in steps of ``maximum_step`` [s] without error control."""
-    return advance_by(
-        sdirk2_fixed, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, average_loads, observe,
-        t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
-    )  # fmt: skip
+    return _advance(True, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

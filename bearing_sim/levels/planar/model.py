@@ -35,7 +35,7 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     return state
 
 
-@fused
+@kernel
 def rhs(t, y, model, work, rate):
     """Write dy/dt into ``rate``."""
     return equations(t, y, model, work, rate, False)

@@ -13,9 +13,9 @@ from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.rollers import follow_contour
 from bearing_sim.levels.common.support import extrapolate_support
 from bearing_sim.levels.planar.forces import normal_forces
-from bearing_sim.levels.planar.state import BLOCK, BORDER, R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
+from bearing_sim.levels.planar.state import BLOCK, BORDER, PHI, PHI_SPEED, R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
 from bearing_sim.numerics.compilation import fused
-from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, square_root, store
+from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, spread_run, square_root, store, store_run
 from bearing_sim.physics.contact import CONTACT
 
 _ITERATIONS = 4
@@ -38,13 +38,10 @@ def _extrapolate(known, shift, slope, count, guess):
 @fused
 def _start(known, shift, guess, count, raceways, rows):
     """Write azimuths, the contour and the known terms of each radial equation; let the rollers follow the contour at first."""
-    last = count - 1
-    for j in range(rows.shape[0] * LANES):
-        block, lane, roller = j // LANES, j % LANES, ROLLERS + min(j, last)
-        rows[block, ROLLER.angle, lane] = guess[roller + count]
-        rows[block, ROLLER.orbital_speed, lane] = guess[roller + 3 * count]
-        rows[block, ROLLER.known_radius, lane] = known[roller + R]
-        rows[block, ROLLER.known_speed, lane] = known[roller + R_SPEED * count]
+    spread_run(guess, ROLLERS + PHI * count, count, rows, ROLLER.angle)
+    spread_run(guess, ROLLERS + PHI_SPEED * count, count, rows, ROLLER.orbital_speed)
+    spread_run(known, ROLLERS + R * count, count, rows, ROLLER.known_radius)
+    spread_run(known, ROLLERS + R_SPEED * count, count, rows, ROLLER.known_speed)
     for block in range(rows.shape[0]):
         follow_contour(ROLLER, block, shift, raceways.contour, rows)
 
@@ -103,8 +100,12 @@ def predict(known, shift, slope, model, work, guess):
     for _ in range(_ITERATIONS):
         if _balance(guess, shift, inner_radius, params, rows, work.contacts) < _SETTLED * model.tolerances.position:
             break
-    per_shift = 1.0 / shift
-    for j in range(count):
+    per_shift, whole = 1.0 / shift, count // LANES
+    for block in range(whole):
+        radius, roller = load(rows, block, ROLLER.radius), ROLLERS + block * LANES
+        store_run(guess, roller + R * count, radius)
+        store_run(guess, roller + R_SPEED * count, (radius - load(rows, block, ROLLER.known_radius)) * per_shift)
+    for j in range(whole * LANES, count):
         roller = ROLLERS + j
-        guess[roller] = rows[j // LANES, ROLLER.radius, j % LANES]
+        guess[roller] = rows[whole, ROLLER.radius, j - whole * LANES]
         guess[roller + R_SPEED * count] = (guess[roller] - known[roller]) * per_shift

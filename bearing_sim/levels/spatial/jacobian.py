@@ -1010,7 +1010,7 @@ def factor(jacobian, border, s, factored):
         regular = _invert_blocks(block, jacobian, s, rows, factored.block) and regular
         _couplings(block, jacobian, s, rows)
         _reduce(block, jacobian, s, rows, positions, corner)
-    return decompose(corner, factored.order) and regular
+    return decompose(BORDER, corner, factored.order) and regular
 
 
 @kernel
@@ -1071,7 +1071,7 @@ def solve(jacobian, factored, x):
         x[BORDER + k] += s * through
     for block in range(jacobian.shape[0]):
         _eliminate(block, jacobian, s, x, factored)
-    back_substitute(factored.schur, factored.order, x[BORDER : 2 * BORDER])
+    back_substitute(BORDER, factored.schur, factored.order, x[BORDER : 2 * BORDER])
     for block in range(jacobian.shape[0]):
         _substitute(block, s, x, factored)
     for k in range(BORDER):
