@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import fused, kernel
+from bearing_sim.numerics.elementary import ninth_root
 from bearing_sim.physics.contact import EXPONENT
 
 # A ring that no roller holds (clearance, no load) has no position: this spring, a millionth of a contact's, gives it one.
@@ -63,7 +64,7 @@ class LoadRow(NamedTuple):
 LOAD = LoadRow()
 
 
-@kernel
+@fused
 def squeezed_roller(approach, centrifugal, free, stiffness):
     """Balance one roller between the raceways: Q_e = Q_i + F_c, delta_i + delta_e = approach.
 
@@ -90,7 +91,7 @@ def squeezed_roller(approach, centrifugal, free, stiffness):
     for _ in range(20):
         if inner <= 0.0:
             return approach, 0.0, 0.0
-        outer_root, inner_root = stiffness * outer ** (1.0 / 9.0), stiffness * inner ** (1.0 / 9.0)
+        outer_root, inner_root = stiffness * ninth_root(outer), stiffness * ninth_root(inner)
         step = (outer_root * outer - inner_root * inner - centrifugal) / (EXPONENT * (outer_root + inner_root))
         if abs(step) <= 1e-5 * inner:
             break
@@ -101,7 +102,7 @@ def squeezed_roller(approach, centrifugal, free, stiffness):
     return outer - step, inner_load, EXPONENT * inner_root * outer_root / (outer_root + inner_root)
 
 
-@kernel
+@fused
 def _ring_forces(y, z, load_y, load_z, stiffness, loads):
     """Balance all rollers at a ring position; return the ring's residual force and its stiffness matrix."""
     force_y, force_z = load_y - _CENTRING_STIFFNESS * y, load_z - _CENTRING_STIFFNESS * z
