@@ -15,6 +15,7 @@ from sim_time_bench import RATE, FalseWall, ListSink, Player, assert_same_sample
 
 from bearing_sim import Inputs, Simulation, load_scene
 from bearing_sim.cli.main import main
+from bearing_sim.levels.steady import shared_table
 from bearing_sim.levels.steady import table_builder as store
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import contour_period, empty_table, mirror_axis, monotone_slopes, radius_at
@@ -354,6 +355,52 @@ def test_table_belongs_to_bearing_oil_and_span_and_to_nothing_else():
     ]
     assert {of(change) for change in same} == {of()}
     assert len({of(), *map(of, other)}) == len(other) + 1
+
+
+@pytest.fixture
+def other_machine(tmp_path, monkeypatch):
+    """Return a function that goes to another machine: it has no tables, and the last digits of what it computes differ."""
+
+    def go():
+        numbers = store.table_numbers
+        monkeypatch.setattr(store, "FOLDER", tmp_path / "its tables")
+        for module in (store, shared_table):
+            monkeypatch.setattr(module, "table_numbers", lambda scene, span: [number * (1.0 + 3e-16) for number in numbers(scene, span)])
+
+    return go
+
+
+def test_a_table_of_another_machine_is_taken_although_the_last_digits_of_its_bearing_differ(small, tmp_path, other_machine):
+    scene, table, quality = small
+    command, file = ["table", "deng2017_table1", *(word for change in SMALL for word in ("--set", change))], str(tmp_path / "shared.npz")
+    assert CliRunner().invoke(main, [*command, "-o", file]).exit_code == 0
+    other_machine()
+    assert cached_table(scene) is None
+    taken = CliRunner().invoke(main, [*command, "--from", file])
+    assert taken.exit_code == 0, taken.output
+    found, its_quality = cached_table(scene)
+    assert its_quality == quality and (found.nodes == table.nodes).all()
+    assert Simulation(scene).takes_profiles is True
+
+
+def test_a_table_for_another_bearing_of_another_version_or_none_at_all_is_not_taken(small, tmp_path, monkeypatch):
+    scene, table, quality = small
+    file, kept = tmp_path / "shared.npz", set(store.FOLDER.iterdir())
+    file.write_bytes(shared_table.shared_table(scene, table, quality))
+    for change in ("bearing.outer_raceway.low_radius=34.861 mm", "lubricant.oil=mil_l_23699", "table.maximum_load=1.3 kN", "bearing.roller.count=17"):
+        with pytest.raises(ValueError, match="shared.npz: built for another bearing, oil, range or tolerance"):
+            shared_table.take_table(file, load_scene("deng2017_table1", [*SMALL, change]))
+    with monkeypatch.context() as patch:
+        patch.setattr(shared_table, "sources_hash", lambda: "other")
+        with pytest.raises(ValueError, match="built by another version; install the same versions of bearing_sim and numba"):
+            shared_table.take_table(file, scene)
+    write_table(file, table, quality)
+    with pytest.raises(ValueError, match="no table for other machines; write one with bearing-sim table SCENE -o FILE"):
+        shared_table.take_table(file, scene)
+    file.write_bytes(shared_table.shared_table(scene, table, quality)[:-100])
+    with pytest.raises(ValueError, match="digest"):
+        shared_table.take_table(file, scene)
+    assert set(store.FOLDER.iterdir()) == kept
 
 
 def raceway(*overrides):

@@ -2,20 +2,30 @@
 """``bearing-sim table``: the table of operating points of level ``steady``."""
 
 import math
+from pathlib import Path
 
 import click
 
 from bearing_sim.cli.options import json_option, scene_argument, set_option
+from bearing_sim.cli.outputs import OutputFile, WritingCommand
 from bearing_sim.cli.reporting import UsageError, announce_compilation, as_usage_error, print_json, print_table, progress_bar
 
 
-@click.command("table")
+@click.command("table", cls=WritingCommand)
 @scene_argument
 @set_option
 @click.option("--rebuild", is_flag=True, help="Build the table even if it exists.")
 @click.option("--workers", type=click.IntRange(1, 256), metavar="N", help="Number of threads [default: all cores].")
 @click.option(
     "--at", "points", multiple=True, metavar="RPM,N[,DEGC[,DEG]]", help="Show this operating point, interpolated and solved; can be repeated."
+)
+@click.option("-o", "--out", type=OutputFile(), metavar="FILE.npz", help="Also write the table to this file, for another machine.")
+@click.option(
+    "--from",
+    "shared",
+    type=click.Path(path_type=Path),
+    metavar="FILE.npz",
+    help="Build nothing: keep the table that another machine has written for this scene with -o.",
 )
 @click.option(
     "--against-slip",
@@ -29,7 +39,7 @@ from bearing_sim.cli.reporting import UsageError, announce_compilation, as_usage
 )
 @click.option("--dask", metavar="ADDRESS", help="Compute that response on this Dask cluster, such as tcp://10.0.0.1:8786.")
 @json_option
-def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, bands, dask, as_json):
+def table(scene_name, overrides, rebuild, workers, points, out, shared, against_slip, seed, bands, dask, as_json):
     """Build the table of operating points of SCENE at level steady, or show the existing one.
 
     Its range is given in the scene's block `table` (maximum_speed, maximum_load, minimum_temperature, maximum_temperature, tolerance);
@@ -39,6 +49,10 @@ def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, b
 
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, [*overrides, "level=steady"])
+    if (bands or against_slip is not None) and (out is not None or shared is not None):
+        raise UsageError("-o and --from are for the table itself; leave --bands and --against-slip out")
+    if shared is not None and rebuild:
+        raise UsageError("--from takes a table that has been built; leave --rebuild out")
     if bands:
         if points or against_slip is not None:
             raise UsageError("--bands goes with --rebuild, --workers and --dask only; leave --at and --against-slip out")
@@ -50,8 +64,15 @@ def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, b
         _compare(scene, against_slip, seed, as_json)
         return
     asked = [_condition(text, scene) for text in points]
-    announce_compilation()
-    table, quality = build_with_progress(scene, None, workers, rebuild)
+    if shared is not None:
+        table, quality = _taken(shared, scene)
+    else:
+        announce_compilation()
+        table, quality = build_with_progress(scene, None, workers, rebuild)
+    if out is not None:
+        from bearing_sim.levels.steady.shared_table import shared_table
+
+        out.write_bytes(shared_table(scene, table, quality))
     report = _report(scene, table, quality, [_answers(scene, table, condition) for condition in asked])
     if as_json:
         print_json(report)
@@ -110,6 +131,15 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
         return obtain_table(
             scene, temperatures, workers, lambda solved: show(1.0 - math.exp(-solved / 15_000)), rebuild, correction and (lambda: correction)
         )
+
+
+def _taken(path, scene):
+    """Return the table of a file that another machine has written, and its quality, and keep it for the scene."""
+    from bearing_sim.files.limits import FileError
+    from bearing_sim.levels.steady.shared_table import take_table
+
+    with as_usage_error(FileError, OSError):
+        return take_table(path, scene)
 
 
 def _condition(text, scene) -> tuple[float, float, float, float]:

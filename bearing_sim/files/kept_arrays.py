@@ -16,18 +16,23 @@ from bearing_sim.files.reading import printable, read_bytes
 _DIGEST = hashlib.sha256().digest_size
 
 
-def write_arrays(path: Path, arrays: Mapping[str, np.ndarray]) -> None:
-    """Write arrays by name: a reader finds the old file or the new one, never a part.  Raises OSError, also if another process is writing it."""
+def packed(arrays: Mapping[str, np.ndarray]) -> bytes:
+    """Return the contents of a file of arrays by name, as `read_arrays` reads it."""
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)
     data = buffer.getvalue()
+    return data + hashlib.sha256(data).digest()
+
+
+def write_arrays(path: Path, arrays: Mapping[str, np.ndarray]) -> None:
+    """Write arrays by name: a reader finds the old file or the new one, never a part.  Raises OSError, also if another process is writing it."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with replaced(path) as draft:
-        draft.write_bytes(data + hashlib.sha256(data).digest())
+        draft.write_bytes(packed(arrays))
 
 
 def read_arrays(path: Path, limit: Limit) -> dict[str, np.ndarray]:
-    """Return the arrays that `write_arrays` wrote.
+    """Return the arrays of a file that `write_arrays` wrote.
 
     Parameters
     ----------

@@ -309,26 +309,37 @@ class _Grid:
 FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "tables"
 
 
-def table_hash(scene: Scene, span: Span) -> str:
-    """Return a hash of what a table's numbers depend on: bearing, oil at the temperatures of the span, tolerance and this program."""
+def table_numbers(scene: Scene, span: Span) -> list[np.ndarray]:
+    """Return the numbers that a table depends on: bearing, oil at the temperatures of the span, span and tolerance, always in the same order."""
     params = pack(scene)
-    digest = hashlib.sha256(sources_hash().encode())
     oils = [lubricate(scene.lubricant, params, float(kelvin)) for kelvin in np.linspace(span.minimum_temperature, span.maximum_temperature, _OILS)]
     life = params.life._replace(method=0, reliability_factor=1.0)  # which choose among lives, and change no operating point
     bearing = params.rollers, params.raceways, params.cage, params.mounted, params.variants, params.envelope, life
-    for number in _numbers((bearing, oils, span, scene.table.tolerance)):
-        digest.update(number)
-    if scene.table.correction != "none":  # by a level with masses and a support
-        digest.update(repr((scene.table.correction, scene.bearing, scene.support, scene.dynamics)).encode())
+    return list(_numbers((bearing, oils, span, scene.table.tolerance)))
+
+
+def corrected_by(scene: Scene) -> str:
+    """Return what the correction of a scene's table depends on besides its numbers; empty for a table without one."""
+    if scene.table.correction == "none":
+        return ""
+    return repr((scene.table.correction, scene.bearing, scene.support, scene.dynamics))  # a level with masses and a support
+
+
+def table_hash(scene: Scene, span: Span) -> str:
+    """Return a hash of what a table's numbers depend on: those of `table_numbers`, the correction and this program."""
+    digest = hashlib.sha256(sources_hash().encode())
+    for number in table_numbers(scene, span):
+        digest.update(number.tobytes())
+    digest.update(corrected_by(scene).encode())
     return digest.hexdigest()[:24]
 
 
-def _numbers(value) -> Iterable[bytes]:
+def _numbers(value) -> Iterable[np.ndarray]:
     if isinstance(value, (tuple, list)):
         for item in value:
             yield from _numbers(item)
     else:
-        yield np.asarray(value, float).tobytes()
+        yield np.asarray(value, float)
 
 
 def table_path(scene: Scene, span: Span) -> Path:
@@ -351,9 +362,9 @@ def read_table(path: Path) -> tuple[Table, Quality] | None:
         return None
 
 
-def write_table(path: Path, table: Table, quality: Quality) -> None:
-    """Write a table: a reader finds the old file or the new one, never a part.  Raises OSError, also if another process is writing it."""
-    arrays = {
+def table_arrays(table: Table, quality: Quality) -> dict[str, np.ndarray]:
+    """Return the arrays of a table's file, by name."""
+    return {
         "speeds": table.speeds,
         "loads": table.loads,
         "temperatures": table.temperatures,
@@ -363,7 +374,11 @@ def write_table(path: Path, table: Table, quality: Quality) -> None:
         "values": np.ascontiguousarray(table.nodes[..., 0, :]),
         "quality": np.array(quality, float),
     }
-    write_arrays(path, arrays)
+
+
+def write_table(path: Path, table: Table, quality: Quality) -> None:
+    """Write a table: a reader finds the old file or the new one, never a part.  Raises OSError, also if another process is writing it."""
+    write_arrays(path, table_arrays(table, quality))
 
 
 def cached_table(scene: Scene, temperatures: tuple[float, float] | None = None) -> tuple[Table, Quality] | None:
