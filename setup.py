@@ -5,7 +5,7 @@ from setuptools import find_packages, setup
 
 package_name = "bearing_sim"
 # ROS 2 Jazzy from wheels, for machines without a ROS installation; where ROS 2 is installed, colcon builds without pip.
-has_wheels = "platform_system == 'Linux' and platform_machine == 'x86_64'"
+has_wheels = "platform_system == 'Linux' and platform_machine == 'x86_64'"  # on arm64 ROS 2 comes with apt (bearing_sim/extras.py)
 ros_wheels = [
     f"{requirement}; {has_wheels}"
     for requirement in (
@@ -43,13 +43,14 @@ setup(
             "scene/catalog/designations/*.csv",
             "scene/scenes/*.yaml",
             "ros/dds/*.xml",
+            "ros/profiles/*.yaml",
         ],
     },
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{package_name}"]),
         (f"share/{package_name}", ["package.xml"]),
         (f"share/{package_name}/launch", glob("launch_scripts/*.launch.py")),
-        (f"share/{package_name}/config", glob("launch_scripts/*.yaml")),
+        (f"share/{package_name}/config", glob("launch_scripts/*.yaml") + glob("bearing_sim/ros/profiles/*.yaml")),
         (f"share/{package_name}/dds", glob("bearing_sim/ros/dds/*.xml")),
         (f"share/{package_name}/layouts", glob("launch_scripts/layouts/*")),
         (f"lib/{package_name}", glob("launch_scripts/libexec/*")),
@@ -86,7 +87,7 @@ setup(
             "pytest>=8,<9.2",  # with 9.2 pytest-xdist 3.8 no longer keeps the tests of a group together
             "pytest-timeout>=2.3",
             "pytest-xdist>=3.5",
-            "scikit-sundae>=1.1",
+            "scikit-sundae>=1.1; platform_machine == 'x86_64'",  # the only one without wheels for arm64
             *documents,
             *full,
             *ros_tests,

@@ -22,6 +22,7 @@ from bearing_sim.view.viewer import stream_url, viewer_command  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = sorted((ROOT / "launch_scripts").glob("*.launch.py"))
+SMALL_CORE = ROOT / "bearing_sim" / "ros" / "profiles" / "small_core.yaml"
 EVERY_FILE = pytest.mark.parametrize("path", FILES, ids=lambda path: path.name.partition(".")[0])
 PARAMETERS = {row.name: row for row in DECLARATIONS}
 
@@ -216,6 +217,35 @@ def test_a_file_of_parameters_comes_after_the_arguments_and_so_counts_more(launc
     mine.write_text("")
     assert not [one for one in nodes(launched(name))[0].parameters if isinstance(one, str)]
     assert nodes(launched(name, parameters_file=str(mine)))[0].parameters[-1] == str(mine)
+
+
+@EVERY_FILE
+def test_a_profile_replaces_defaults_and_what_is_given_replaces_the_profile(launched, path):
+    name = path.name.partition(".")[0]
+    profile = yaml.safe_load(SMALL_CORE.read_text())["/**"]["ros__parameters"]
+    run, plain = launched(name, profile="small_core"), launched(name)
+    for node, without in zip(nodes(run), nodes(plain)):
+        found, usual = handed_over(node, run.context), handed_over(without, plain.context)
+        assert {key: found[key] for key in profile} == profile and all(
+            found[key] == usual[key] for key in usual if key not in profile | {"record": ""}
+        )
+    run = launched(name, profile="small_core", publish_rate="50.0", overrides="['lubricant.mixture_fraction=0.02']")
+    found = handed_over(nodes(run)[0], run.context)
+    assert found["publish_rate"] == 50.0, "although this is the default"
+    assert found["overrides"] == ["level=steady", "lubricant.mixture_fraction=0.02"] and found["sample_rate"] == profile["sample_rate"]
+    run = launched(name, profile="small_core", overrides="")
+    assert handed_over(nodes(run)[0], run.context)["overrides"] == ["level=steady"]
+    for wrong in ("5", "level=slip"):
+        with pytest.raises(RuntimeError, match=f"overrides = '?{wrong}'?: expected a list"):
+            launched(name, profile="small_core", overrides=wrong)
+
+
+def test_a_profile_holds_parameters_of_the_node_in_their_types_and_a_scene_that_loads():
+    profile = yaml.safe_load(SMALL_CORE.read_text())["/**"]["ros__parameters"]
+    for key, given in profile.items():
+        assert type(given) is type(PARAMETERS[key].default) and given != PARAMETERS[key].default
+    assert load_scene("deng2017_table1", profile["overrides"]).level == "steady"
+    assert not {"record", "rrd", "rerun_port", "rerun_web_port"} & set(profile), "off by default"
 
 
 def test_a_live_launch_opens_a_viewer_once_when_the_node_is_ready(launched):

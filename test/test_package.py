@@ -134,6 +134,15 @@ def test_what_no_extra_has_is_an_error_of_the_program():
         what_is_missing(ModuleNotFoundError("", name="bearing_sim.misspelt"))
 
 
+@pytest.mark.parametrize(
+    ("machine", "said"), [("x86_64", r"pip install 'bearing_sim\[ros\]', or source"), ("aarch64", "no wheels of ROS 2 .*with apt")]
+)
+def test_a_program_without_ros_says_how_this_machine_gets_it(machine, said, monkeypatch):
+    monkeypatch.setattr("platform.machine", lambda: machine)
+    monkeypatch.setattr("platform.system", lambda: "Linux")
+    assert re.search(f"rclpy is not installed: .*{said}", what_is_missing(ModuleNotFoundError("", name="rclpy")))
+
+
 def test_programs_are_on_the_path_and_where_ros_looks_for_them():
     config = configparser.ConfigParser()
     config.read(ROOT / "setup.cfg")

@@ -8,6 +8,7 @@ import json
 import os
 import shlex
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 from types import MappingProxyType
@@ -36,11 +37,14 @@ class Argument(NamedTuple):
     choices: tuple[str, ...] = ()
 
 
+_FOLDER = Path(__file__).with_name("profiles")
+PROFILES = ("", *sorted(path.stem for path in _FOLDER.glob("*.yaml")))
 NAME = Argument("name", "bearing_node", "name of the node")
 SHARED = (
     Argument("namespace", "", "namespace of the node and its topics"),
     Argument("remaps", "", "names to replace, each FROM:=TO, separated by blanks, such as 'shaft_speed:=/motor/joint_states'"),
     Argument("log_level", "info", "messages of the node that are shown: of this level and worse", ("debug", "info", "warn", "error", "fatal")),
+    Argument("profile", "", "small_core: for one small core, level steady at low rates; arguments that are given count more; empty: none", PROFILES),
     Argument("parameters_file", "", "YAML file of parameters, which override these arguments; empty: none"),
     Argument(
         "discovery_range",
@@ -67,19 +71,34 @@ def declared(*arguments: Argument, leave_out: tuple[str, ...] = (), **defaults: 
         *(Argument(row.name, "", f"{row.meaning}; empty: as in the scene") for row in SCENE_DECLARATIONS),
     ]
     rows = [*arguments, *(row for row in common if row.name not in leave_out)]
+    profile_first = sorted(rows, key=lambda row: row.name != "profile")
 
     def prepare(context) -> list:
         return [*_discovery(context), *_misspelt(context, [row.name for row in rows])]
 
-    return [
-        *(
-            DeclareLaunchArgument(
-                row.name, default_value=row.default, description=row.meaning, **({"choices": list(row.choices)} if row.choices else {})
-            )
-            for row in rows
-        ),
-        OpaqueFunction(function=prepare),
+    declarations = [
+        DeclareLaunchArgument(row.name, default_value=row.default, description=row.meaning, **({"choices": list(row.choices)} if row.choices else {}))
+        for row in profile_first
     ]
+    return [declarations[0], OpaqueFunction(function=_take_profile), *declarations[1:], OpaqueFunction(function=prepare)]
+
+
+def profile_parameters(name: str) -> dict:
+    """Return the parameters of a profile, by name, from its file."""
+    return values_of((_FOLDER / f"{name}.yaml").read_text())["/**"]["ros__parameters"]
+
+
+def _take_profile(context) -> None:
+    """Give the arguments that are not given the values of the profile; scene fields that are given come after those of the profile."""
+    name = value(context, "profile")
+    for parameter, of_profile in (profile_parameters(name) if name else {}).items():
+        given = context.launch_configurations.get(parameter)
+        if given is None or (parameter == "overrides" and not given.strip()):
+            context.launch_configurations[parameter] = json.dumps(of_profile)
+        elif parameter == "overrides":
+            with suppress(FileError):  # which `checked` reports
+                own = values_of(given)
+                context.launch_configurations[parameter] = json.dumps([*of_profile, *own]) if isinstance(own, list) else given
 
 
 def _discovery(context) -> list:

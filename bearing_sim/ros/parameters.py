@@ -267,10 +267,11 @@ def checked(declaration: Declaration, name: str, value: object) -> object:
     if kind is list and declaration.default != [""]:
         return _pose_numbers(declaration, name, value)
     if kind is list:
-        if isinstance(value, str) or not all(isinstance(item, str) for item in value or []):
+        items = [] if value is None else value
+        if isinstance(items, str) or not isinstance(items, Iterable) or not all(isinstance(item, str) for item in items):
             example = "[front, rear]" if declaration.name == "bearings" else "['level=slip']"
             raise ValueError(f"{name} = {value!r}: expected a list of strings, such as {example}; {declaration.meaning}")
-        return list(value or [""])
+        return list(items) or [""]
     if not isinstance(value, kind) or isinstance(value, bool) != (kind is bool):
         quoted = f""", such as -p {name}:="'{value}'\"""" if kind is str else ""
         raise ValueError(f"{name} = {value!r}: expected {_KINDS[kind]}{quoted}; {declaration.meaning}")
