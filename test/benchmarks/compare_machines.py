@@ -25,6 +25,7 @@ from bearing_sim.numerics.simd import LANES
 
 SETTLING = 5e-3  # s from ideal rolling to the sample from which a level starts
 DURATION, SAMPLES = 1e-3, 20
+ZERO = 1e-13  # in SI; what stays below is rounding where the answer is 0, such as the tilt of rollers in an aligned bearing [rad]
 
 
 def run_level(scene, start):
@@ -47,7 +48,7 @@ def run_level(scene, start):
 def differences(first, second):
     """Return the largest difference of each observable, relative to its largest magnitude in either run, by name.
 
-    It is infinite where one run has a NaN and the other has none, and 0 where both are 0 throughout.
+    It is infinite where one run has a NaN and the other has none, and 0 where both stay below `ZERO`.
     """
     found = {}
     for name in first.dtype.names:
@@ -56,7 +57,7 @@ def differences(first, second):
             found[name] = math.inf
             continue
         magnitude = np.nanmax(np.maximum(abs(one), abs(other)), initial=0.0)
-        found[name] = float(np.nanmax(abs(one - other), initial=0.0) / magnitude) if magnitude > 0.0 else 0.0
+        found[name] = float(np.nanmax(abs(one - other), initial=0.0) / magnitude) if magnitude > ZERO else 0.0
     return found
 
 
@@ -101,7 +102,8 @@ def compare(first, second, tolerance, most):
             raise click.ClickException(f"{level}: the runs start from different samples; give --start to one of them")
         one, other = (file[f"{level}_state"] for file in files)
         found = differences(files[0][f"{level}_samples"], files[1][f"{level}_samples"])
-        found["last state, each number by its own magnitude"] = float((abs(one - other) / np.maximum(abs(one), abs(other))).max())
+        magnitude = np.maximum(abs(one), abs(other))
+        found["last state, each number by its own magnitude"] = float((abs(one - other) / np.maximum(magnitude, ZERO))[magnitude > ZERO].max())
         worst = sorted(found, key=found.get, reverse=True)[:most]
         exceeded = exceeded or found[worst[0]] > tolerance
         named = ", ".join(f"{name} {found[name]:.1e}" for name in worst)
