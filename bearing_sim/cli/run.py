@@ -120,6 +120,8 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
     else:
         _print(report, scene, bands, estimation)
     warn_of_limits(scene, warnings)
+    if corrected is not None:
+        _warn_of_two_states(scene, outcome.window)
     if seconds is None and not outcome.settled:
         raise Unsettled(f"not settled: {outcome.reason}; give more time with --at-most")
 
@@ -139,8 +141,23 @@ def _corrected_table(scene):
         return None
     from bearing_sim.cli.table import build_with_progress
 
+    return build_with_progress(scene, _table_temperatures(scene))[0]
+
+
+def _table_temperatures(scene) -> tuple[float, float] | None:
     kelvin = scene.lubricant.temperature
-    return build_with_progress(scene, (kelvin, kelvin) if scene.heat.law == "none" else None)[0]
+    return (kelvin, kelvin) if scene.heat.law == "none" else None
+
+
+def _warn_of_two_states(scene, window) -> None:
+    import numpy as np
+
+    from bearing_sim.cli.table import warn_of_two_states
+
+    few = window[:: max(len(window) // 100, 1)]
+    loads = few["load_y"], few["load_z"]
+    conditions = np.column_stack([few["shaft_speed"], np.hypot(*loads), few["oil_temperature"], np.arctan2(loads[1], loads[0])])
+    warn_of_two_states(scene, conditions, _table_temperatures(scene))
 
 
 def _plan(scene, seconds, most, rate) -> _Plan:

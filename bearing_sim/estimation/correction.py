@@ -110,6 +110,23 @@ class Correction(NamedTuple):
         near = np.argsort(distances, axis=1)[:, :_NEIGHBOURS]
         return np.sqrt(np.mean(np.square(self.errors[near]), axis=1))
 
+    def two_states_near(self, conditions: np.ndarray) -> np.ndarray:
+        """Return the two slips [1, 1] of level ``planar`` at the nearest point if it has two states there, from ideal rolling first, else NaN.
+
+        Parameters
+        ----------
+        conditions : columns `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
+
+        Returns
+        -------
+        shape (n, 2)
+        """
+        slips = np.full((len(self.conditions), 2), np.nan)
+        for state in self.two_states:
+            slips[(self.conditions == state[: len(CONDITIONS)]).all(axis=1)] = state[len(CONDITIONS) :]
+        there, centres = self._there(np.asarray(conditions, float)) @ self.metrics[0], self._there(self.conditions) @ self.metrics[0]
+        return slips[np.argmin(np.square(there[:, None] - centres).sum(axis=-1), axis=1)]
+
     def _there(self, conditions):
         return embedded(coordinates(conditions, self.domain), self.domain)
 
