@@ -52,7 +52,7 @@ from bearing_sim.levels.spatial.state import (
     collect_rates,
     spread_state,
 )
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.simd import larger, load, magnitude, spread, store, total, where_positive
 from bearing_sim.physics.contact import EXPONENT, damped_slice
 from bearing_sim.physics.film import resist_rolling
@@ -67,7 +67,7 @@ class LandWork(NamedTuple):
     border_own: np.ndarray  # shape (5, 10)
 
 
-@kernel
+@fused
 def place_land(y, position, land):
     """Write the state of a planar cage and ring that stand where their axes pass a land.
 
@@ -89,7 +89,7 @@ def place_land(y, position, land):
     land[planar.OMEGA] = y[OMEGA]
 
 
-@kernel
+@fused
 def border_accelerations(t, y, model, work, rate, with_jacobian):
     """Write the accelerations of ring and cage, but for what the rollers add, into ``rate`` and their derivatives into ``work``."""
     params, tilts = model.params, model.params.tilts
@@ -135,7 +135,7 @@ def border_accelerations(t, y, model, work, rate, with_jacobian):
     own[RING_TILT_Z, BORDER + RING_TILT_Y] += ring_precession
 
 
-@kernel
+@fused
 def _lie_in_pockets(block, y, cage_cosine, cage_sine, rows):
     """Write how a block of rollers lies in its pockets.
 
@@ -208,7 +208,7 @@ def hold_slices(offset, rate, skew, skew_rate, clearance, stiffness, params):
     return force, moment, k_0, k_1, k_2, d_0, d_1, d_2
 
 
-@kernel
+@fused
 def pocket_forces(block, params, rows):
     """Write what the pockets do to a block of rollers that has been placed in them.
 
@@ -234,7 +234,7 @@ def pocket_forces(block, params, rows):
     store(rows, block, ROLLER.pocket_friction_d_spin, d_spin)
 
 
-@kernel
+@fused
 def _place_rollers(y, shaft_speed, inner_radius, params, rows, contacts):
     """Write directions about the displaced ring, penetrations, rolling and sliding speeds of all rollers and how they lean.
 
@@ -251,7 +251,7 @@ def _place_rollers(y, shaft_speed, inner_radius, params, rows, contacts):
         _lean(block, y, rows, contacts)
 
 
-@kernel
+@fused
 def _lean(block, y, rows, contacts):
     """Write how a block of rollers leans against both raceways: inclinations, and their rates in a frame that does not turn."""
     cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
@@ -279,7 +279,7 @@ def _lean(block, y, rows, contacts):
     store(contacts, outer, SLICED.sliding_lean, -skewing)
 
 
-@kernel
+@fused
 def _accelerate(block, y, churning, model, rows, contacts, rate):
     """Write the accelerations of a block of rollers; add to those of ring and cage what the rollers do to them."""
     params, tilts = model.params, model.params.tilts
@@ -342,7 +342,7 @@ def _accelerate(block, y, churning, model, rows, contacts, rate):
     rate[OMEGA] += total(present * torque) / cage.inertia
 
 
-@kernel
+@fused
 def equations(t, y, model, work, rate, with_jacobian):
     """Write dy/dt into ``rate`` and, where asked, all derivatives into ``work``.
 

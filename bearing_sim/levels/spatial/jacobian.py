@@ -68,7 +68,7 @@ from bearing_sim.levels.spatial.state import (
     R,
 )
 from bearing_sim.model.params import SUPPORT
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.linear_algebra import back_substitute, decompose
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, load, magnitude, spread, spread_runs, store, total, where_positive
 
@@ -83,7 +83,7 @@ _VARIABLES = 19
 _RATES = 170  # row of ``chain`` where this module's part begins: changes of the offset's rate and the lean's, by variable
 
 
-@kernel
+@fused
 def _chain_row(block, row, first, along, rows, contacts, chain):
     """Write the change of a force or moment by what the inner contact sees, in pairs along the normal and across.
 
@@ -166,7 +166,7 @@ def _flange_chain(block, params, viscosity, rows, chain):
     _flange_row(block, 4 * _SEEN, -(us * (1.0 / params.rollers.radius)), moment * by_skew, moment * by_rate, rows, chain)
 
 
-@kernel
+@fused
 def _inner_chain(block, resistance, params, viscosity, rows, contacts, chain):
     """Write the changes of the inner contact's force (2), moment (2) and spin torque in the roller's frame by what it sees, 5 x 8."""
     n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
@@ -216,7 +216,7 @@ def _inner_chain(block, resistance, params, viscosity, rows, contacts, chain):
             store(chain, 0, row + _SEEN, normal * n_t + across * n_r)
 
 
-@kernel
+@fused
 def _inner_jacobian(block, y, inner_radius, resistance, params, viscosity, rows, contacts, chain, jacobian):
     """Write a roller's rows as far as the inner contact makes them."""
     _inner_chain(block, resistance, params, viscosity, rows, contacts, chain)
@@ -279,7 +279,7 @@ def _inner_jacobian(block, y, inner_radius, resistance, params, viscosity, rows,
         add(jacobian, block, _SPINNING + SPIN, -(ss * (1.0 / params.rollers.radius)))
 
 
-@kernel
+@fused
 def _ring_jacobian(block, resistance, params, rows, contacts, jacobian):
     """Write the rows of the ring from those of a roller, which hold nothing but the inner contact yet."""
     c, s, inverse = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine), load(rows, block, ROLLER.inverse_distance)
@@ -310,7 +310,7 @@ def _ring_jacobian(block, resistance, params, rows, contacts, jacobian):
         add(jacobian, block, to + RING_COLUMNS + PHI, scale * (outwards * c - along * s))
 
 
-@kernel
+@fused
 def _outer_row(block, first, sign, sums, along, rows, contacts, params, jacobian):
     """Add a force or moment of the outer contact to a row; parameters as of `_chain_row`, and ``sign`` of what the roller feels."""
     outer = rows.shape[0] + block
@@ -335,7 +335,7 @@ def _outer_row(block, first, sign, sums, along, rows, contacts, params, jacobian
     add(jacobian, block, first + SPIN, (d_sliding + d_rolling) * roller_radius)
 
 
-@kernel
+@fused
 def _outer_jacobian(block, y, churning, params, rows, contacts, jacobian):
     """Add the outer contact and the drag of the mixture to a roller's rows."""
     outer = rows.shape[0] + block
@@ -411,7 +411,7 @@ def _outer_flanges(block, params, viscosity, rows, jacobian):
     add(jacobian, block, _SPINNING + SPIN, -(ss * per_spin))
 
 
-@kernel
+@fused
 def _accelerations(block, params, rows, jacobian):
     """Make accelerations of a roller's rows of forces, and add what the motion of its frame and its spin add to them."""
     tilts = params.tilts
@@ -448,7 +448,7 @@ def _accelerations(block, params, rows, jacobian):
     add(jacobian, block, _SKEWING + SPIN, fraction * (orbital_speed * skew - tilt_speed))
 
 
-@kernel
+@fused
 def roller_jacobian(y, inner_radius, churning, resistance, params, viscosity, rows, contacts, chain, jacobian):
     """Write all derivatives through the rollers; their forces have been written.
 
@@ -484,7 +484,7 @@ def _put(chain, variable, kind, value):
     store(chain, 0, _CHAIN + _KINDS * variable + kind, value)
 
 
-@kernel
+@fused
 def _pocket_variables(block, y, rows, chain):
     """Write how offset, skew, their rates and the arms of a block of rollers change by each variable; the rest of ``chain`` stays 0."""
     radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
@@ -542,7 +542,7 @@ def _pocket_variables(block, y, rows, chain):
     _put(chain, _AT_THETA + 5, _SKEW_RATE, lean_r - outwards)
 
 
-@kernel
+@fused
 def _pocket_rows(block, y, params, rows, chain, jacobian):
     """Add to a roller's rows of forces and moments, and write those of the cage."""
     cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
@@ -595,7 +595,7 @@ def _pocket_rows(block, y, params, rows, chain, jacobian):
         store(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + k, per_turn * turned)
 
 
-@kernel
+@fused
 def _pocket_directions(block, params, rows, jacobian):
     """Add that forces and moments turn with pocket and roller, and that friction goes with the spin."""
     cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
@@ -625,7 +625,7 @@ def _pocket_directions(block, params, rows, jacobian):
     add(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + SPIN, -(present * (1.0 / cage.inertia) * slid * bend))
 
 
-@kernel
+@fused
 def _pocket_jacobian(block, y, params, rows, chain, jacobian):
     """Add the pockets to the rows of a block of rollers and write those of the cage; parameters as of `spatial_jacobian.roller_jacobian`."""
     _pocket_variables(block, y, rows, chain)
@@ -755,7 +755,7 @@ def _guide_jacobian(block, y, params, rows, chain, jacobian):
     _guide_directions(block, params, rows, jacobian)
 
 
-@kernel
+@fused
 def land_cage_jacobian(position, lever, lands, own):
     """Write the derivatives of the cage's accelerations by its positions and speeds from those of both lands."""
     for which in range(2):
@@ -912,7 +912,7 @@ def _own(jacobian, block, first, k, s):
     return _shifted(jacobian, block, first + k, first + POSITIONS + k, s)
 
 
-@kernel
+@fused
 def _invert_blocks(block, jacobian, s, rows, matrix):
     """Invert I - s (dv'/dv + s dv'/dq) of a block of rollers; return whether all are regular.
 
@@ -942,7 +942,7 @@ def _invert_blocks(block, jacobian, s, rows, matrix):
     return regular
 
 
-@kernel
+@fused
 def _couplings(block, jacobian, s, rows):
     """Write how a block of rollers and the border act on each other."""
     for m in range(BORDER):
@@ -963,7 +963,7 @@ def _couplings(block, jacobian, s, rows):
             store(rows, block, BELOW + SPEEDS * k + m, _own(jacobian, block, first, m, s))
 
 
-@kernel
+@fused
 def _reduce(block, jacobian, s, rows, positions, corner):
     """Take a block of rollers out of the border's system."""
     for k in range(BORDER):
@@ -984,7 +984,7 @@ def _reduce(block, jacobian, s, rows, positions, corner):
             corner[k, m] -= total(through)
 
 
-@kernel
+@fused
 def factor(jacobian, border, s, factored):
     """Factor I - s J.
 
@@ -1013,7 +1013,7 @@ def factor(jacobian, border, s, factored):
     return decompose(BORDER, corner, factored.order) and regular
 
 
-@kernel
+@fused
 def _eliminate(block, jacobian, s, x, factored):
     """Reduce a block's right side to speeds, solve for them without the border, and take what they do to it from its own."""
     rows, right, reduced = factored.rows, factored.right, factored.block
@@ -1044,7 +1044,7 @@ def _eliminate(block, jacobian, s, x, factored):
         x[BORDER + k] += total(passed + load(rows, block, below + 3) * v_3 + load(rows, block, below + 4) * v_4)
 
 
-@kernel
+@fused
 def _substitute(block, s, x, factored):
     """Complete a block's speeds by what the border does to them, and its positions."""
     rows, right = factored.rows, factored.right
@@ -1057,7 +1057,7 @@ def _substitute(block, s, x, factored):
             store(right, block, k, load(right, block, k) + s * value)
 
 
-@kernel
+@fused
 def solve(jacobian, factored, x):
     """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
     s = factored.shift[0]

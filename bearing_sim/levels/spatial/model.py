@@ -50,8 +50,8 @@ from bearing_sim.levels.spatial.state import (
 )
 from bearing_sim.model.params import Params
 from bearing_sim.model.sample import COLUMN, SCALARS
-from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.simd import LANES
+from bearing_sim.numerics.compilation import fused, kernel
+from bearing_sim.numerics.simd import LANES, highest, larger, load_run, magnitude, spread, total
 from bearing_sim.physics.lamina import ROLLER_ROW
 from bearing_sim.physics.lamina_life import equivalent_lamina_loads
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
@@ -119,19 +119,19 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     return state
 
 
-@kernel
+@fused
 def rhs(t, y, model, work, rate):
     """Write dy/dt into ``rate``."""
     return equations(t, y, model, work, rate, False)
 
 
-@kernel
+@fused
 def rhs_and_jacobian(t, y, model, work, rate):
     """Write dy/dt into ``rate`` and all derivatives into ``work``."""
     return equations(t, y, model, work, rate, True)
 
 
-@kernel
+@fused
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
     if work.support.shape[0] > 0:
@@ -139,7 +139,7 @@ def factor(shift, work):
     return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
 
 
-@kernel
+@fused
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
     if work.support.shape[0] > 0:
@@ -148,7 +148,7 @@ def solve(work, x):
         jacobian.solve(work.jacobian, work.factored, x)
 
 
-@kernel
+@fused
 def error_norm(t, y, change, model):
     """Return the largest ratio of any state's change to its tolerance.
 
@@ -165,22 +165,34 @@ def error_norm(t, y, change, model):
     count = rollers.count
     if change.shape[0] > ROLLERS + BLOCK * count:
         largest = max(largest, support_change(change) * position)
-    for j in range(ROLLERS, ROLLERS + count):
-        ratio = max(abs(change[j]) * position, abs(change[j + PHI * count] - change[THETA]) * offset)
+    whole, turned = count // LANES, change[THETA]
+    highest_ratio, finite = spread(largest), spread(0.0)
+    for block in range(whole):
+        j = ROLLERS + block * LANES
+        radial, orbital = load_run(change, j), load_run(change, j + PHI * count)
+        tilting, skewing = load_run(change, j + TILT * count), load_run(change, j + SKEW * count)
+        orbital_speed, spinning = load_run(change, j + PHI_SPEED * count), load_run(change, j + SPIN * count)
+        ratio = larger(magnitude(radial) * position, magnitude(orbital - turned) * offset)
+        ratio = larger(ratio, larger(magnitude(orbital_speed) * speed, magnitude(spinning) * spin))
+        highest_ratio = larger(highest_ratio, larger(ratio, larger(magnitude(tilting) * tilt, magnitude(skewing) * skew)))
+        finite += (radial + orbital) + (tilting + skewing) + (orbital_speed + spinning)
+    largest, passed = highest(highest_ratio), total(finite)
+    for j in range(ROLLERS + whole * LANES, ROLLERS + count):
+        ratio = max(abs(change[j]) * position, abs(change[j + PHI * count] - turned) * offset)
         ratio = max(ratio, abs(change[j + PHI_SPEED * count]) * speed, abs(change[j + SPIN * count]) * spin)
-        ratio = max(ratio, abs(change[j + TILT * count]) * tilt, abs(change[j + SKEW * count]) * skew)
-        if not ratio <= largest:  # NaN goes through
-            largest = ratio
-    return largest
+        largest = max(largest, ratio, abs(change[j + TILT * count]) * tilt, abs(change[j + SKEW * count]) * skew)
+        passed += change[j] + change[j + PHI * count] + change[j + TILT * count] + change[j + SKEW * count]
+        passed += change[j + PHI_SPEED * count] + change[j + SPIN * count]
+    return largest if math.isfinite(passed) else passed  # a comparison with NaN would lose it
 
 
-@kernel
+@fused
 def step_limit(t, y, model):
     """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.pitch_step`)."""
     return pitch_step(y[OMEGA], model.params.rollers.count, FIFTH_PITCH)
 
 
-@kernel
+@fused
 def average_loads(h, y, model, work):
     """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn."""
     count, turned = model.params.rollers.count, h * y[OMEGA]
@@ -190,9 +202,15 @@ def average_loads(h, y, model, work):
 
 
 @kernel
+def _observed_rhs(t, y, model, work, rate):
+    """Write dy/dt into ``rate``: one text of the equations for all calls of `step_powers`."""
+    return rhs(t, y, model, work, rate)
+
+
+@kernel
 def _powers(t, y, model, work, memory):
     """Return the powers of the step that ended at ``t`` in state ``y`` (see `step_powers`)."""
-    return step_powers(rhs, spatial_powers, t, y, model, work, memory)
+    return step_powers(_observed_rhs, spatial_powers, t, y, model, work, memory)
 
 
 @kernel

@@ -30,14 +30,14 @@ from bearing_sim.levels.spatial.state import (
     TILT_SPEED,
     R,
 )
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import fused
 from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, square_root, store
 
 _ITERATIONS = 4
 _SETTLED = 0.2  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system
 
 
-@kernel
+@fused
 def _extrapolate(known, shift, slope, count, guess):
     """Extrapolate speeds by their rates, and write the positions that belong to them."""
     for k in range(BORDER):
@@ -50,7 +50,7 @@ def _extrapolate(known, shift, slope, count, guess):
     extrapolate_support(known, shift, slope, ROLLERS + BLOCK * count, guess)
 
 
-@kernel
+@fused
 def _start(known, shift, guess, count, raceways, rows):
     """Write azimuths, the contour and the known terms of each equation; let the rollers follow the contour at first."""
     last = count - 1
@@ -70,7 +70,7 @@ def _start(known, shift, guess, count, raceways, rows):
         follow_contour(ROLLER, block, shift, raceways.contour, rows)
 
 
-@kernel
+@fused
 def _place(block, guess, shift, inner_radius, params, rows, contacts):
     """Write penetrations, leans and their rates of a block of rollers."""
     roller_radius, outer = params.rollers.radius, rows.shape[0] + block
@@ -93,7 +93,7 @@ def _place(block, guess, shift, inner_radius, params, rows, contacts):
     store(contacts, outer, SLICED.lean_rate, tilt_speed)
 
 
-@kernel
+@fused
 def _balance(block, shift, params, rows, contacts):
     """Take one Newton step and return how far it moves the rollers and their ends [m].
 
@@ -123,7 +123,7 @@ def _balance(block, shift, params, rows, contacts):
     return larger(magnitude(outwards), magnitude(tilting) * (0.5 * params.rollers.length))
 
 
-@kernel
+@fused
 def predict(known, shift, slope, model, work, guess):
     """Write a first guess of the solution of guess = known + shift f(guess).
 

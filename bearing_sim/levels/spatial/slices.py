@@ -11,12 +11,12 @@ Left out: sliding along the axis of a skewed roller, and the difference of circu
 """
 
 from bearing_sim.levels.spatial.state import D_DEPTH, D_LEAN, D_LEAN_RATE, D_RATE, ROLLER, SLICED, SLICED_ROWS
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.simd import highest, larger, load, magnitude, spread, square_root, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, EXPONENT, damped_slice, hertz_pressure
 
 
-@kernel
+@fused
 def touches(block, contacts, reach):
     """Return whether any slice of a block of rollers may be loaded.
 
@@ -39,7 +39,7 @@ def _clear(block, contacts, rows):
         store(contacts, block, row, 0.0)
 
 
-@kernel
+@fused
 def normal_slices(block, contacts, slices, stiffness, damping):
     """Write normal force, tilting moment and their derivatives of a block of contacts, no traction.
 
@@ -83,7 +83,7 @@ def normal_slices(block, contacts, slices, stiffness, damping):
     store(contacts, block, SLICED.damping + 2, damping * d_2)
 
 
-@kernel
+@fused
 def load_pieces(contacts, pieces, slices, stiffness, damping):
     """Write normal forces, tilting moments and their derivatives of all contacts, and what traction needs of their pieces.
 
@@ -146,7 +146,7 @@ def load_pieces(contacts, pieces, slices, stiffness, damping):
         _store_sums(block, contacts, SLICED.damping, damping, d_0, d_1, d_2)
 
 
-@kernel
+@fused
 def sum_tractions(contacts, pieces, slices):
     """Write tractions, skewing moments and their derivatives of all contacts from those of the pieces; parameters as of `load_pieces`."""
     count, together, number = slices.positions.shape[0], slices.together, pieces.shape[0] // contacts.shape[0]
@@ -227,7 +227,7 @@ def _store_sums(block, contacts, row, scale, plain, first, second):
     store(contacts, block, row + 2, scale * second)
 
 
-@kernel
+@fused
 def average_laminae(fraction, params, work):
     """Include the laminae's loads of this instant, with stress risers, in their running means to the exponents of both rings (ISO/TS 16281).
 
@@ -262,7 +262,7 @@ def average_laminae(fraction, params, work):
                 means[1, k] += share * total(present * (outer * outer) * (outer * outer) * square_root(outer))
 
 
-@kernel
+@fused
 def _lamina_load(block, k, contacts, laminae, part, damping):
     """Return the normal force of lamina k of a block of contacts [N]."""
     x = laminae.positions[k]
@@ -271,7 +271,7 @@ def _lamina_load(block, k, contacts, laminae, part, damping):
     return damped_slice(depth, rate, part, damping)[0]
 
 
-@kernel
+@fused
 def _slice_load(block, k, contacts, slices, part, damping):
     """Return the normal force of slice k of a block of contacts [N]."""
     x = slices.positions[k]

@@ -16,7 +16,7 @@ import numpy as np
 
 from bearing_sim.levels.common.flanges import ROWS as FLANGE_ROWS
 from bearing_sim.levels.common.support import new_support
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import fused
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.lamina_life import MOMENTS
@@ -213,14 +213,14 @@ def new_work(params):
     )
 
 
-@kernel
+@fused
 def spread_state(y, count, rollers):
     """Copy the rollers' states from ``y`` into their lanes."""
     spread_runs(y, ROLLERS, BLOCK, count, rollers)
     fill_lanes(rollers, BLOCK, count)
 
 
-@kernel
+@fused
 def collect_rates(y, count, rollers, rate):
     """Copy the rollers' speeds and accelerations from their lanes into ``rate``."""
     for j in range(4 * count):
