@@ -36,6 +36,7 @@ CASES = {
     "replay-fleet": Case(("replay-fleet", LOG, "--scene", SCENE, "--set", "level=slip", "--workers", "1"), 5),
     "import-csv": Case(("import-csv", DATA, MAPPING)),
     "loads": Case(("loads", SCENE)),
+    "table": Case(("table", SCENE), 20),
     "catalog": Case(("catalog", "NU 210")),
     "new": Case(("new", "NU 210/C3", "--oil", "ISO VG 68", "--speed", "3000rpm", "--load", "5kN")),
     "machine": Case(("machine",)),

@@ -21,7 +21,15 @@ from bearing_sim.sweep.table import Table, require_same_study, study_digest, wri
 from bearing_sim.sweep.tasks import Journal, JournalInUse
 
 OLD = b"worth a lot"
-INPUTS = {"replay --state-file", "replay-fleet --bearings", "design --points", "uncertainty --log", "report --tests", "report --recordings"}
+INPUTS = {
+    "replay --state-file",
+    "replay-fleet --bearings",
+    "design --points",
+    "uncertainty --log",
+    "report --tests",
+    "report --recordings",
+    "table --from",
+}
 """Options with a path that is read; the state file of `replay` is also kept by it, as by the node."""
 OUTPUTS = outputs()
 NAMES = [f"{name} {option.opts[-1]}" for name, option in OUTPUTS]

