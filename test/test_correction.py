@@ -12,6 +12,7 @@ from bearing_sim.cli.main import main
 from bearing_sim.estimation.correction import (
     changed,
     changes_between,
+    correction_domain,
     correction_path,
     fit_correction,
     read_correction,
@@ -96,14 +97,6 @@ def test_beyond_its_points_a_correction_is_bounded_by_the_largest_that_was_found
     assert (changes[:, ANSWER.cage_slip] >= made.changes[:, 0].min() - 1e-6).all()
 
 
-def test_operating_points_next_to_one_of_two_states_have_both_slips_and_others_have_none(made):
-    where = made.conditions[17]
-    jumping = made._replace(two_states=np.array([[*where, 0.08, 0.2]]))
-    there, elsewhere = jumping.two_states_near(np.array([where * [1.001, 1.001, 1.0, 1.0], made.conditions[100]]))
-    assert there.tolist() == [0.08, 0.2] and np.isnan(elsewhere).all()
-    assert np.isnan(made.two_states_near(made.conditions)).all()
-
-
 def test_points_without_an_answer_are_left_out_and_too_few_of_them_are_refused():
     conditions = at_random(128)
     steady, planar = made_up(conditions)
@@ -146,7 +139,7 @@ def test_a_scene_that_level_planar_cannot_compute_is_refused_by_the_command_with
 def test_tables_with_and_without_a_correction_are_kept_apart():
     plain, corrected = (load_scene("deng2017_table1", ["level=steady", f"table.correction={word}"]) for word in ("none", "planar"))
     assert table_builder.table_path(plain, span_of(plain)) != table_builder.table_path(corrected, span_of(corrected))
-    domain = studied.correction_domain(corrected)
+    domain = correction_domain(corrected)
     heavier = load_scene(plain, ["bearing.cage.mass=2 kg"])  # which changes nothing at level steady
     assert correction_path(plain, domain) == correction_path(corrected, domain) != correction_path(heavier, domain)
 

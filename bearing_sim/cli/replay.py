@@ -162,7 +162,7 @@ def _require_one_log(log: Path, scene_name: str) -> None:
 
 
 def _choice(scene, course) -> dict:
-    """Return the model to replay with: at level steady its table, for the log's speeds and oil temperatures."""
+    """Return the model to replay with, at level steady with its table for the log's speeds and oil temperatures, and the laws of that table."""
     if scene.level != "steady":
         return {}
     from functools import partial
@@ -170,13 +170,15 @@ def _choice(scene, course) -> dict:
     import numpy as np
 
     from bearing_sim.cli.table import build_with_progress
+    from bearing_sim.estimation.two_states import laws_of_two_states
     from bearing_sim.model.table_span import rounded_temperatures, spanning
     from bearing_sim.simulation import Simulation
 
     scene = spanning(scene, float(np.abs(course.values["shaft_speed"]).max()))  # else each faster operating point is solved by itself
     kelvin = np.append(course.values.get("oil_temperature", ()), [] if "oil_temperature" in course.stamps else scene.lubricant.temperature)
     ends = rounded_temperatures(float(kelvin.min()), float(kelvin.max()))
-    return {"model": partial(Simulation, table=build_with_progress(scene, ends)[0])}
+    table = build_with_progress(scene, ends)[0]
+    return {"model": partial(Simulation, table=table), "laws": laws_of_two_states(scene, ends)}
 
 
 def _report(result, course, recorded, scene, out) -> dict:

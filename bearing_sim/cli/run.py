@@ -77,6 +77,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
     uncertainty` shows more.
     """
     from bearing_sim.cli.uncertainty import bands_of
+    from bearing_sim.estimation.two_states import two_states_at
     from bearing_sim.messages.events import validity_event
     from bearing_sim.model.validity import outside
     from bearing_sim.scene.loader import SceneError, load_scene
@@ -108,7 +109,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
         first = time.perf_counter()
         outcome = _advance(simulation, plan, sinks, progress, estimation)
         wall = time.perf_counter() - first
-        warnings = outside(scene, outcome.window)
+        warnings = [*outside(scene, outcome.window), *two_states_at(scene, outcome.window, _table_temperatures(scene))]
         for sink in sinks:
             for each in warnings:
                 sink.write_event(validity_event(outcome.simulated, each))
@@ -120,8 +121,6 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
     else:
         _print(report, scene, bands, estimation)
     warn_of_limits(scene, warnings)
-    if corrected is not None:
-        _warn_of_two_states(scene, outcome.window)
     if seconds is None and not outcome.settled:
         raise Unsettled(f"not settled: {outcome.reason}; give more time with --at-most")
 
@@ -147,17 +146,6 @@ def _corrected_table(scene):
 def _table_temperatures(scene) -> tuple[float, float] | None:
     kelvin = scene.lubricant.temperature
     return (kelvin, kelvin) if scene.heat.law == "none" else None
-
-
-def _warn_of_two_states(scene, window) -> None:
-    import numpy as np
-
-    from bearing_sim.cli.table import warn_of_two_states
-
-    few = window[:: max(len(window) // 100, 1)]
-    loads = few["load_y"], few["load_z"]
-    conditions = np.column_stack([few["shaft_speed"], np.hypot(*loads), few["oil_temperature"], np.arctan2(loads[1], loads[0])])
-    warn_of_two_states(scene, conditions, _table_temperatures(scene))
 
 
 def _plan(scene, seconds, most, rate) -> _Plan:

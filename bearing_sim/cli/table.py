@@ -8,7 +8,7 @@ import click
 
 from bearing_sim.cli.options import json_option, scene_argument, set_option
 from bearing_sim.cli.outputs import OutputFile, WritingCommand
-from bearing_sim.cli.reporting import UsageError, announce_compilation, as_usage_error, print_json, print_table, progress_bar, warn
+from bearing_sim.cli.reporting import UsageError, announce_compilation, as_usage_error, print_json, print_table, progress_bar
 
 
 @click.command("table", cls=WritingCommand)
@@ -189,8 +189,7 @@ def _report(scene, table, quality, answers) -> dict:
 
 def _correction_of(scene) -> dict | None:
     """Return what the correction of a scene's table was measured from and how sure it is, or None where there is none."""
-    from bearing_sim.estimation.correction import correction_path, read_correction
-    from bearing_sim.studies.correction import correction_domain
+    from bearing_sim.estimation.correction import correction_domain, correction_path, read_correction
 
     found = read_correction(correction_path(scene, correction_domain(scene))) if scene.table.correction != "none" else None
     if found is None:
@@ -261,39 +260,6 @@ def _print(report) -> None:
         rows = [(name, f"{of_table:.6g} (solved: {solved:.6g})") for name, (of_table, solved) in point["table_and_solution"].items()]
         where = f"{point['speed_rpm']:.6g} rpm, {point['load']:.6g} N, {point['oil_temperature_c']:.6g} degC, {point['load_angle_deg']:.6g} deg"
         print_table(where + ("" if point["held"] else ": outside the table"), rows)
-
-
-def warn_of_two_states(scene, conditions, temperatures=None) -> None:
-    """Say on stderr where the state that a corrected table has is one of two that level planar has.
-
-    Parameters
-    ----------
-    scene : at level steady, with a corrected table.
-    conditions : that it ran at, columns `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
-    temperatures : of the table, as for `build_with_progress`.
-    """
-    import numpy as np
-
-    from bearing_sim.estimation.correction import correction_path, read_correction
-    from bearing_sim.studies.correction import correction_domain
-
-    correction = read_correction(correction_path(scene, correction_domain(scene, temperatures)))
-    if correction is None or not len(correction.two_states):
-        return
-    conditions = np.asarray(conditions, float)
-    slips = correction.two_states_near(conditions)
-    found = np.flatnonzero(np.isfinite(slips[:, 0]))
-    if not found.size:
-        return
-    worst = found[np.argmax(np.abs(slips[found, 1] - slips[found, 0]))]
-    rpm = abs(conditions[worst, 0]) * 30.0 / math.pi
-    warn(
-        [
-            f"table_states: level planar has two states near {rpm:.5g} rpm and {conditions[worst, 1]:.3g} N: {100 * slips[worst, 0]:.3g} % of slip "
-            f"from rolling, which the table has, and {100 * slips[worst, 1]:.3g} % from more slip; it was so at {len(found)} of {len(conditions)} "
-            "operating points; use level planar"
-        ]
-    )
 
 
 def _print_correction(report) -> None:

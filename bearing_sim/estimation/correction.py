@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.estimation.response import CONDITIONS, Domain, coordinates, embedded, restored_slip, slip_scale
+from bearing_sim.estimation.response import CONDITIONS, Domain, coordinates, domain_of, embedded, restored_slip, slip_scale
 from bearing_sim.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
 from bearing_sim.files.kept_arrays import read_arrays, write_arrays
 from bearing_sim.files.limits import RESPONSE_FILE
@@ -37,6 +37,9 @@ from bearing_sim.scene.scene import Scene
 VERSION = 2  # of the files
 LIFE_EXPONENT = 4.0
 """A life falls with this power of the equivalent loads: 4.5 times 8/9 (`bearing_sim.physics.rating_life.rating_life_revolutions`)."""
+STATES_APART = 0.005
+"""Slips of two states differ by more."""
+_SLOWEST = 0.1  # of the largest speed; slower points are corrected as these
 _FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)
 _POWERS = slice(ANSWER.shaft_power, len(ANSWER))
 _LEAST_POWER = 1e-9  # W; of a shaft that puts in less no share is taken
@@ -105,27 +108,18 @@ class Correction(NamedTuple):
 
     def errors_near(self, conditions: np.ndarray) -> np.ndarray:
         """Return the root mean square of the errors of the nearest points [1, 1], of slip and of life; shape (n, 2)."""
-        there, centres = self._there(np.asarray(conditions, float)) @ self.metrics[0], self._there(self.conditions) @ self.metrics[0]
-        distances = np.square(there[:, None] - centres).sum(axis=-1)
+        distances = np.square(self.places(conditions)[:, None] - self.places(self.conditions)).sum(axis=-1)
         near = np.argsort(distances, axis=1)[:, :_NEIGHBOURS]
         return np.sqrt(np.mean(np.square(self.errors[near]), axis=1))
 
-    def two_states_near(self, conditions: np.ndarray) -> np.ndarray:
-        """Return the two slips [1, 1] of level ``planar`` at the nearest point if it has two states there, from ideal rolling first, else NaN.
+    def places(self, conditions: np.ndarray) -> np.ndarray:
+        """Return operating points as places between which distances count, shape (n, c).
 
         Parameters
         ----------
         conditions : columns `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
-
-        Returns
-        -------
-        shape (n, 2)
         """
-        slips = np.full((len(self.conditions), 2), np.nan)
-        for state in self.two_states:
-            slips[(self.conditions == state[: len(CONDITIONS)]).all(axis=1)] = state[len(CONDITIONS) :]
-        there, centres = self._there(np.asarray(conditions, float)) @ self.metrics[0], self._there(self.conditions) @ self.metrics[0]
-        return slips[np.argmin(np.square(there[:, None] - centres).sum(axis=-1), axis=1)]
+        return self._there(np.asarray(conditions, float)) @ self.metrics[0]
 
     def _there(self, conditions):
         return embedded(coordinates(conditions, self.domain), self.domain)
@@ -216,6 +210,18 @@ def _best_spline(there, domain, values, to_error, largest):
     _, best, smoothing = min(scored)
     found = searched(starts[best], lambda parameters: missed(parameters, smoothing))
     return metric_of(found, there.shape[1], columns), smoothing
+
+
+def correction_domain(scene: Scene, temperatures: tuple[float, float] | None = None) -> Domain:
+    """Return the operating points over which a correction is measured: those of the response but for slow ones, which hardly differ and take long.
+
+    Parameters
+    ----------
+    scene : of any level.
+    temperatures : lowest and highest oil temperature [K], instead of the scene's.
+    """
+    domain = domain_of(scene, temperatures)
+    return domain._replace(speeds=(_SLOWEST * domain.speeds[1], domain.speeds[1]))
 
 
 def correction_digest(scene: Scene, domain: Domain) -> str:

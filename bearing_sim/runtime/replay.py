@@ -4,7 +4,7 @@
 import math
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -18,7 +18,7 @@ from bearing_sim.messages.diagnostics import condition, further_condition
 from bearing_sim.messages.events import Event
 from bearing_sim.model.sample import joined
 from bearing_sim.model.turning import turns
-from bearing_sim.model.validity import Exceedance, in_order
+from bearing_sim.model.validity import Exceedance, Law
 from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import Comparison, ResidualMonitor
@@ -165,6 +165,7 @@ def replay(
     model: Callable[[Scene, Inputs], Simulation] = Simulation,
     keeper: StateKeeper | None = None,
     response: ResponseModel | None = None,
+    laws: Sequence[Law] = (),
 ) -> Replay:
     """Run the model over an input profile and write inputs, outputs and events.
 
@@ -179,13 +180,14 @@ def replay(
     model : makes the simulation.
     keeper : of the state of the bearing whose log it is; times that the state contains are not counted again.  None counts nothing.
     response : of the scene, for what its block ``estimation`` asks for; None estimates nothing.
+    laws : whose ranges are watched besides those of the scene (`bearing_sim.monitoring.limits.LimitsMonitor`).
 
     Returns
     -------
     The result.  A stretch that cannot be integrated is skipped, reported by an event and counted, and the next one is tried from the last
     good state; after ten in a row the run is given up.
     """
-    return _Run(scene, profile, recording, tuple(watchers), rate, progress, keeper, response).run(model)
+    return _Run(scene, profile, recording, tuple(watchers), rate, progress, keeper, response, laws).run(model)
 
 
 class _Run:
@@ -201,6 +203,7 @@ class _Run:
         progress: Callable,
         keeper: StateKeeper | None,
         response: ResponseModel | None,
+        laws: Sequence[Law],
     ):
         self._keeper = keeper
         self._estimation = LiveEstimation(scene, response) if response is not None and scene.estimation.is_asked else None
@@ -216,7 +219,7 @@ class _Run:
         self._watched: list[np.ndarray] = []
         self._untaken: list[Output] = []
         self._next_report = 0.0
-        self._monitor, self._limits = Monitor(scene), LimitsMonitor(scene)
+        self._monitor, self._limits = Monitor(scene), LimitsMonitor(scene, laws)
         self._unjudged: list[np.ndarray] = []
         self._unestimated: list[np.ndarray] = []
         self._comparison = Comparison(ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed))
@@ -281,7 +284,7 @@ class _Run:
             result.steps, result.rejected_steps, result.non_finite_steps = run.simulation.counters[:3]
         result.sim_seconds, result.gap_seconds = run.simulated_ns * 1e-9, run.in_gaps_ns * 1e-9
         result.failed_ticks, result.given_up = run.failures, run.given_up
-        result.warnings = in_order(self._limits.worst.values())
+        result.warnings = self._limits.exceedances
         result.wall_seconds, result.cpu_seconds = time.perf_counter() - began, time.process_time() - began_cpu
         return result
 

@@ -15,14 +15,16 @@ from scipy.stats import qmc
 
 from bearing_sim.estimation.correction import (
     LIFE_EXPONENT,
+    STATES_APART,
     Correction,
+    correction_domain,
     correction_path,
     fit_correction,
     measured_scene,
     read_correction,
     write_correction,
 )
-from bearing_sim.estimation.response import Domain, conditions_at, coordinates, domain_of, embedded
+from bearing_sim.estimation.response import conditions_at, coordinates, embedded
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import Quality, obtain_table, solve_points
@@ -40,11 +42,9 @@ SLIP_GOAL, LIFE_GOAL = 5e-4, 0.01  # errors at points left out, root mean square
 _BATCH = 8  # points of a task
 _CANDIDATES = 4096
 _PURSUED = 10.0  # times the goals; larger errors, such as at a jump from one state to another, do not draw more points
-_SLOWEST = 0.1  # of the largest speed; slower points are corrected as these
 _SHORTEST, _LONGEST = 24.0, 120.0  # turns of an ideal cage; cages that skid under little load wander and never rest, their means count
 _TELLING = 0.02  # slip from which on another state is looked for
 _MORE = 2.0  # times the slip found, at which the search for another state begins
-_APART = 0.005  # slips of two states differ by more
 _MEANS = tuple(name for name in ANSWER._fields if name in {each.name for each in OBSERVABLES})
 _LOADS = ("inner_equivalent_load", "outer_equivalent_load", "inner_lamina_load", "outer_lamina_load")
 
@@ -107,18 +107,6 @@ def _answers(outcome: Outcome, life: Life) -> np.ndarray:
     return answers
 
 
-def correction_domain(scene: Scene, temperatures: tuple[float, float] | None = None) -> Domain:
-    """Return the operating points over which a correction is measured: those of the response but for slow ones, which hardly differ and take long.
-
-    Parameters
-    ----------
-    scene : of any level.
-    temperatures : lowest and highest oil temperature [K], instead of the scene's.
-    """
-    domain = domain_of(scene, temperatures)
-    return domain._replace(speeds=(_SLOWEST * domain.speeds[1], domain.speeds[1]))
-
-
 def obtain_correction(
     scene: Scene, temperatures: tuple[float, float] | None = None, workers: int | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None, rebuild: bool = False, most: int = MOST_POINTS,
@@ -179,7 +167,7 @@ def _no_answers(count: int) -> dict:
 
 def _fitted(domain, conditions, rows, seconds) -> Correction:
     steady, planar, other = (np.concatenate([row[name] for row in rows]) for name in ("steady", "planar", "other_slip"))
-    two = np.abs(other - planar[:, ANSWER.cage_slip]) > _APART
+    two = np.abs(other - planar[:, ANSWER.cage_slip]) > STATES_APART
     states = np.column_stack([conditions[two], planar[two, ANSWER.cage_slip], other[two]])
     return fit_correction(domain, conditions, steady, planar, seconds)._replace(two_states=states)
 
