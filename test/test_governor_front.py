@@ -85,11 +85,33 @@ def test_levels_that_were_not_measured_follow_with_unknown_errors():
     assert math.isnan(fallen[2].errors["slip"])
 
 
-def test_a_scene_whose_own_setting_was_not_measured_falls_to_lower_levels():
+def test_a_scene_whose_own_setting_was_not_measured_falls_to_coarser_settings_of_its_level_before_lower_levels():
     own = scene("integration.relative_tolerance=0.01")
     fallen = settings_to_fall(own, ALL)
     assert fallen[0].name == "planar, as in the scene" and math.isnan(fallen[0].errors["slip"])
-    assert fallen[0].overrides == complete_overrides(own) and names(fallen[1:]) == ["steady, table"]
+    assert fallen[0].overrides == complete_overrides(own) and names(fallen[1:]) == names([PLANAR, COARSE, STEADY])
+    between = settings_to_fall(scene("integration.relative_tolerance=0.05"), ALL)
+    assert names(between[1:]) == names([COARSE, STEADY])
+
+
+@pytest.mark.parametrize("finer", [(), ("integration.absolute_tolerance.speed=1e-6 m/s",)], ids=["coarser than all", "finer in speed alone"])
+def test_settings_that_may_be_slower_than_one_that_was_not_measured_are_left_out(finer):
+    fallen = settings_to_fall(scene("integration.relative_tolerance=0.2", *finer), ALL)
+    assert names(fallen[1:]) == names([STEADY])
+
+
+def test_a_fixed_step_that_was_not_measured_falls_to_settings_that_are_faster_than_a_longer_step():
+    fast = setting("planar", "tolerances x 10", 9.0, 0.1, overrides=["integration.relative_tolerance=0.3"])
+    kept = front(STEADY, COARSE, PLANAR, STEP, fast)
+    assert names(settings_to_fall(scene("integration.fixed_step=20 us"), kept)[1:]) == names([fast, STEADY])
+    assert names(settings_to_fall(scene("integration.fixed_step=80 us"), kept)[1:]) == names([STEADY])
+
+
+def test_fewer_slices_count_as_faster_than_those_of_a_scene_that_were_not_measured():
+    few = setting("spatial", "5 slices", 2.0, 0.045, overrides=["bearing.roller.slices=5"])
+    many = setting("spatial", "21 slices", 0.5, 0.04, overrides=["bearing.roller.slices=21"])
+    fallen = settings_to_fall(scene("level=spatial", "bearing.roller.slices=11"), front(few, many, PLANAR))
+    assert names(fallen[1:]) == [few.name, *names([PLANAR]), "slip, not measured", "steady, not measured"]
 
 
 def test_only_levels_that_have_what_the_scene_asks_for_are_used():

@@ -17,7 +17,7 @@ import numpy as np
 
 from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.scene.fidelity import NUMBERS, lower_levels
-from bearing_sim.scene.kept_front import KeptCourse, KeptFront, KeptSetting, complete_overrides
+from bearing_sim.scene.kept_front import KeptCourse, KeptFront, KeptSetting, complete_overrides, is_coarser
 from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
@@ -187,7 +187,9 @@ def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
 
     Each is faster than the one before by a quarter at least, and on the front of the settings that the governor can use: at the scene's own level
     or a lower one that has everything the scene asks for; without a fixed step, whose code is compiled separately; and with a corrected table only
-    where it is on disk.  Levels below all measured ones follow at the end, with errors that are not known.
+    where it is on disk.  Where the scene's own setting was not measured, those of its level are used that are surely faster: at least as fast as the
+    slowest that is coarser (`bearing_sim.scene.kept_front.is_coarser`).  Levels below all measured ones follow at the end, with errors that are not
+    known.
 
     Parameters
     ----------
@@ -202,7 +204,12 @@ def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
     measured = [one for one in measured if not one.is_corrected or cached_table(with_setting(scene, one)) is not None]
     own = next((one for one in front.settings() if (one.level, one.overrides) == (scene.level, overrides)), None)
     settings = [own or KeptSetting(scene.level, "as in the scene", overrides, math.nan, unknown)]
-    slowest = own.real_time_factor if own is not None else max((one.real_time_factor for one in measured if one.level == scene.level), default=0.0)
+    if own is not None:
+        slowest = own.real_time_factor
+    else:
+        faster = _surely_faster(settings[0], front)
+        slowest = max((one.real_time_factor for one in measured if one.level == scene.level and one.real_time_factor < faster), default=0.0)
+        measured = [one for one in measured if one.level != scene.level or one.real_time_factor >= faster]
     for one in sorted(measured, key=lambda one: (one.errors["slip"], -one.real_time_factor)):
         if one.real_time_factor >= _WORTH_A_CHANGE * slowest:
             settings.append(one)
@@ -214,6 +221,15 @@ def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
             lower = dataclasses.replace(scene, level=level, integration=adaptive)
             settings.append(KeptSetting(level, "not measured", complete_overrides(lower), math.nan, unknown))
     return settings if len(settings) > 1 else []
+
+
+def _surely_faster(own: KeptSetting, front: KeptFront) -> float:
+    """Return the real-time factor from which on settings are faster than one that was not measured: that of the slowest of its level that is coarser.
+
+    It is infinite where none is coarser.
+    """
+    coarser = [one for one in front.settings() if one.level == own.level and is_coarser(one.overrides, own.overrides)]
+    return min((one.real_time_factor for one in coarser), default=math.inf)
 
 
 def _is_adaptive(setting: KeptSetting) -> bool:
