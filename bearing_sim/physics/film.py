@@ -218,6 +218,12 @@ def _resist_rolling(contacts, first, end, constants):
 
 @kernel
 def resist_rolling(contacts, resistance):
+    """Write the resistance to rolling F_R of all contacts, half of them with each raceway; see `resist_rolling_along`."""
+    resist_rolling_along(contacts, contacts.shape[0] // 2, resistance)
+
+
+@kernel
+def resist_rolling_along(contacts, middle, resistance):
     """Write the resistance to rolling F_R of all contacts and its derivatives.
 
     As Q/(Q + 1 N) it fades out where a contact carries next to nothing, and it is smooth through u = 0.
@@ -225,8 +231,8 @@ def resist_rolling(contacts, resistance):
     Parameters
     ----------
     contacts : array with rows `CONTACT`; load and rolling go in.
+    middle : block where the contacts with the outer raceway begin.
     resistance : `RollingResistance`.
     """
-    blocks = contacts.shape[0]
-    _resist_rolling(contacts, 0, blocks // 2, resistance.inner)
-    _resist_rolling(contacts, blocks // 2, blocks, resistance.outer)
+    _resist_rolling(contacts, 0, middle, resistance.inner)
+    _resist_rolling(contacts, middle, contacts.shape[0], resistance.outer)

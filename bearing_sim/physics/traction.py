@@ -171,28 +171,38 @@ def _static(contacts, first, end, scale, special):
 
 @fused
 def traction(contacts, inner, outer):
+    """Compute the tangential forces of all contacts, half of them with each raceway; parameters as of `traction_along`."""
+    traction_along(contacts, contacts.shape[0] // 2, 1, inner, outer)
+
+
+@fused
+def traction_along(contacts, middle, together, inner, outer):
     """Compute the tangential forces of all contacts.
 
     Parameters
     ----------
     contacts : array with rows `CONTACT`; load, rolling and sliding go in, force and its derivatives come out.
+    middle : block where the contacts with the outer raceway begin.
+    together : number of blocks that follow each other with one rolling speed.
     inner, outer : `TractionConstants` of the raceways; they differ in the constant factors alone.
     """
     blocks = contacts.shape[0]
     if inner.law == EYRING:
-        eyring_traction(contacts, 0, blocks // 2, inner.scale, inner.special)
-        eyring_traction(contacts, blocks // 2, blocks, outer.scale, outer.special)
+        eyring_traction(contacts, 0, middle, inner.scale, inner.special)
+        eyring_traction(contacts, middle, blocks, outer.scale, outer.special)
         return
     # Short loops: the processor works on several blocks at once where one long chain of operations would make it wait.
     for block in range(blocks):
         store(contacts, block, CONTACT.log_load, logarithm(larger(load(contacts, block, CONTACT.load), LOAD_FLOOR)))
-    for block in range(blocks):
-        rolling = load(contacts, block, CONTACT.rolling)
+    for first in range(0, blocks, together):
+        rolling = load(contacts, first, CONTACT.rolling)
         square = rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR
-        store(contacts, block, CONTACT.log_speed, 0.5 * logarithm(square))
-        store(contacts, block, CONTACT.inverse_speed, 1.0 / square_root(square))
-    _powers(contacts, 0, blocks // 2, inner)
-    _powers(contacts, blocks // 2, blocks, outer)
+        log_speed, inverse_speed = 0.5 * logarithm(square), 1.0 / square_root(square)
+        for block in range(first, first + together):
+            store(contacts, block, CONTACT.log_speed, log_speed)
+            store(contacts, block, CONTACT.inverse_speed, inverse_speed)
+    _powers(contacts, 0, middle, inner)
+    _powers(contacts, middle, blocks, outer)
     for block in range(blocks):
         ratio = magnitude(load(contacts, block, CONTACT.sliding)) * load(contacts, block, CONTACT.inverse_speed)
         store(contacts, block, CONTACT.decay, exponential(-(load(contacts, block, CONTACT.c) * ratio)))

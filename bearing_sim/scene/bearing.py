@@ -97,15 +97,14 @@ class InnerRaceway:
 class Roller:
     """The rollers, all equal.
 
-    Level ``spatial`` cuts each roller into slices; ``slices_per_traction`` neighbours share one traction coefficient, taken at their mean load.
+    Level ``spatial`` evaluates each contact at the points of a quadrature on the part of the roller that bears, or on equal slices of the roller.
     """
 
     count: Annotated[int, Field(ge=3, le=200)]  # number of rollers, Z
     diameter: quantity("m", "roller diameter, D_w", 0.5e-3, 0.5, "mm")
     length: quantity("m", "roller effective length, L", 0.5e-3, 0.5, "mm")
     crown: Crown | None = None  # profile of the rollers, see `bearing_sim.scene.crown`; None: not known, taken as that of ISO/TS 16281
-    slices: Annotated[int, Field(ge=1, le=400)] = 20  # per roller, at level spatial; ISO/TS 16281 requires 30 or more for the life
-    slices_per_traction: Annotated[int, Field(ge=1, le=400)] = 4  # neighbouring slices with one traction coefficient
+    slices: Annotated[int, Field(ge=1, le=400)] | None = None  # equal ones, at level spatial; None: points of a quadrature
 
     @property
     def profile(self) -> Crown:

@@ -162,7 +162,7 @@ def complete_overrides(scene) -> tuple[str, ...]:
     fields = {f"absolute_tolerance.{name}": getattr(absolute, name) for name in ("position", "play", "speed")}
     fields |= {name: getattr(integration, name) for name in ("relative_tolerance", "maximum_step", "fixed_step")}
     written = tuple(f"integration.{name}={'null' if value is None else repr(float(value))}" for name, value in fields.items())
-    return (*written, f"bearing.roller.slices={scene.bearing.roller.slices}") if scene.level == "spatial" else written
+    return (*written, f"bearing.roller.slices={scene.bearing.roller.slices or 'null'}") if scene.level == "spatial" else written
 
 
 def is_coarser(overrides: Iterable[str], than: Iterable[str]) -> bool:

@@ -63,6 +63,7 @@ _RACEWAY_RADII = tuple(f"outer_raceway.{name}" for name in ("low_radius", "diame
 # What older scenes say, and what says it now.
 _RENAMED = {
     "bearing.inner_raceway.supported_mass": "the shaft's mass is support.shaft.mass",
+    "bearing.roller.slices_per_traction": "every slice has its own traction; leave it out",
     "lubricant.pumping": "give lubricant.rolling_resistance: hydrodynamic, or none",
     "bearing.ring_growth": "bearing.dimensions_at: cold computes rotation, mounting the fits, heat the temperatures",
 }

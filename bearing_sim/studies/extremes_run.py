@@ -113,7 +113,7 @@ def run_case(case: Case) -> Outcome:
 
 
 def _step_budget(scene: Scene) -> int:
-    slices = scene.bearing.roller.count * (scene.bearing.roller.slices if scene.level == "spatial" else 1)
+    slices = scene.bearing.roller.count * ((scene.bearing.roller.slices or 20) if scene.level == "spatial" else 1)
     return max(_FEWEST_STEPS, round(STEPS * min(1.0, _STOCK_SLICES / slices))) * (1 if _asks_for_small_steps(scene) else _PATIENT)
 
 

@@ -149,7 +149,7 @@ def settings_of(level: str, quick: bool = False) -> list[Setting]:
         return found
     found += [Setting(level, f"step {step} us", (f"integration.fixed_step={step} us",)) for step in (5, 10, 20, 40)]
     if level == "spatial":
-        found += [Setting(level, f"{count} slices", (f"bearing.roller.slices={count}",)) for count in (5, 10, 50, _MOST_SLICES)]
+        found += [Setting(level, f"{count} slices", (f"bearing.roller.slices={count}",)) for count in (10, 20, 50, _MOST_SLICES)]
     return found
 
 

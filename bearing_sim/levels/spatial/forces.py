@@ -34,7 +34,7 @@ from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.forces import border_accelerations as planar_accelerations
 from bearing_sim.levels.planar.state import BORDER as PLANAR
 from bearing_sim.levels.spatial.jacobian import land_cage_jacobian, land_ring_jacobian, react_on_support, roller_jacobian
-from bearing_sim.levels.spatial.slices import load_pieces, sum_resistance, sum_tractions
+from bearing_sim.levels.spatial.slices import press_points, sum_resistance, sum_tractions
 from bearing_sim.levels.spatial.state import (
     BORDER,
     CAGE_TILT_Y,
@@ -55,10 +55,10 @@ from bearing_sim.levels.spatial.state import (
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.simd import larger, load, magnitude, spread, store, total, where_positive
 from bearing_sim.physics.contact import EXPONENT, damped_slice
-from bearing_sim.physics.film import resist_rolling
+from bearing_sim.physics.film import resist_rolling_along
 from bearing_sim.physics.flange import axial_share, flange_friction
 from bearing_sim.physics.pocket import pocket_friction_lanes
-from bearing_sim.physics.traction import traction
+from bearing_sim.physics.traction import traction_along
 
 
 class LandWork(NamedTuple):
@@ -179,7 +179,7 @@ def hold_slices(offset, rate, skew, skew_rate, clearance, stiffness, params):
     stiffness : of the film within it [N/m].
     params : of the bearing.
     """
-    positions, damping = params.slices.positions, params.cage.pocket_damping
+    positions, damping = params.slices.walls, params.cage.pocket_damping
     count = positions.shape[0]
     width = 2.0 * positions[count - 1] / (count - 1) if count > 1 else 0.0
     square = width * width * (count * count - 1) / 12.0  # mean of x^2 over slices
@@ -358,12 +358,13 @@ def equations(t, y, model, work, rate, with_jacobian):
         rate[k] = y[BORDER + k]
     cage_cosine, cage_sine = math.cos(y[THETA]), math.sin(y[THETA])
     _place_rollers(y, shaft_speed, inner_radius, params, rows, contacts)
-    load_pieces(contacts, work.pieces, params.slices, params.raceways.stiffness, params.ring.contact_damping)
-    traction(work.pieces, model.lubrication.inner, model.lubrication.outer)
-    sum_tractions(contacts, work.pieces, params.slices)
+    points, first_points, count = work.points, work.first_points, params.slices.points
+    middle, end = press_points(contacts, points, first_points, params.slices, params.raceways.stiffness, params.ring.contact_damping)
+    traction_along(points[:end], middle, count, model.lubrication.inner, model.lubrication.outer)
+    sum_tractions(contacts, points, first_points, count)
     if resistance:
-        resist_rolling(work.pieces, model.lubrication.rolling_resistance)
-        sum_resistance(contacts, work.pieces, params.slices)
+        resist_rolling_along(points[:end], middle, model.lubrication.rolling_resistance)
+        sum_resistance(contacts, points, first_points, count)
     if params.flanges.load > 0.0:
         press_axially(params, rows, contacts)
     for block in range(rows.shape[0]):

@@ -577,16 +577,19 @@ def _pocket_rows(block, y, params, rows, chain, jacobian):
         lever, leaning = load(chain, 0, first + _LEVER), load(chain, 0, first + _LEAN)
         d_f = k_0 * offset + k_1 * skew + d_0 * rate + d_1 * skew_rate
         d_m = k_1 * offset + k_2 * skew + d_1 * rate + d_2 * skew_rate
-        column = k
-        if k > SPIN:
+        if k > SPIN:  # nothing else writes what the cage does
             column = AT_CAGE + k - _AT_Y
-            for row in range(5):
-                store(jacobian, block, row * LOCAL + column, 0.0)
-        add(jacobian, block, column, -(d_f * push_r))
-        add(jacobian, block, LOCAL + column, -(d_f * push_t))
-        add(jacobian, block, 2 * LOCAL + column, -(d_m * push_r))
-        add(jacobian, block, 3 * LOCAL + column, -(d_m * push_t))
-        add(jacobian, block, 4 * LOCAL + column, -(d_f * braking))
+            store(jacobian, block, column, -(d_f * push_r))
+            store(jacobian, block, LOCAL + column, -(d_f * push_t))
+            store(jacobian, block, 2 * LOCAL + column, -(d_m * push_r))
+            store(jacobian, block, 3 * LOCAL + column, -(d_m * push_t))
+            store(jacobian, block, 4 * LOCAL + column, -(d_f * braking))
+        else:
+            add(jacobian, block, k, -(d_f * push_r))
+            add(jacobian, block, LOCAL + k, -(d_f * push_t))
+            add(jacobian, block, 2 * LOCAL + k, -(d_m * push_r))
+            add(jacobian, block, 3 * LOCAL + k, -(d_m * push_t))
+            add(jacobian, block, 4 * LOCAL + k, -(d_f * braking))
         store(jacobian, block, CAGE_ROWS + k, per_mass * (d_f * push_y))
         store(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + k, per_mass * (d_f * push_z))
         store(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + k, per_tilt * (d_m * push_y))
@@ -964,8 +967,13 @@ def _couplings(block, jacobian, s, rows):
 
 
 @fused
-def _reduce(block, jacobian, s, rows, positions, corner):
-    """Take a block of rollers out of the border's system."""
+def _reduce(block, jacobian, s, rows, sums):
+    """Add what a block of rollers does to the border's system.
+
+    Parameters
+    ----------
+    sums : sums over blocks of what is taken from the border's matrix and, behind that, of derivatives by its positions, shape (1, 162, LANES).
+    """
     for k in range(BORDER):
         below = BELOW + SPEEDS * k
         b_0, b_1, b_2 = load(rows, block, below), load(rows, block, below + 1), load(rows, block, below + 2)
@@ -980,8 +988,8 @@ def _reduce(block, jacobian, s, rows, positions, corner):
                 column = first + BLOCK + (m if on_ring else m - RING)
                 d_position = load(jacobian, block, column)
                 through += s * (load(jacobian, block, column + (RING if on_ring else CAGE)) + s * d_position)
-                positions[k, m] += total(d_position)
-            corner[k, m] -= total(through)
+                add(sums, 0, BORDER * (BORDER + k) + m, d_position)
+            add(sums, 0, BORDER * k + m, through)
 
 
 @fused
@@ -1005,11 +1013,18 @@ def factor(jacobian, border, s, factored):
         for m in range(BORDER):
             positions[k, m] = border[k, m]
             corner[k, m] = (1.0 if k == m else 0.0) - s * (border[k, BORDER + m] + s * border[k, m])
+    for m in range(2 * BORDER * BORDER):
+        store(factored.sums, 0, m, 0.0)
     regular = True
     for block in range(jacobian.shape[0]):
         regular = _invert_blocks(block, jacobian, s, rows, factored.block) and regular
         _couplings(block, jacobian, s, rows)
-        _reduce(block, jacobian, s, rows, positions, corner)
+        _reduce(block, jacobian, s, rows, factored.sums)
+    for k in range(BORDER):
+        for m in range(BORDER):
+            corner[k, m] -= total(load(factored.sums, 0, BORDER * k + m))
+            if (k < RING) == (m < RING):
+                positions[k, m] += total(load(factored.sums, 0, BORDER * (BORDER + k) + m))
     return decompose(BORDER, corner, factored.order) and regular
 
 

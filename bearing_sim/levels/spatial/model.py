@@ -22,7 +22,7 @@ from bearing_sim.levels.spatial import jacobian
 from bearing_sim.levels.spatial import state as spatial_state
 from bearing_sim.levels.spatial.forces import equations
 from bearing_sim.levels.spatial.power import spatial_powers
-from bearing_sim.levels.spatial.slices import average_laminae, slice_pressures
+from bearing_sim.levels.spatial.slices import average_laminae, lamina_pressures
 from bearing_sim.levels.spatial.state import (
     BLOCK,
     BORDER,
@@ -227,7 +227,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
     observe_support(y, y[RING_Y], y[RING_Z], model.params.support, row)
     row[COLUMN.ring_tilt_y], row[COLUMN.ring_tilt_z] = y[RING_TILT_Y], y[RING_TILT_Z]
     row[COLUMN.cage_tilt_y], row[COLUMN.cage_tilt_z] = y[CAGE_TILT_Y], y[CAGE_TILT_Z]
-    pressures = slice_pressures(model.params, work)
+    pressures = lamina_pressures(model.params, work)
     row[COLUMN.inner_pressure], row[COLUMN.outer_pressure], row[COLUMN.inner_edge_pressure], row[COLUMN.outer_edge_pressure] = pressures
     row[COLUMN.land_eccentricity] = land_eccentricity(y[RING_Y], y[RING_Z], y[CAGE_Y], y[CAGE_Z], model.params.cage)
     write_powers(powers, row)

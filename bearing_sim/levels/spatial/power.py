@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Power by cause at level ``spatial`` (see `bearing_sim.levels.common.power` and `bearing_sim.levels.planar.power`), summed over slices.
+"""Power by cause at level ``spatial`` (see `bearing_sim.levels.common.power` and `bearing_sim.levels.planar.power`), summed along the rollers.
 
-Speeds of slices are straight lines along the axis, so that most sums are a force times a speed and a moment times how it changes.
+Speeds are straight lines along the axis, so that most sums are a force times a speed and a moment times how it changes.
 What a moment on the inner ring puts in stands beside the radial load's power: neither is among the losses.
 """
 
@@ -11,6 +11,7 @@ from bearing_sim.levels.common.power import Powers, seal_power, windage_powers
 from bearing_sim.levels.common.support import support_powers
 from bearing_sim.levels.planar.power import land_powers
 from bearing_sim.levels.spatial.forces import place_land
+from bearing_sim.levels.spatial.slices import damped_power
 from bearing_sim.levels.spatial.state import BORDER, CAGE_TILT_Y, CAGE_TILT_Z, CAGE_Y, CAGE_Z, OMEGA, ROLLER, SLICED
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import larger, load, magnitude, spread, total, where_positive
@@ -20,21 +21,14 @@ from bearing_sim.physics.contact import damped_slice
 @kernel
 def _contact_powers(first, y, params, work):
     """Return the power lost between one raceway and all rollers by sliding, rolling and damping [W], and what drives the raceway [N]."""
-    contacts, positions, crown = work.contacts, params.slices.positions, params.slices.crown
-    count = positions.shape[0]
-    part, damping = params.raceways.stiffness / count, params.ring.contact_damping
+    contacts, count = work.contacts, params.slices.points
     sliding, rolling, damped, force = 0.0, 0.0, 0.0, 0.0
     for block in range(work.rollers.shape[0]):
         at, present = first + block, load(work.rollers, block, ROLLER.present)
         traction = load(contacts, at, SLICED.force)
         slid = traction * load(contacts, at, SLICED.sliding) + load(contacts, at, SLICED.skewing) * load(contacts, at, SLICED.sliding_lean)
         resistance = load(contacts, at, SLICED.resistance)
-        lost = spread(0.0)
-        for k in range(count):
-            depth = load(contacts, at, SLICED.penetration) + load(contacts, at, SLICED.lean) * positions[k] - crown[k]
-            rate = load(contacts, at, SLICED.rate) + load(contacts, at, SLICED.lean_rate) * positions[k]
-            q, root, _, _ = damped_slice(depth, rate, part, damping)
-            lost += (q - root * larger(depth, 0.0)) * rate
+        lost = damped_power(at, contacts, work.points, work.first_points, count, params.raceways.stiffness, params.ring.contact_damping)
         sliding += total(present * slid)
         rolling += total(present * 2.0 * resistance * load(contacts, at, SLICED.rolling))
         damped += total(present * lost)
@@ -45,7 +39,7 @@ def _contact_powers(first, y, params, work):
 @kernel
 def _kept_d_walls(offset, rate, skew, skew_rate, clearance, stiffness, params):
     """Return the power that the film of two opposite walls damps and the power that film and walls keep [W]; parameters as of `hold_slices`."""
-    positions = params.slices.positions
+    positions = params.slices.walls
     count = positions.shape[0]
     film, kept = spread(0.0), spread(0.0)
     for k in range(count):

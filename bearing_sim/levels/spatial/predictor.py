@@ -5,11 +5,13 @@ With ring, cage, orbit and skew extrapolated, each roller's position and tilt fo
 own normal contacts: a few Newton iterations of all rollers at once.
 """
 
+import math
+
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.rollers import follow_contour
 from bearing_sim.levels.common.support import extrapolate_support
 from bearing_sim.levels.spatial.forces import press_axially
-from bearing_sim.levels.spatial.slices import normal_slices
+from bearing_sim.levels.spatial.slices import press_normally
 from bearing_sim.levels.spatial.state import (
     BLOCK,
     BORDER,
@@ -31,7 +33,7 @@ from bearing_sim.levels.spatial.state import (
     R,
 )
 from bearing_sim.numerics.compilation import fused
-from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, square_root, store
+from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, square_root, store
 
 _ITERATIONS = 4
 _SETTLED = 0.2  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system
@@ -68,6 +70,7 @@ def _start(known, shift, guess, count, raceways, rows):
         rows[block, ROLLER.known_tilt_speed, lane] = known[roller + TILT_SPEED * count]
     for block in range(rows.shape[0]):
         follow_contour(ROLLER, block, shift, raceways.contour, rows)
+        store(rows, block, ROLLER.moved, math.inf)
 
 
 @fused
@@ -138,19 +141,26 @@ def predict(known, shift, slope, model, work, guess):
     params, rows, contacts = model.params, work.rollers, work.contacts
     count, blocks = params.rollers.count, work.rollers.shape[0]
     inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # as at level `planar`
+    enough = _SETTLED * model.tolerances.position
     _extrapolate(known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
     for _ in range(_ITERATIONS):
-        largest = spread(0.0)
+        settled = True
         for block in range(blocks):
+            if highest(load(rows, block, ROLLER.moved)) < enough:
+                continue
             _place(block, guess, shift, inner_radius, params, rows, contacts)
-            normal_slices(block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
-            normal_slices(blocks + block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
+            press_normally(block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
+            press_normally(blocks + block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
         if params.flanges.load > 0.0:
             press_axially(params, rows, contacts)
         for block in range(blocks):
-            largest = larger(largest, _balance(block, shift, params, rows, contacts))
-        if highest(largest) < _SETTLED * model.tolerances.position:
+            if highest(load(rows, block, ROLLER.moved)) < enough:
+                continue
+            moved = _balance(block, shift, params, rows, contacts)
+            store(rows, block, ROLLER.moved, moved)
+            settled = settled and highest(moved) < enough
+        if settled:
             break
     per_shift = 1.0 / shift
     for j in range(count):

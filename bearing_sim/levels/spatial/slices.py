@@ -1,28 +1,34 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Contact of sliced rollers and raceways: forces of every slice summed with their moments, means for a life by slices, and pressures.
+"""Contact of rollers and raceways along the rollers: forces with their moments, means for a life by laminae, and pressures.
 
-Deng 2017, eq. 3 to 8: a slice of width L/N carries q = (K/N) delta_k^(10/9), delta_k = delta - C_k + lean x_k, damped as a whole contact is.
-Traction treats a piece of a few slices as a whole contact with the piece's mean load per length, and takes the piece's fraction of the
-result: equal slices add up to what `bearing_sim.physics.traction` gives.  Pieces are used because traction is nearly proportional to the load
-and costs three times what the load costs; a piece of one slice is Deng's own sum.  The sliding speed of a piece follows from how fast the
-axes skew against each other; the rolling speed is the same for all.
+Deng 2017, eq. 3 to 8: a slice of width dx carries q dx = K/L delta^(10/9) dx, delta = delta_0 + lean x - C(x), damped as a whole contact is.  The
+integral over the roller is a sum over *points*, each a whole contact with the load per length there that counts by its fraction of the roller's
+length, and with its own traction: its sliding speed follows from how fast the axes skew against each other, the rolling speed is the same for all.
+
+By default the points are those of a Gauss quadrature on the part of the roller that bears, so that no point is lost on ends without load.  The
+substitution x = (3 s - s^3)/2 takes the root of the stiffness at both ends of that part away.  The ends follow from the profile: from the nearest
+of a few nodes outside, Newton's method approaches them from outside as long as the profile is convex.  A scene can ask for equal slices instead,
+which is Deng's own sum.
 
 Left out: sliding along the axis of a skewed roller, and the difference of circumference along a crowned one.
 """
 
-from bearing_sim.levels.spatial.state import D_DEPTH, D_LEAN, D_LEAN_RATE, D_RATE, ROLLER, SLICED, SLICED_ROWS
+from bearing_sim.levels.spatial.state import D_DEPTH, D_RATE, DROP, FRACTION, POSITION, ROLLER, SLICED, SLICED_ROWS
 from bearing_sim.numerics.compilation import fused, kernel, template
-from bearing_sim.numerics.simd import highest, larger, load, magnitude, spread, square_root, store, total, where_positive
+from bearing_sim.numerics.simd import floor, gather, highest, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, EXPONENT, damped_slice, hertz_pressure
+
+_NEWTON_STEPS = 2  # towards the ends of the loaded part, from a node outside it
+_LEVEL = 1e-18  # m; a depth that rises by less within an interval of the profile has no end
 
 
 @fused
 def touches(block, contacts, reach):
-    """Return whether any slice of a block of rollers may be loaded.
+    """Return whether any point of a block of rollers may be loaded.
 
     Parameters
     ----------
-    reach : position of the last slice [m].
+    reach : farthest from the roller's middle that a point may be [m].
     """
     deepest = load(contacts, block, SLICED.penetration) + magnitude(load(contacts, block, SLICED.lean)) * reach
     return total(where_positive(deepest, 1.0, 0.0)) > 0.0
@@ -39,185 +45,243 @@ def _clear(block, contacts, rows):
         store(contacts, block, row, 0.0)
 
 
+@template
+def _interval(position, intervals):
+    """Return the interval of the profile's table at a position, one that exists even where the position is no number."""
+    return smaller(larger(floor(position), 0.0), intervals - 1.0)
+
+
 @fused
-def normal_slices(block, contacts, slices, stiffness, damping):
-    """Write normal force, tilting moment and their derivatives of a block of contacts, no traction.
+def _loaded_part(start, slope, slices):
+    """Return both ends of the part that bears, in intervals of the profile's table from its beginning (lanes); reversed where none does.
 
     Parameters
     ----------
-    contacts : rows `SLICED`; penetration, lean and their rates go in.
+    start, slope : depth of a roller without a profile at the table's beginning [m], and its change by interval.
     slices : `bearing_sim.model.params.Slices`.
-    stiffness, damping : of the whole contact, K [N/m^(10/9)] and a [s/m].
     """
-    count = slices.positions.shape[0]
-    if not touches(block, contacts, slices.positions[count - 1]):
-        _clear(block, contacts, SLICED.of_force)
-        return
-    penetration, rate = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.rate)
-    lean, lean_rate = load(contacts, block, SLICED.lean), load(contacts, block, SLICED.lean_rate)
-    part = stiffness / count
-    q_0, q_1 = spread(0.0), spread(0.0)
-    k_0, k_1, k_2 = spread(0.0), spread(0.0), spread(0.0)
-    d_0, d_1, d_2 = spread(0.0), spread(0.0), spread(0.0)
-    for k in range(count):
-        x, drop = slices.positions[k], slices.crown[k]
-        depth = penetration + lean * x - drop
-        q, root, factor, pressed = damped_slice(depth, rate + lean_rate * x, part, damping)
-        d_depth, d_rate = pressed * root * factor, pressed * root * depth
-        d_depth_x, d_rate_x = d_depth * x, d_rate * x
-        q_0 += q
-        q_1 += q * x
-        k_0 += d_depth
-        k_1 += d_depth_x
-        k_2 += d_depth_x * x
-        d_0 += d_rate
-        d_1 += d_rate_x
-        d_2 += d_rate_x * x
-    store(contacts, block, SLICED.load, q_0)
-    store(contacts, block, SLICED.tilting, q_1)
-    store(contacts, block, SLICED.stiffness, EXPONENT * k_0)
-    store(contacts, block, SLICED.stiffness + 1, EXPONENT * k_1)
-    store(contacts, block, SLICED.stiffness + 2, EXPONENT * k_2)
-    store(contacts, block, SLICED.damping, damping * d_0)
-    store(contacts, block, SLICED.damping + 1, damping * d_1)
-    store(contacts, block, SLICED.damping + 2, damping * d_2)
+    profile, nodes, drops = slices.profile, slices.nodes, slices.node_drops
+    last = 1.0 * profile.shape[0]
+    left, right = spread(0.0), spread(last)
+    before = start - drops[0]
+    for k in range(1, nodes.shape[0]):
+        depth = start + slope * nodes[k] - drops[k]
+        rise = depth - before
+        left = where_positive(rise, where_positive(before, left, nodes[k - 1]), left)
+        right = smaller(right, where_positive(-rise, where_positive(depth, last, nodes[k]), last))
+        before = depth
+    for _ in range(_NEWTON_STEPS):
+        index = _interval(left, last)
+        steep = gather(profile, index, 1)
+        apart, closing = gather(profile, index, 0) + steep * (left - index) - (start + slope * left), slope - steep
+        left += where_positive(apart, where_positive(closing, apart, 0.0), 0.0) / larger(closing, _LEVEL)
+        left = smaller(left, last)
+        index = _interval(-floor(-right) - 1.0, last)
+        steep = gather(profile, index, 1)
+        apart, closing = gather(profile, index, 0) + steep * (right - index) - (start + slope * right), steep - slope
+        right -= where_positive(apart, where_positive(closing, apart, 0.0), 0.0) / larger(closing, _LEVEL)
+        right = larger(right, 0.0)
+    return left, right
 
 
 @fused
-def load_pieces(contacts, pieces, slices, stiffness, damping):
-    """Write normal forces, tilting moments and their derivatives of all contacts, and what traction needs of their pieces.
+def _place_on_loaded_part(block, contacts, slices, points, first):
+    """Write the points of a quadrature on the part that bears; parameters as of `place_points`."""
+    profile = slices.profile
+    intervals, lean = 1.0 * profile.shape[0], load(contacts, block, SLICED.lean)
+    spacing = 2.0 * slices.half_length / intervals
+    left, right = _loaded_part(load(contacts, block, SLICED.penetration) - lean * slices.half_length, lean * spacing, slices)
+    middle, half = 0.5 * (left + right), larger(0.5 * (right - left), 0.0)
+    for k in range(slices.abscissae.shape[0]):
+        place = middle + half * slices.abscissae[k]
+        index = _interval(place, intervals)
+        store(points, first + k, POSITION, place * spacing - slices.half_length)
+        store(points, first + k, FRACTION, half * (slices.weights[k] * 2.0 / intervals))
+        store(points, first + k, DROP, gather(profile, index, 0) + gather(profile, index, 1) * (place - index))
+
+
+@fused
+def place_points(block, contacts, slices, points, first):
+    """Write where along the roller a block of contacts is evaluated.
+
+    Parameters
+    ----------
+    contacts : rows `SLICED`; penetration and lean go in.
+    slices : `bearing_sim.model.params.Slices`.
+    points : rows `bearing_sim.physics.contact.CONTACT` and, behind them, those of `bearing_sim.levels.spatial.state`; takes position, fraction of
+        the roller's length and drop of the profile.
+    first : of the block's points.
+    """
+    if slices.quadrature:
+        _place_on_loaded_part(block, contacts, slices, points, first)
+        return
+    for k in range(slices.positions.shape[0]):
+        store(points, first + k, POSITION, slices.positions[k])
+        store(points, first + k, FRACTION, 1.0 / slices.positions.shape[0])
+        store(points, first + k, DROP, slices.crown[k])
+
+
+@template
+def _press_points(block, contacts, points, first, count, stiffness, damping, with_traction):
+    """Write normal force, tilting moment and their derivatives of a block of contacts, and what traction needs of its points.
 
     Parameters
     ----------
     contacts : rows `SLICED`; penetration, lean, rates and speeds go in.
-    pieces : rows `bearing_sim.physics.contact.CONTACT` and, behind them, `D_DEPTH` and the like; those of a block of
-        contacts follow each other.  A piece is a whole contact with the piece's load per length.
-    slices : `bearing_sim.model.params.Slices`.
+    points, first : as of `place_points`.
+    count : of points.
     stiffness, damping : of the whole contact, K [N/m^(10/9)] and a [s/m].
+    with_traction : constant, whether anything is written into ``points``.
     """
-    count, together, reach = slices.positions.shape[0], slices.together, slices.positions[slices.positions.shape[0] - 1]
-    part, number = stiffness / count, pieces.shape[0] // contacts.shape[0]
-    for block in range(contacts.shape[0]):
-        penetration, rate = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.rate)
-        lean, lean_rate = load(contacts, block, SLICED.lean), load(contacts, block, SLICED.lean_rate)
-        sliding, sliding_lean, rolling = (
-            load(contacts, block, SLICED.sliding),
-            load(contacts, block, SLICED.sliding_lean),
-            load(contacts, block, SLICED.rolling),
-        )
-        loaded = touches(block, contacts, reach)
-        q_0, q_1 = spread(0.0), spread(0.0)
-        k_0, k_1, k_2 = spread(0.0), spread(0.0), spread(0.0)
-        d_0, d_1, d_2 = spread(0.0), spread(0.0), spread(0.0)
-        for which in range(number):
-            first, piece = which * together, block * number + which
-            end = min(first + together, count)
-            q, d_depth, d_lean, d_rate, d_lean_rate = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-            if loaded:
-                for k in range(first, end):
-                    x = slices.positions[k]
-                    depth = penetration + lean * x - slices.crown[k]
-                    load_k, root, factor, pressed = damped_slice(depth, rate + lean_rate * x, part, damping)
-                    stiff, damped = pressed * root * factor, pressed * root * depth
-                    stiff_x, damped_x = stiff * x, damped * x
-                    q += load_k
-                    q_1 += load_k * x
-                    d_depth += stiff
-                    d_lean += stiff_x
-                    k_2 += stiff_x * x
-                    d_rate += damped
-                    d_lean_rate += damped_x
-                    d_2 += damped_x * x
-            q_0 += q
-            k_0 += d_depth
-            k_1 += d_lean
-            d_0 += d_rate
-            d_1 += d_lean_rate
-            store(pieces, piece, CONTACT.load, q * (count / (end - first)))
-            store(pieces, piece, CONTACT.rolling, rolling)
-            store(pieces, piece, CONTACT.sliding, sliding + sliding_lean * (0.5 * (slices.positions[first] + slices.positions[end - 1])))
-            store(pieces, piece, D_DEPTH, EXPONENT * d_depth)
-            store(pieces, piece, D_LEAN, EXPONENT * d_lean)
-            store(pieces, piece, D_RATE, damping * d_rate)
-            store(pieces, piece, D_LEAN_RATE, damping * d_lean_rate)
-        store(contacts, block, SLICED.load, q_0)
-        store(contacts, block, SLICED.tilting, q_1)
-        _store_sums(block, contacts, SLICED.stiffness, EXPONENT, k_0, k_1, k_2)
-        _store_sums(block, contacts, SLICED.damping, damping, d_0, d_1, d_2)
+    penetration, rate = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.rate)
+    lean, lean_rate = load(contacts, block, SLICED.lean), load(contacts, block, SLICED.lean_rate)
+    sliding, sliding_lean = load(contacts, block, SLICED.sliding), load(contacts, block, SLICED.sliding_lean)
+    rolling = load(contacts, block, SLICED.rolling)
+    q_0, q_1 = spread(0.0), spread(0.0)
+    k_0, k_1, k_2 = spread(0.0), spread(0.0), spread(0.0)
+    d_0, d_1, d_2 = spread(0.0), spread(0.0), spread(0.0)
+    for k in range(first, first + count):
+        x, fraction = load(points, k, POSITION), load(points, k, FRACTION)
+        depth = penetration + lean * x - load(points, k, DROP)
+        whole, root, factor, pressed = damped_slice(depth, rate + lean_rate * x, stiffness, damping)
+        share = pressed * root * fraction
+        q, stiff, damped = whole * fraction, share * factor, share * depth
+        q_x, stiff_x, damped_x = q * x, stiff * x, damped * x
+        q_0 += q
+        q_1 += q_x
+        k_0 += stiff
+        k_1 += stiff_x
+        k_2 += stiff_x * x
+        d_0 += damped
+        d_1 += damped_x
+        d_2 += damped_x * x
+        if with_traction:
+            store(points, k, CONTACT.load, whole)
+            store(points, k, CONTACT.rolling, rolling)
+            store(points, k, CONTACT.sliding, sliding + sliding_lean * x)
+            store(points, k, D_DEPTH, EXPONENT * stiff)
+            store(points, k, D_RATE, damping * damped)
+    store(contacts, block, SLICED.load, q_0)
+    store(contacts, block, SLICED.tilting, q_1)
+    _store_sums(block, contacts, SLICED.stiffness, EXPONENT, k_0, k_1, k_2)
+    _store_sums(block, contacts, SLICED.damping, damping, d_0, d_1, d_2)
 
 
 @fused
-def sum_tractions(contacts, pieces, slices):
-    """Write tractions, skewing moments and their derivatives of all contacts from those of the pieces; parameters as of `load_pieces`."""
-    count, together, number = slices.positions.shape[0], slices.together, pieces.shape[0] // contacts.shape[0]
+def press_normally(block, contacts, slices, points, stiffness, damping):
+    """Write normal force, tilting moment and their derivatives of a block of contacts, no traction.
+
+    Parameters
+    ----------
+    contacts, slices, points : as of `place_points`; every block of contacts has its points, whether it bears or not.
+    stiffness, damping : of the whole contact, K [N/m^(10/9)] and a [s/m].
+    """
+    if not touches(block, contacts, slices.half_length):
+        _clear(block, contacts, SLICED.of_force)
+        return
+    first = block * slices.points
+    place_points(block, contacts, slices, points, first)
+    _press_points(block, contacts, points, first, slices.points, stiffness, damping, False)
+
+
+@fused
+def press_points(contacts, points, first_points, slices, stiffness, damping):
+    """Write normal forces, tilting moments and their derivatives of all contacts, and what traction needs of the points that may bear.
+
+    Parameters
+    ----------
+    contacts, slices : as of `place_points`; rates and speeds go in, too.
+    points : those of contacts that may bear follow each other, those with the inner raceway first.
+    first_points : takes the first point of each block of contacts, -1 where it bears nothing, int64, shape (blocks,).
+    stiffness, damping : of the whole contact, K [N/m^(10/9)] and a [s/m].
+
+    Returns
+    -------
+    middle, end : of the points, where those of the outer raceway begin and where they end.
+    """
+    blocks, count, end, middle = contacts.shape[0], slices.points, 0, 0
+    for block in range(blocks):
+        if touches(block, contacts, slices.half_length):
+            first_points[block] = end
+            place_points(block, contacts, slices, points, end)
+            _press_points(block, contacts, points, end, count, stiffness, damping, True)
+            end += count
+        else:
+            first_points[block] = -1
+            _clear(block, contacts, SLICED_ROWS)
+        if block == blocks // 2 - 1:
+            middle = end
+    return middle, end
+
+
+@fused
+def sum_tractions(contacts, points, first_points, count):
+    """Write tractions, skewing moments and their derivatives of all contacts from those of their points; parameters as of `press_points`."""
     for block in range(contacts.shape[0]):
+        first = first_points[block]
+        if first < 0:
+            continue
         t_0, t_1 = spread(0.0), spread(0.0)
-        tk_0, tk_1, mk_0, mk_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-        td_0, td_1, md_0, md_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+        k_0, k_1, k_2 = spread(0.0), spread(0.0), spread(0.0)
+        d_0, d_1, d_2 = spread(0.0), spread(0.0), spread(0.0)
         s_0, s_1, s_2, u_0, u_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-        for which in range(number):
-            first, piece = which * together, block * number + which
-            end = min(first + together, count)
-            fraction, position = (end - first) / count, 0.5 * (slices.positions[first] + slices.positions[end - 1])
-            force, d_load = fraction * load(pieces, piece, CONTACT.force), load(pieces, piece, CONTACT.d_load)
-            d_sliding, d_rolling = fraction * load(pieces, piece, CONTACT.d_sliding), fraction * load(pieces, piece, CONTACT.d_rolling)
-            d_depth, d_lean = d_load * load(pieces, piece, D_DEPTH), d_load * load(pieces, piece, D_LEAN)
-            d_rate, d_lean_rate = d_load * load(pieces, piece, D_RATE), d_load * load(pieces, piece, D_LEAN_RATE)
+        for k in range(first, first + count):
+            x, fraction, d_load = load(points, k, POSITION), load(points, k, FRACTION), load(points, k, CONTACT.d_load)
+            force, d_depth, d_rate = fraction * load(points, k, CONTACT.force), d_load * load(points, k, D_DEPTH), d_load * load(points, k, D_RATE)
+            d_sliding, d_rolling = fraction * load(points, k, CONTACT.d_sliding), fraction * load(points, k, CONTACT.d_rolling)
+            d_depth_x, d_rate_x, d_sliding_x = d_depth * x, d_rate * x, d_sliding * x
             t_0 += force
-            t_1 += force * position
-            tk_0 += d_depth
-            tk_1 += d_lean
-            td_0 += d_rate
-            td_1 += d_lean_rate
-            mk_0 += d_depth * position
-            mk_1 += d_lean * position
-            md_0 += d_rate * position
-            md_1 += d_lean_rate * position
+            t_1 += force * x
+            k_0 += d_depth
+            k_1 += d_depth_x
+            k_2 += d_depth_x * x
+            d_0 += d_rate
+            d_1 += d_rate_x
+            d_2 += d_rate_x * x
             s_0 += d_sliding
-            s_1 += d_sliding * position
-            s_2 += d_sliding * (position * position)
+            s_1 += d_sliding_x
+            s_2 += d_sliding_x * x
             u_0 += d_rolling
-            u_1 += d_rolling * position
+            u_1 += d_rolling * x
         store(contacts, block, SLICED.force, t_0)
         store(contacts, block, SLICED.skewing, t_1)
-        store(contacts, block, SLICED.of_force, tk_0)
-        store(contacts, block, SLICED.of_force + 1, tk_1)
-        store(contacts, block, SLICED.of_force + 3, td_0)
-        store(contacts, block, SLICED.of_force + 4, td_1)
-        store(contacts, block, SLICED.of_skewing, mk_0)
-        store(contacts, block, SLICED.of_skewing + 1, mk_1)
-        store(contacts, block, SLICED.of_skewing + 3, md_0)
-        store(contacts, block, SLICED.of_skewing + 4, md_1)
+        _store_changes(block, contacts, SLICED.of_force, k_0, k_1, d_0, d_1)
+        _store_changes(block, contacts, SLICED.of_skewing, k_1, k_2, d_1, d_2)
         _store_sums(block, contacts, SLICED.d_sliding, 1.0, s_0, s_1, s_2)
         store(contacts, block, SLICED.d_rolling, u_0)
         store(contacts, block, SLICED.d_rolling + 1, u_1)
 
 
 @kernel
-def sum_resistance(contacts, pieces, slices):
-    """Write resistances to rolling, their moments and derivatives of all contacts from those of the pieces, which have been written."""
-    count, together, number = slices.positions.shape[0], slices.together, pieces.shape[0] // contacts.shape[0]
+def sum_resistance(contacts, points, first_points, count):
+    """Write resistances to rolling, their moments and derivatives of all contacts from those of their points; parameters as of `press_points`."""
     for block in range(contacts.shape[0]):
-        for row in range(SLICED.resistance, SLICED_ROWS):
-            store(contacts, block, row, 0.0)
-        for which in range(number):
-            first, piece = which * together, block * number + which
-            end = min(first + together, count)
-            fraction, position = (end - first) / count, 0.5 * (slices.positions[first] + slices.positions[end - 1])
-            d_load = load(pieces, piece, CONTACT.resistance_d_load)
-            force, d_rolling = fraction * load(pieces, piece, CONTACT.resistance), fraction * load(pieces, piece, CONTACT.resistance_d_rolling)
-            _add_with_moment(block, contacts, SLICED.resistance, 1, force, position)
-            _add_with_moment(block, contacts, SLICED.resistance_d_rolling, 1, d_rolling, position)
-            _add_with_moment(block, contacts, SLICED.of_resistance, 5, d_load * load(pieces, piece, D_DEPTH), position)
-            _add_with_moment(block, contacts, SLICED.of_resistance + 1, 5, d_load * load(pieces, piece, D_LEAN), position)
-            _add_with_moment(block, contacts, SLICED.of_resistance + 3, 5, d_load * load(pieces, piece, D_RATE), position)
-            _add_with_moment(block, contacts, SLICED.of_resistance + 4, 5, d_load * load(pieces, piece, D_LEAN_RATE), position)
-
-
-@template
-def _add_with_moment(block, contacts, row, apart, value, position):
-    store(contacts, block, row, load(contacts, block, row) + value)
-    store(contacts, block, row + apart, load(contacts, block, row + apart) + value * position)
+        first = first_points[block]
+        if first < 0:
+            continue
+        f_0, f_1, u_0, u_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+        k_0, k_1, k_2 = spread(0.0), spread(0.0), spread(0.0)
+        d_0, d_1, d_2 = spread(0.0), spread(0.0), spread(0.0)
+        for k in range(first, first + count):
+            x, fraction, d_load = load(points, k, POSITION), load(points, k, FRACTION), load(points, k, CONTACT.resistance_d_load)
+            force, d_rolling = fraction * load(points, k, CONTACT.resistance), fraction * load(points, k, CONTACT.resistance_d_rolling)
+            d_depth, d_rate = d_load * load(points, k, D_DEPTH), d_load * load(points, k, D_RATE)
+            f_0 += force
+            f_1 += force * x
+            u_0 += d_rolling
+            u_1 += d_rolling * x
+            k_0 += d_depth
+            k_1 += d_depth * x
+            k_2 += d_depth * x * x
+            d_0 += d_rate
+            d_1 += d_rate * x
+            d_2 += d_rate * x * x
+        store(contacts, block, SLICED.resistance, f_0)
+        store(contacts, block, SLICED.resistance_moment, f_1)
+        store(contacts, block, SLICED.resistance_d_rolling, u_0)
+        store(contacts, block, SLICED.resistance_d_rolling + 1, u_1)
+        _store_changes(block, contacts, SLICED.of_resistance, k_0, k_1, d_0, d_1)
+        _store_changes(block, contacts, SLICED.of_resistance_moment, k_1, k_2, d_1, d_2)
 
 
 @template
@@ -225,6 +289,27 @@ def _store_sums(block, contacts, row, scale, plain, first, second):
     store(contacts, block, row, scale * plain)
     store(contacts, block, row + 1, scale * first)
     store(contacts, block, row + 2, scale * second)
+
+
+@template
+def _store_changes(block, contacts, row, by_depth, by_lean, by_rate, by_lean_rate):
+    store(contacts, block, row, by_depth)
+    store(contacts, block, row + 1, by_lean)
+    store(contacts, block, row + 3, by_rate)
+    store(contacts, block, row + 4, by_lean_rate)
+
+
+@kernel
+def damped_power(block, contacts, points, first_points, count, stiffness, damping):
+    """Return the power that the damping of a block of contacts takes [W] (lanes); parameters as of `press_points`, which has been called."""
+    lost, first = spread(0.0), first_points[block]
+    for k in range(max(first, 0), first + count if first >= 0 else 0):
+        x = load(points, k, POSITION)
+        depth = load(contacts, block, SLICED.penetration) + load(contacts, block, SLICED.lean) * x - load(points, k, DROP)
+        rate = load(contacts, block, SLICED.rate) + load(contacts, block, SLICED.lean_rate) * x
+        whole, root, _, _ = damped_slice(depth, rate, stiffness, damping)
+        lost += load(points, k, FRACTION) * ((whole - root * larger(depth, 0.0)) * rate)
+    return lost
 
 
 @fused
@@ -271,25 +356,16 @@ def _lamina_load(block, k, contacts, laminae, part, damping):
     return damped_slice(depth, rate, part, damping)[0]
 
 
-@fused
-def _slice_load(block, k, contacts, slices, part, damping):
-    """Return the normal force of slice k of a block of contacts [N]."""
-    x = slices.positions[k]
-    depth = load(contacts, block, SLICED.penetration) + load(contacts, block, SLICED.lean) * x - slices.crown[k]
-    rate = load(contacts, block, SLICED.rate) + load(contacts, block, SLICED.lean_rate) * x
-    return damped_slice(depth, rate, part, damping)[0]
-
-
 @kernel
-def _largest_slices(first, params, work):
-    """Return the largest load of any slice on a raceway whose first block is ``first``, and of any end slice [N]."""
-    slices, contacts = params.slices, work.contacts
-    number, damping = slices.positions.shape[0], params.ring.contact_damping
+def _largest_laminae(first, params, work):
+    """Return the largest load of any lamina on a raceway whose first block is ``first``, and of any end lamina [N]."""
+    laminae, contacts = params.life.laminae, work.contacts
+    number, damping = laminae.crown.shape[0], params.ring.contact_damping
     part, anywhere, at_ends = params.raceways.stiffness / number, spread(0.0), spread(0.0)
     for block in range(work.rollers.shape[0]):
         present = load(work.rollers, block, ROLLER.present)
         for k in range(number):
-            pressed = present * _slice_load(first + block, k, contacts, slices, part, damping)
+            pressed = present * _lamina_load(first + block, k, contacts, laminae, part, damping)
             anywhere = larger(anywhere, pressed)
             if k == 0 or k == number - 1:
                 at_ends = larger(at_ends, pressed)
@@ -297,20 +373,22 @@ def _largest_slices(first, params, work):
 
 
 @kernel
-def slice_pressures(params, work):
-    """Return the largest pressure of any slice on inner and outer raceway, and of any end slice on both [Pa].
+def lamina_pressures(params, work):
+    """Return the largest pressure of any lamina on inner and outer raceway, and of any end lamina on both [Pa].
+
+    Laminae are those of the life (`bearing_sim.physics.lamina_life.Laminae`), whatever the number of slices that carry the roller.
 
     Parameters
     ----------
     params, work : of the level; the right-hand side has been evaluated into ``work``.
     """
-    raceways, slices, length = params.raceways, params.slices.positions.shape[0], params.rollers.length
+    raceways, laminae, length = params.raceways, params.life.laminae.crown.shape[0], params.rollers.length
     inner_radius, outer_radius, modulus = raceways.inner_curvature_radius, raceways.outer_curvature_radius, raceways.reduced_modulus
-    inner, inner_edge = _largest_slices(0, params, work)
-    outer, outer_edge = _largest_slices(work.rollers.shape[0], params, work)
+    inner, inner_edge = _largest_laminae(0, params, work)
+    outer, outer_edge = _largest_laminae(work.rollers.shape[0], params, work)
     return (
-        hertz_pressure(inner, slices, length, inner_radius, modulus),
-        hertz_pressure(outer, slices, length, outer_radius, modulus),
-        hertz_pressure(inner_edge, slices, length, inner_radius, modulus),
-        hertz_pressure(outer_edge, slices, length, outer_radius, modulus),
+        hertz_pressure(inner, laminae, length, inner_radius, modulus),
+        hertz_pressure(outer, laminae, length, outer_radius, modulus),
+        hertz_pressure(inner_edge, laminae, length, inner_radius, modulus),
+        hertz_pressure(outer_edge, laminae, length, outer_radius, modulus),
     )

@@ -36,15 +36,16 @@ JACOBIAN_ROWS = CAGE_ROWS + CAGE * CAGE_COLUMNS
 RIGHT = SPEEDS * SPEEDS  # rows of a factorisation
 BELOW = RIGHT + SPEEDS * BORDER
 _FACTORED = BELOW + BORDER * SPEEDS
-# rows of pieces behind those of a contact: derivatives of a piece's normal force
-D_DEPTH, D_LEAN, D_RATE, D_LEAN_RATE = range(len(CONTACT), len(CONTACT) + 4)
-PIECE_ROWS = len(CONTACT) + 4
+# rows of points behind those of a contact: derivatives of the normal force that a point adds, where it is along the roller [m], the fraction of the
+# roller's length that it stands for, and the drop of the profile there [m]
+D_DEPTH, D_RATE, POSITION, FRACTION, DROP = range(len(CONTACT), len(CONTACT) + 5)
+POINT_ROWS = len(CONTACT) + 5
 SLICED_ROWS = 46
 RING_Y, RING_Z, RING_TILT_Y, RING_TILT_Z, CAGE_Y, CAGE_Z, CAGE_TILT_Y, CAGE_TILT_Z, THETA = range(BORDER)
 OMEGA = BORDER + THETA
 ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the nine
 R, PHI, TILT, SKEW, R_SPEED, PHI_SPEED, TILT_SPEED, SKEW_SPEED, SPIN = range(BLOCK)
-_PLAIN_ROWS = 66  # of a roller without flanges
+_PLAIN_ROWS = 67  # of a roller without flanges
 ROLLER_ROWS = _PLAIN_ROWS + 2 * FLANGE_ROWS
 
 
@@ -58,6 +59,7 @@ class Factored(NamedTuple):
     schur: np.ndarray  # factors of the Schur complement, shape (9, 9)
     order: np.ndarray  # its pivots, int64, shape (9,)
     block: np.ndarray  # scratch, shape (1, 25, LANES)
+    sums: np.ndarray  # scratch, shape (1, 162, LANES)
 
 
 def new_factored(count):
@@ -71,6 +73,7 @@ def new_factored(count):
         np.zeros(square),
         np.zeros(BORDER, np.int64),
         new_blocks(1, SPEEDS * SPEEDS),
+        new_blocks(1, 2 * BORDER * BORDER),
     )
 
 
@@ -88,7 +91,7 @@ class SlicedRow(NamedTuple):
     lean: int = 8  # slope of the penetration along the axis
     lean_rate: int = 9  # its time derivative [1/s]
     sliding_lean: int = 10  # slope of du along the axis [1/s]
-    stiffness: int = 11  # from here on sums over slices of derivatives times 1, x and x^2: of q by penetration
+    stiffness: int = 11  # from here on sums over points of derivatives times 1, x and x^2: of q by penetration
     damping: int = 14  # of q by its rate
     of_force: int = 17  # derivatives of the traction by penetration and lean, three rows on by their rates
     of_skewing: int = 22  # derivatives of its moment by the same
@@ -165,6 +168,7 @@ class RollerRow(NamedTuple):
     guide_moment: int = 59  # sum of force times position along the axis [N m]
     guide_stiffness: int = 60  # as ``pocket_stiffness``
     guide_damping: int = 63
+    moved: int = 66  # by the last iteration of a prediction [m]
     inner_flange: int = _PLAIN_ROWS  # from here on flanges: of the inner ring, rows `bearing_sim.levels.common.flanges.FLANGE`
     outer_flange: int = _PLAIN_ROWS + FLANGE_ROWS  # of the outer ring, likewise
 
@@ -177,7 +181,8 @@ class Work(NamedTuple):
 
     rollers: np.ndarray  # rows `ROLLER`
     contacts: np.ndarray  # rows `bearing_sim.levels.spatial.state.SLICED`, those with the inner raceway first
-    pieces: np.ndarray  # of contacts, see `bearing_sim.levels.spatial.slices.load_pieces`
+    points: np.ndarray  # of contacts, see `bearing_sim.levels.spatial.slices.press_points`
+    first_points: np.ndarray  # by block of contacts, see there, int64
     jacobian: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.spatial.state`
     chain: np.ndarray  # scratch for derivatives of one block of rollers, shape (1, 208, LANES)
     border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (9, 18)
@@ -200,7 +205,8 @@ def new_work(params):
     return Work(
         rollers=rollers,
         contacts=new_blocks(2 * rollers.shape[0], SLICED_ROWS),
-        pieces=new_blocks(2 * rollers.shape[0] * -(-len(params.slices.positions) // params.slices.together), PIECE_ROWS),
+        points=new_blocks(2 * rollers.shape[0] * params.slices.points, POINT_ROWS),
+        first_points=np.full(2 * rollers.shape[0], -1, np.int64),
         jacobian=new_rows(JACOBIAN_ROWS, count),
         chain=new_blocks(1, 208),
         border_own=np.zeros((BORDER, 2 * BORDER)),
