@@ -45,7 +45,6 @@ class SpatialReference:
 
     planar: Reference = field(default_factory=Reference)
     slices: int = 6
-    together: int = 4  # slices that share a traction coefficient
     crown: np.ndarray | None = None
     gyroscopic: bool = True
     ring_free: bool = True
@@ -61,19 +60,14 @@ class SpatialReference:
         self.land = (p.width - p.land_width) / 2
 
     def traction(self, load, rolling, sliding, curvature_radius):
-        """Tractions and resistances to rolling of pieces of some slices each, as shares of a whole contact with the piece's load per length.
+        """Tractions and resistances to rolling of all slices, each an N-th of those of a whole contact with its load per length.
 
         ``load`` is that of whole contacts with the slices' load per length; ``sliding`` a function of the place.
         """
-        cuts = range(0, self.slices, self.together)
-        parts = [slice(first, min(first + self.together, self.slices)) for first in cuts]
-        places = np.array([self.x[part].mean() for part in parts])
-        loads = np.stack([load[:, part].mean(1) for part in parts], axis=1)
-        shares = np.array([len(self.x[part]) / self.slices for part in parts])
-        slides = sliding(places)
-        force = shares * self.planar.traction(loads, rolling[:, None], slides, curvature_radius)
-        resistance = shares * self.planar.resistance(loads, rolling[:, None], curvature_radius)
-        return SimpleNamespace(x=places, slide=slides, roll=rolling[:, None], force=force, resistance=resistance)
+        slides = sliding(self.x)
+        force = self.planar.traction(load, rolling[:, None], slides, curvature_radius) / self.slices
+        resistance = self.planar.resistance(load, rolling[:, None], curvature_radius) / self.slices
+        return SimpleNamespace(x=self.x, slide=slides, roll=rolling[:, None], force=force, resistance=resistance)
 
     def forces(self, state):
         """All forces at a state, by name; those of slices have a last axis over slices."""

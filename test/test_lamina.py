@@ -50,7 +50,7 @@ def test_slices_without_tilt_and_crown_are_palmgrens_line_contact(count):
 
 
 def test_slopes_of_a_sliced_contact_are_its_derivatives():
-    params = deng("bearing.roller.crown=iso_log")
+    params = deng("bearing.roller.crown=iso_log", "bearing.roller.slices=20")
     slices, written = new_slices(18, params.slices.crown, params.rollers.length, params.raceways.stiffness), np.zeros(20)
     step = 1e-11
 

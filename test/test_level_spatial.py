@@ -43,7 +43,7 @@ GROWTH = "bearing.dimensions_at=cold"
     ("at_both", "overrides"),
     [
         ([], []),
-        ([], ["bearing.roller.slices=7", "bearing.roller.slices_per_traction=3"]),
+        ([], ["bearing.roller.slices=7"]),
         ([], ["operating.moment=0"]),
         (["lubricant.rolling_resistance=hydrodynamic"], []),
         ([GROWTH], []),

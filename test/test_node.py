@@ -312,7 +312,7 @@ def test_wrong_parameters_and_scenes_end_with_one_clear_message_and_code_2(tmp_p
 @pytest.mark.long
 @pytest.mark.timeout(900)
 def test_a_level_that_the_machine_is_too_slow_for_gives_way_and_everybody_is_told(launch, tmp_path):
-    recording, slow = tmp_path / "run.mcap", ["level=spatial", "bearing.roller.slices=400", "bearing.roller.slices_per_traction=1"]
+    recording, slow = tmp_path / "run.mcap", ["level=spatial", "bearing.roller.slices=400"]
     governor_of(Simulation(load_scene("deng2017_table1", slow)))  # compiles what may not have been yet
     process, client = launch(f"overrides:={slow}", f"record:={recording}")
     client.wait_until_matched(process)

@@ -236,7 +236,7 @@ WIRE = {
         [("ring_tilt_y", "rad"), ("ring_tilt_z", "rad"), ("cage_tilt_y", "rad"), ("cage_tilt_z", "rad")],
     ),
     "slice_pressures": (
-        "inner, outer, inner end slices, outer end slices",
+        "inner, outer, inner end laminae, outer end laminae",
         [("inner_pressure", "Pa"), ("outer_pressure", "Pa"), ("inner_edge_pressure", "Pa"), ("outer_edge_pressure", "Pa")],
     ),
     "power": (

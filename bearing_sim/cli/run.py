@@ -329,5 +329,5 @@ def _pressures(report, scene) -> list[tuple[str, str]]:
     if scene.bodies_tilt:
         for ring in ("inner", "outer"):
             whole, edge = report[f"{ring}_pressure_maximum_mpa"], report[f"{ring}_edge_pressure_maximum_mpa"]
-            rows.append((f"largest pressure, {ring} raceway", f"{whole:.4g} MPa, end slices {edge:.4g} MPa"))
+            rows.append((f"largest pressure, {ring} raceway", f"{whole:.4g} MPa, end laminae {edge:.4g} MPa"))
     return rows

@@ -127,7 +127,13 @@ def _print_damage(log, name, found) -> None:
 @click.option("--largest", default=3.0, show_default=True, type=click.FloatRange(0.0, 20.0), metavar="MRAD", help="Largest misalignment.")
 @click.option("--points", default=7, show_default=True, type=click.IntRange(2, 1000), help="Number of misalignments, starting at 0.")
 @click.option("--crown", "crowns", multiple=True, metavar="LAW", help="Value of bearing.roller.crown; can be repeated [default: none, iso_log].")
-@click.option("--slices", default=30, show_default=True, type=click.IntRange(5, 400), help="Slices per roller (ISO/TS 16281: at least 30).")
+@click.option(
+    "--slices",
+    default=30,
+    show_default=True,
+    type=click.IntRange(5, 400),
+    help="Laminae per roller for life and pressures (ISO/TS 16281: at least 30).",
+)
 @csv_option("Write the results to a table.")
 @picture_option("Draw the results")
 @json_option
@@ -364,7 +370,7 @@ def _print_situations(report, out) -> None:
 @click.option("--duration", default=0.06, show_default=True, type=click.FloatRange(min=1e-6), metavar="S", help="Simulated time measured.")
 @json_option
 def slices(scene_name, overrides, settle, duration, as_json):
-    """Run SCENE at level spatial with 10 to 200 slices, and measure results and the cost of a step."""
+    """Run SCENE at level spatial by quadrature and with 10 to 200 slices, and measure results and the cost of a step."""
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError
 
@@ -383,12 +389,14 @@ def slices(scene_name, overrides, settle, duration, as_json):
 
 
 def _print_slices(name, found) -> None:
-    columns = ("slices", "slip, %", "largest load, N", "life, h", "L10r, h", "static: MPa", "L10r, h", "us per step", "x real time")
+    columns = ("slices", "slip, %", "largest load, N", "life, h", "L10r, h", "edge, MPa", "static: MPa", "L10r, h", "us per step", "x real time")
     rows = []
     for one in found:
-        lives = [format(value, ".4g") for value in (one.inner_load, one.rating_life, one.l10r)]
-        still = f"{1e-6 * one.static_pressure:.5g}", f"{one.static_l10r:.4g}"
-        rows.append((str(one.slices), f"{100 * one.slip:.4g}", *lives, *still, f"{1e6 * one.step_seconds:.3g}", f"{one.real_time_factor:.3g}"))
+        lives = [format(value, ".4g") for value in (one.inner_load, one.rating_life, one.l10r, 1e-6 * one.edge_pressure)]
+        still = ("-", "-") if one.slices is None else (f"{1e-6 * one.static_pressure:.5g}", f"{one.static_l10r:.4g}")
+        rows.append(
+            (str(one.slices or "quadrature"), f"{100 * one.slip:.4g}", *lives, *still, f"{1e6 * one.step_seconds:.3g}", f"{one.real_time_factor:.3g}")
+        )
     print_rows(f"{name}: results by number of slices", columns, rows)
 
 

@@ -276,7 +276,7 @@ ARRAYS = {
     ),
     "axis_tilts": ArrayRows("inner ring y, z, cage y, z", ("ring_tilt_y", "ring_tilt_z", "cage_tilt_y", "cage_tilt_z")),
     "slice_pressures": ArrayRows(
-        "inner, outer, inner end slices, outer end slices", ("inner_pressure", "outer_pressure", "inner_edge_pressure", "outer_edge_pressure")
+        "inner, outer, inner end laminae, outer end laminae", ("inner_pressure", "outer_pressure", "inner_edge_pressure", "outer_edge_pressure")
     ),
     "power": ArrayRows(
         "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, support, "
@@ -451,7 +451,7 @@ OUTPUTS = {
         _array("running_clearance", "diametral clearance [m], negative is preload: of the running bearing, and its parts"),
         _array("centre_positions", "displacements [m]: inner ring and cage from the outer ring, outer ring and shaft in space, y, z each"),
         _array("axis_tilts", "tilts [rad]: inner ring towards y, z, cage towards y, z", True),
-        _array("slice_pressures", "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end slices alone", True),
+        _array("slice_pressures", "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end laminae alone", True),
         _array(
             "predicted_temperatures", "temperatures [K] of shaft, rings, rollers, housing and the oil that leaves, given or computed", of_heat=True
         ),

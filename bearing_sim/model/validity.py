@@ -170,7 +170,7 @@ class Conditions:
 
     @functools.cached_property
     def pressure(self) -> np.ndarray:
-        """Largest Hertz pressure of any contact [Pa], of a slice where the level has slices."""
+        """Largest Hertz pressure of any contact [Pa], of a lamina where the level lets rollers tilt."""
         per_length = self._heaviest[0] / self.params.rollers.length
         whole = np.sqrt(per_length * self.params.raceways.reduced_modulus / (2.0 * math.pi))
         return np.fmax(whole, np.maximum(self.samples["inner_pressure"], self.samples["outer_pressure"]))

@@ -26,8 +26,8 @@ class Misaligned(NamedTuple):
     crown: str
     misalignment: float  # [rad]
     slip: float
-    inner_pressure: float  # largest of any slice [Pa]
-    inner_edge_pressure: float  # largest of the rollers' end slices [Pa]
+    inner_pressure: float  # largest of any lamina [Pa]
+    inner_edge_pressure: float  # largest of the rollers' end laminae [Pa]
     outer_edge_pressure: float
     tilt: float  # largest inclination of a roller outwards [rad]
     skew: float  # largest along the orbit [rad]
@@ -52,7 +52,7 @@ def misalign(
     name, overrides : of the scene, as `bearing_sim.scene.loader.load_scene` takes them.
     misalignments : tilts of the inner ring towards the scene's misalignment angle [rad].
     crowns : values of ``bearing.roller.crown``.
-    slices : per roller.
+    slices : per roller of the quasi-static balance; laminae of the life and pressures in motion.
     turns : of the cage, before and during the averaging.
     progress : called with the name of each point.
 
@@ -69,8 +69,7 @@ def misalign(
     for crown in crowns:
         for misalignment in misalignments:
             progress(f"crown {crown}, {1e3 * misalignment:g} mrad")
-            cut = (f"bearing.roller.slices={slices}", f"life.laminae={slices}")
-            own = ("level=spatial", f"bearing.roller.crown={crown}", *cut, f"operating.misalignment={misalignment!r}")
+            own = ("level=spatial", f"bearing.roller.crown={crown}", f"life.laminae={slices}", f"operating.misalignment={misalignment!r}")
             found.append(_run(load_scene(name, [*overrides, *own]), crown, misalignment, slices, turns))
     return found
 
@@ -97,7 +96,7 @@ def draw(path: Path, title: str, found: list[Misaligned]) -> None:
     figure = new_figure(14, 8)
     axes = figure.subplots(2, 3).ravel()
     panels = (
-        ("pressure of the end slices, inner raceway [MPa]", lambda one: 1e-6 * one.inner_edge_pressure, lambda one: 1e-6 * _edge_pressure(one)),
+        ("pressure of the end laminae, inner raceway [MPa]", lambda one: 1e-6 * one.inner_edge_pressure, lambda one: 1e-6 * _edge_pressure(one)),
         ("basic reference rating life L10r [h]", lambda one: one.l10r, lambda one: one.still.lives.l10r),
         ("cage slip [%]", lambda one: 100 * one.slip, None),
         ("largest tilt of a roller [mrad]", lambda one: 1e3 * one.tilt, lambda one: 1e3 * np.abs(one.still.tilts).max()),
@@ -115,7 +114,7 @@ def draw(path: Path, title: str, found: list[Misaligned]) -> None:
 
 
 def _edge_pressure(one):
-    """Return the pressure of the end slices in quasi-static balance [Pa], proportional to the square root of the slice load."""
+    """Return the pressure of the end laminae in quasi-static balance [Pa], proportional to the square root of the slice load."""
     still = one.still
     return still.inner_pressure * np.sqrt(still.inner_slices[:, [0, -1]].max() / still.inner_slices.max())
 

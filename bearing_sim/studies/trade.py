@@ -62,8 +62,8 @@ class Results(NamedTuple):
     slip: np.ndarray  # mean cage slip [%]
     load: np.ndarray  # mean of the largest roller load at each instant [N]
     damage: float  # after settling
-    edge: np.ndarray  # mean of the largest pressure of end slices at each instant [Pa]; 0 at a level without slices
-    pressure: np.ndarray  # mean of the largest pressure of any slice at each instant [Pa]; likewise
+    edge: np.ndarray  # mean of the largest pressure of end laminae at each instant [Pa]; 0 at a level without slices
+    pressure: np.ndarray  # mean of the largest pressure of any lamina at each instant [Pa]; likewise
 
 
 class Errors(NamedTuple):
@@ -75,7 +75,7 @@ class Errors(NamedTuple):
     load, largest_load : of the largest roller load, likewise, relative to its mean.
     life : relative, from the damage of all windows together.
     window_life : the largest of any window.
-    edge, largest_edge : of the largest pressure of end slices, over bins, relative to the mean of the largest pressure of any slice; against level
+    edge, largest_edge : of the largest pressure of end laminae, over bins, relative to the mean of the largest pressure of any lamina; against level
         ``spatial`` with 200 slices, NaN where that was not measured and at levels without slices.
     """
 

@@ -43,8 +43,8 @@ _HEAT = """**Temperatures** colour shaft, rings, rollers and housing; the housin
 
 """
 _TILTS = """The solid picture draws tilts of ring and rollers and skews by factors of their own, which its title says, and the cage's tilt by
-the cage's factor. Pressures are Hertz's of slices, largest
-of all rollers; those of the end slices say how hard edges press, without the rise at a sharp edge.
+the cage's factor. Pressures are Hertz's of laminae, largest
+of all rollers; those of the end laminae say how hard edges press, without the rise at a sharp edge.
 """
 
 

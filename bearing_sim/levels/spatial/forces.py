@@ -1,9 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Equations of level ``spatial``: forces and moments on every roller, the cage and the inner ring; ``LANES`` rollers at a time (a block).
 
-Deng 2017, eq. 3 to 16, with gyroscopic moments; the rollers' motion along their axes is left out.  A slice is a point (x, centre + x tilt):
+Deng 2017, eq. 3 to 16, with gyroscopic moments; the rollers' motion along their axes is left out.  Along a roller stand points (x, centre + x tilt):
 each receives forces in its own plane, along the normal at the roller's centre, and the moments on a body are sums of forces times x.  So
-power and momentum are conserved to the last term: a normal force on a slice that a skewed axis has moved along the orbit has a lever about
+power and momentum are conserved to the last term: a normal force on a point that a skewed axis has moved along the orbit has a lever about
 the bearing's axis.
 
 **Centre and spin** move as at level ``planar`` (`bearing_sim.levels.planar.forces`).  **The axis** of a roller, inclined by A = (tilt, skew) outwards
@@ -15,8 +15,8 @@ lever between both rings' flanges (`press_axially`).
 **Guide lands.** Each of the two lands carries half of what both together would carry at its position; the cage's tilt separates them, against
 that of the ring if the lands are the inner ring's.  The law of a land is that of level ``planar``.
 
-**Pockets** (Deng 2017, eq. 9 to 12).  A slice at x stands s + skew x off the middle of its pocket.  Within the clearance the film's spring is
-linear, so its sums over slices are known in advance; slices that reach the wall add line contact.  Left out: the roller's crown against
+**Pockets** (Deng 2017, eq. 9 to 12).  A slice of the roller at x stands s + skew x off the middle of its pocket.  Within the clearance the film's
+spring is linear, so its sums over slices are known in advance; slices that reach the wall add line contact.  Left out: the roller's crown against
 the wall, and that slices on both walls rub on both (friction follows the force of all slices together).  In pockets that guide the cage a slice
 stands ``guide_offset + pocket_lean x`` outwards from the middle.
 """
@@ -506,7 +506,7 @@ def _write_flanges(block, shaft_speed, friction, pressed, model, rows):
 def flange_accelerations(shaft_speed, model, rows, contacts, rate):
     """Write what flanges do to the ends of all rollers, and add it to the accelerations of rollers and ring.
 
-    A moment on the skew has a lever along the orbit where the roller is tilted as well, as the slices' forces have: the direction of the skew
+    A moment on the skew has a lever along the orbit where the roller is tilted as well, as the points' forces have: the direction of the skew
     turns with the roller's position.
     """
     params, tilts = model.params, model.params.tilts

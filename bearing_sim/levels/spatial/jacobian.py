@@ -177,7 +177,7 @@ def _inner_chain(block, resistance, params, viscosity, rows, contacts, chain):
     _chain_row(block, 2 * _SEEN, SLICED.stiffness + 1, -1, rows, contacts, chain)
     _chain_row(block, 4 * _SEEN, SLICED.of_force, SLICED.d_sliding, rows, contacts, chain)
     _chain_row(block, 3 * _SEEN, SLICED.of_skewing, SLICED.d_sliding + 1, rows, contacts, chain)
-    # the normal forces' own lever, where slices stand apart along the orbit
+    # the normal forces' own lever, where points stand apart along the orbit
     for k in range(_SEEN):
         store(chain, 0, _SEEN + k, load(chain, 0, 4 * _SEEN + k) + load(chain, 0, 2 * _SEEN + k) * b_p)
     if resistance:
@@ -347,7 +347,7 @@ def _outer_jacobian(block, y, churning, params, rows, contacts, jacobian):
     radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
     q, s, skew = load(contacts, outer, SLICED.load), load(contacts, outer, SLICED.tilting), load(rows, block, ROLLER.skew)
     slope, curvature, inverse = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature), 1.0 / radius
-    # what the contour's slope and the slices' lever make of the normal forces
+    # what the contour's slope and the points' lever make of the normal forces
     lean = params.variants.contour_slope * slope * inverse
     lever = skew * inverse
     for k in range(9):

@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Level ``spatial``: every roller in slices, with tilt and skew; tilting cage and inner ring.
+"""Level ``spatial``: contacts along every roller, with tilt and skew; tilting cage and inner ring.
 
-State and memory: `bearing_sim.levels.spatial.state`; equations: `bearing_sim.levels.spatial.forces`, contacts of slices:
+State and memory: `bearing_sim.levels.spatial.state`; equations: `bearing_sim.levels.spatial.forces`, contacts along the rollers:
 `bearing_sim.levels.spatial.slices`; their Jacobian and the linear algebra of implicit steps: `bearing_sim.levels.spatial.jacobian`.  Left out: the
 rollers' motion along their axes, and bending of the rings.
 """
@@ -59,8 +59,8 @@ from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONE
 _CAGE_STEP = 1e-3  # rad, over which speeds are differences: a hundredth of what a lobe or a roller pitch takes
 
 
-def _has_unequal_slices(params) -> bool:
-    """Return whether crown, moment or misalignment load the slices of a roller unequally."""
+def _is_unequal_along_rollers(params) -> bool:
+    """Return whether crown, moment or misalignment load a roller unequally along its length."""
     tilts = params.tilts
     moved = (tilts.moment_y, tilts.moment_z, tilts.misalignment_y, tilts.misalignment_z)
     return any(moved) or bool(np.any(params.slices.crown))
@@ -106,11 +106,11 @@ def _balance_by_slices(params, cage_speed, load, growth, state) -> None:
 def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     """Return ideal rolling; see `bearing_sim.levels.common.state_transfer.rolling_state`, also for the parameters.
 
-    If crown, moment or misalignment load slices unequally, the balance is that by slices, and rollers move as it moves with the cage;
-    otherwise it is the start of level ``planar``, to the last digit.
+    If crown, moment or misalignment load rollers unequally along their length, the balance is that by slices, and rollers move as it does with
+    the cage; otherwise it is the start of level ``planar``, to the last digit.
     """
     state, growth = rolling_state(spatial_state, params, work, shaft_speed, load_y, load_z)
-    if _has_unequal_slices(params):
+    if _is_unequal_along_rollers(params):
         _balance_by_slices(params, state[OMEGA], (load_y, load_z), growth, state)
     turning = params.cage.guidance.turning
     state[CAGE_Y], state[CAGE_Z] = first_cage_centre(params, state[RING_Y], state[RING_Z])
