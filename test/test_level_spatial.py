@@ -106,9 +106,9 @@ def test_a_run_starts_in_balance_by_slices(start, speed):
     rate = np.zeros_like(run._state)
     spatial.rhs(0.0, run.state, run._model(run.inputs, 1.0), run._work, rate)
     rollers, params, load = by_roller(rate), run._params, run.sample["inner_load"].max()
-    # what has no counterpart in the balance: the film of the pockets, the contour's curvature, gyroscopic moments
-    assert np.abs(rollers[4]).max() * params.rollers.mass < 2e-3 * load
-    assert np.abs(rollers[6]).max() * params.tilts.roller_inertia < 2e-3 * load * params.rollers.length / 2
+    # what has no counterpart in the balance: the film of the pockets, the contour's curvature, gyroscopic moments; and slices for a quadrature
+    assert np.abs(rollers[4]).max() * params.rollers.mass < 4e-3 * load
+    assert np.abs(rollers[6]).max() * params.tilts.roller_inertia < 4e-3 * load * params.rollers.length / 2
     assert np.abs(border(rate)[1, :2]).max() * params.ring.mass < 2e-3 * load
     assert np.abs(border(rate)[1, 2:4]).max() * params.tilts.ring_inertia < 2e-3 * load * params.rollers.length / 2
 

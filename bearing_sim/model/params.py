@@ -21,7 +21,7 @@ from bearing_sim.physics.squeeze_film import SqueezeFilm, new_squeeze_film
 from bearing_sim.physics.traction import TractionConstants, constant_constants, kragelskii_constants, oil_4109_constants, thermal_eyring_constants
 from bearing_sim.scene.bearing import Roller
 from bearing_sim.scene.contour import outer_contour
-from bearing_sim.scene.crown import crown_drops, is_convex, profile_drops, slice_middles
+from bearing_sim.scene.crown import crown_drops, is_convex, is_smooth, profile_drops, slice_middles
 from bearing_sim.scene.flanges import flange_geometry
 from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, HydrodynamicRollingResistance, KragelskiiTraction
 from bearing_sim.scene.ratings import rate
@@ -333,12 +333,12 @@ def _slices(bearing: Bearing) -> Slices:
     convex = is_convex(roller.profile)
     count = roller.slices or (_BALANCE_SLICES if convex else _UNEVEN_SLICES)
     positions = slice_middles(roller.length, count)
-    abscissae, weights = np.polynomial.legendre.leggauss(_QUADRATURE_POINTS)
-    quadrature = roller.slices is None and convex
+    quadrature, points = roller.slices is None and convex, _SMOOTH_POINTS if is_smooth(roller.profile) else _KINKED_POINTS
+    abscissae, weights = np.polynomial.legendre.leggauss(points)
     drops = profile_drops(roller.profile, roller.diameter, roller.length, _PROFILE_INTERVALS)
     return Slices(
         quadrature=quadrature,
-        points=_QUADRATURE_POINTS if quadrature else count,
+        points=points if quadrature else count,
         positions=positions,
         crown=np.ascontiguousarray(crown_drops(roller.profile, roller.diameter, roller.length, count), np.float64),
         walls=slice_middles(roller.length, roller.slices or _WALL_SLICES),
@@ -351,8 +351,9 @@ def _slices(bearing: Bearing) -> Slices:
     )
 
 
-_QUADRATURE_POINTS = 6  # on the loaded part of a contact: load and moments err by 0.1 % (logarithmic profile) to 0.5 % (straight with arcs), rms
-_PROFILE_INTERVALS = 256
+# Points on the loaded part of a contact: load and moments err by 0.1 % rms with a smooth profile; kinks need more for that.
+_SMOOTH_POINTS, _KINKED_POINTS = 6, 12
+_PROFILE_INTERVALS = 512
 _BALANCE_SLICES = 100  # of statics beside a quadrature
 _UNEVEN_SLICES = 40  # of a profile that is not convex, which may bear on several parts
 _WALL_SLICES = 20  # that meet the walls of a pocket

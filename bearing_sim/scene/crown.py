@@ -151,6 +151,11 @@ def is_convex(crown) -> bool:
     return bool(np.all(np.diff(np.diff(crown.drops) / np.diff(crown.positions)) >= -_LEVEL_SLOPE))
 
 
+def is_smooth(crown) -> bool:
+    """Return whether a profile has no kink in its drop or in its slope."""
+    return isinstance(crown, (NoCrown, IsoLogCrown))
+
+
 def _drops_at(crown, roller_diameter: float, length: float, x: np.ndarray) -> np.ndarray:
     if isinstance(crown, IsoLogCrown):
         return -0.00035 * roller_diameter * np.log1p(-((2.0 * x / length) ** 2))

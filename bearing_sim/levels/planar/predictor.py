@@ -9,13 +9,15 @@ extrapolated, each roller's radial equation
 is scalar and rises monotonically: a few Newton iterations for all rollers at once cost a fraction of one iteration of the whole system.
 """
 
+import math
+
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.rollers import follow_contour
 from bearing_sim.levels.common.support import extrapolate_support
 from bearing_sim.levels.planar.forces import normal_forces
 from bearing_sim.levels.planar.state import BLOCK, BORDER, PHI, PHI_SPEED, R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
 from bearing_sim.numerics.compilation import fused
-from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, spread_run, square_root, store, store_run
+from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, spread_run, square_root, store, store_run, where_positive
 from bearing_sim.physics.contact import CONTACT
 
 _ITERATIONS = 4
@@ -44,11 +46,12 @@ def _start(known, shift, guess, count, raceways, rows):
     spread_run(known, ROLLERS + R_SPEED * count, count, rows, ROLLER.known_speed)
     for block in range(rows.shape[0]):
         follow_contour(ROLLER, block, shift, raceways.contour, rows)
+        store(rows, block, ROLLER.moved, math.inf)
 
 
 @fused
-def _balance(guess, shift, inner_radius, params, rows, contacts):
-    """Take one Newton step of all radial equations and return the largest change [m].
+def _balance(guess, shift, enough, inner_radius, params, rows, contacts):
+    """Take one Newton step of the radial equations of those rollers whose last one was ``enough`` [m], and return the largest last step [m].
 
     The equation is that of the docstring of the module.
     """
@@ -75,8 +78,12 @@ def _balance(guess, shift, inner_radius, params, rows, contacts):
         force = load(contacts, outer, CONTACT.load) - load(contacts, block, CONTACT.load)
         force += mass * ((speed - load(rows, block, ROLLER.known_speed)) * per_shift - radius * orbital_speed * orbital_speed)
         change = force / (mass * per_shift * per_shift + damping * per_shift + stiffness)
-        largest = larger(largest, magnitude(change))
-        store(rows, block, ROLLER.radius, radius - change)
+        moved = load(rows, block, ROLLER.moved)
+        goes_on = moved - enough  # each roller by itself: a guess depends on no other roller
+        store(rows, block, ROLLER.radius, radius - where_positive(goes_on, change, 0.0))
+        moved = where_positive(goes_on, magnitude(change), moved)
+        store(rows, block, ROLLER.moved, moved)
+        largest = larger(largest, moved)
     return highest(largest)
 
 
@@ -97,8 +104,9 @@ def predict(known, shift, slope, model, work, guess):
     inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # where the inputs start: a guess needs no more
     _extrapolate(known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
+    enough = _SETTLED * model.tolerances.position
     for _ in range(_ITERATIONS):
-        if _balance(guess, shift, inner_radius, params, rows, work.contacts) < _SETTLED * model.tolerances.position:
+        if _balance(guess, shift, enough, inner_radius, params, rows, work.contacts) < enough:
             break
     per_shift, whole = 1.0 / shift, count // LANES
     for block in range(whole):

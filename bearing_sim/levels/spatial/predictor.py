@@ -33,7 +33,7 @@ from bearing_sim.levels.spatial.state import (
     R,
 )
 from bearing_sim.numerics.compilation import fused
-from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, square_root, store
+from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread_run, square_root, store, store_run, where_positive
 
 _ITERATIONS = 4
 _SETTLED = 0.2  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system
@@ -55,19 +55,16 @@ def _extrapolate(known, shift, slope, count, guess):
 @fused
 def _start(known, shift, guess, count, raceways, rows):
     """Write azimuths, the contour and the known terms of each equation; let the rollers follow the contour at first."""
-    last = count - 1
-    for j in range(rows.shape[0] * LANES):
-        block, lane, roller = j // LANES, j % LANES, ROLLERS + min(j, last)
-        rows[block, ROLLER.angle, lane] = guess[roller + PHI * count]
-        rows[block, ROLLER.orbital_speed, lane] = guess[roller + PHI_SPEED * count]
-        rows[block, ROLLER.spin, lane] = guess[roller + SPIN * count]
-        rows[block, ROLLER.tilt, lane] = guess[roller + TILT * count]
-        rows[block, ROLLER.skew, lane] = guess[roller + SKEW * count]
-        rows[block, ROLLER.skew_speed, lane] = guess[roller + SKEW_SPEED * count]
-        rows[block, ROLLER.known_radius, lane] = known[roller + R * count]
-        rows[block, ROLLER.known_speed, lane] = known[roller + R_SPEED * count]
-        rows[block, ROLLER.known_tilt, lane] = known[roller + TILT * count]
-        rows[block, ROLLER.known_tilt_speed, lane] = known[roller + TILT_SPEED * count]
+    spread_run(guess, ROLLERS + PHI * count, count, rows, ROLLER.angle)
+    spread_run(guess, ROLLERS + PHI_SPEED * count, count, rows, ROLLER.orbital_speed)
+    spread_run(guess, ROLLERS + SPIN * count, count, rows, ROLLER.spin)
+    spread_run(guess, ROLLERS + TILT * count, count, rows, ROLLER.tilt)
+    spread_run(guess, ROLLERS + SKEW * count, count, rows, ROLLER.skew)
+    spread_run(guess, ROLLERS + SKEW_SPEED * count, count, rows, ROLLER.skew_speed)
+    spread_run(known, ROLLERS + R * count, count, rows, ROLLER.known_radius)
+    spread_run(known, ROLLERS + R_SPEED * count, count, rows, ROLLER.known_speed)
+    spread_run(known, ROLLERS + TILT * count, count, rows, ROLLER.known_tilt)
+    spread_run(known, ROLLERS + TILT_SPEED * count, count, rows, ROLLER.known_tilt_speed)
     for block in range(rows.shape[0]):
         follow_contour(ROLLER, block, shift, raceways.contour, rows)
         store(rows, block, ROLLER.moved, math.inf)
@@ -97,8 +94,8 @@ def _place(block, guess, shift, inner_radius, params, rows, contacts):
 
 
 @fused
-def _balance(block, shift, params, rows, contacts):
-    """Take one Newton step and return how far it moves the rollers and their ends [m].
+def _balance(block, shift, enough, params, rows, contacts):
+    """Take one Newton step of those rollers whose last one moved them or their ends by ``enough`` [m], and return the largest last step [m].
 
     r'' and tilt'' are those of the normal forces, orbit and spin are as they are.
     """
@@ -121,9 +118,13 @@ def _balance(block, shift, params, rows, contacts):
     d += per_shift * (load(contacts, outer, SLICED.damping + 2) + load(contacts, block, SLICED.damping + 2))
     inverse = 1.0 / (a * d - b * b)
     outwards, tilting = (d * force - b * moment) * inverse, (a * moment - b * force) * inverse
-    store(rows, block, ROLLER.radius, radius - outwards)
-    store(rows, block, ROLLER.tilt, tilt - tilting)
-    return larger(magnitude(outwards), magnitude(tilting) * (0.5 * params.rollers.length))
+    moved = load(rows, block, ROLLER.moved)
+    goes_on = moved - enough  # each roller by itself: a guess depends on no other roller that happens to stand in the same block
+    store(rows, block, ROLLER.radius, radius - where_positive(goes_on, outwards, 0.0))
+    store(rows, block, ROLLER.tilt, tilt - where_positive(goes_on, tilting, 0.0))
+    moved = where_positive(goes_on, larger(magnitude(outwards), magnitude(tilting) * (0.5 * params.rollers.length)), moved)
+    store(rows, block, ROLLER.moved, moved)
+    return highest(moved)
 
 
 @fused
@@ -155,17 +156,19 @@ def predict(known, shift, slope, model, work, guess):
         if params.flanges.load > 0.0:
             press_axially(params, rows, contacts)
         for block in range(blocks):
-            if highest(load(rows, block, ROLLER.moved)) < enough:
-                continue
-            moved = _balance(block, shift, params, rows, contacts)
-            store(rows, block, ROLLER.moved, moved)
-            settled = settled and highest(moved) < enough
+            if not highest(load(rows, block, ROLLER.moved)) < enough:
+                settled = _balance(block, shift, enough, params, rows, contacts) < enough and settled
         if settled:
             break
-    per_shift = 1.0 / shift
-    for j in range(count):
-        block, lane = j // LANES, j % LANES
-        for k in range(2):
-            position, row = ROLLERS + j + (R if k == 0 else TILT) * count, ROLLER.radius if k == 0 else ROLLER.tilt
-            guess[position] = rows[block, row, lane]
-            guess[position + R_SPEED * count] = (guess[position] - known[position]) * per_shift
+    per_shift, whole = 1.0 / shift, count // LANES
+    for k in range(2):
+        first, row, before = ROLLERS + (R if k == 0 else TILT) * count, ROLLER.radius, ROLLER.known_radius
+        if k == 1:
+            row, before = ROLLER.tilt, ROLLER.known_tilt
+        for block in range(whole):
+            position, at = load(rows, block, row), first + block * LANES
+            store_run(guess, at, position)
+            store_run(guess, at + R_SPEED * count, (position - load(rows, block, before)) * per_shift)
+        for j in range(whole * LANES, count):
+            guess[first + j] = rows[whole, row, j - whole * LANES]
+            guess[first + j + R_SPEED * count] = (guess[first + j] - known[first + j]) * per_shift
