@@ -21,7 +21,7 @@ from bearing_sim.physics.squeeze_film import SqueezeFilm, new_squeeze_film
 from bearing_sim.physics.traction import TractionConstants, constant_constants, kragelskii_constants, oil_4109_constants, thermal_eyring_constants
 from bearing_sim.scene.bearing import Roller
 from bearing_sim.scene.contour import outer_contour
-from bearing_sim.scene.crown import crown_drops, is_convex, is_smooth, profile_drops, slice_middles
+from bearing_sim.scene.crown import IsoLogCrown, NoCrown, StraightArcCrown, crown_drops, log_scale, slice_middles
 from bearing_sim.scene.flanges import flange_geometry
 from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, HydrodynamicRollingResistance, KragelskiiTraction
 from bearing_sim.scene.ratings import rate
@@ -115,18 +115,20 @@ class Ring(NamedTuple):
     contact_damping: float  # a of Q (1 + a d(delta)/dt) [s/m]
 
 
+SLICED_EQUALLY, STRAIGHT, LOGARITHMIC, STRAIGHT_ARC = range(4)  # how contacts in motion are evaluated: equal slices, or a quadrature by profile
+
+
 class Slices(NamedTuple):
     """Where along the rollers contacts are evaluated; only level ``spatial`` and the statics by slices use it."""
 
-    quadrature: bool  # whether contacts in motion are evaluated at points on their loaded part, and not on equal slices
+    profile: int  # `SLICED_EQUALLY`, or the profile of which a quadrature is taken
     points: int  # of a contact in motion
     positions: np.ndarray  # axial position of each slice's middle from the roller's, x_k [m], shape (N,)
     crown: np.ndarray  # drop of the profile there, C_k [m], shape (N,)
     walls: np.ndarray  # axial positions of the slices that meet a pocket's walls [m]
     half_length: float  # L/2 [m]
-    profile: np.ndarray  # by interval of the roller's length: drop where it begins, and its change over the interval [m], shape (T, 2)
-    nodes: np.ndarray  # intervals before some places of it, close to each other towards the ends
-    node_drops: np.ndarray  # drop at each of these [m]
+    scale: float  # of the logarithmic profile, 0.00035 D_w, or radius of the arcs [m]
+    straight: float  # where the arcs begin, over L/2
     abscissae: np.ndarray  # of the quadrature, from -1 to 1 of the loaded part, shape (points,)
     weights: np.ndarray  # fraction of the loaded part that each stands for
 
@@ -328,44 +330,37 @@ def _flanges(scene: Scene) -> Flanges:
     )
 
 
-def _slices(bearing: Bearing) -> Slices:
-    roller = bearing.roller
-    convex = is_convex(roller.profile)
-    count = roller.slices or (_BALANCE_SLICES if convex else _UNEVEN_SLICES)
-    positions = slice_middles(roller.length, count)
-    quadrature, points = roller.slices is None and convex, _SMOOTH_POINTS if is_smooth(roller.profile) else _KINKED_POINTS
-    abscissae, weights = np.polynomial.legendre.leggauss(points)
-    drops = profile_drops(roller.profile, roller.diameter, roller.length, _PROFILE_INTERVALS)
-    return Slices(
-        quadrature=quadrature,
-        points=points if quadrature else count,
-        positions=positions,
-        crown=np.ascontiguousarray(crown_drops(roller.profile, roller.diameter, roller.length, count), np.float64),
-        walls=slice_middles(roller.length, roller.slices or _WALL_SLICES),
-        half_length=roller.length / 2,
-        profile=np.ascontiguousarray(np.stack([drops[:-1], np.diff(drops)], axis=1)),
-        nodes=_PROFILE_NODES.astype(np.float64),
-        node_drops=np.ascontiguousarray(drops[_PROFILE_NODES]),
-        abscissae=0.5 * abscissae * (3.0 - abscissae**2),
-        weights=0.75 * weights * (1.0 - abscissae**2),
-    )
-
-
-# Points on the loaded part of a contact: load and moments err by 0.1 % rms with a smooth profile; kinks need more for that.
+# Points on the loaded part of a contact: load and moments err by 0.1 % rms with a smooth profile; a profile with kinks needs more for that.
 _SMOOTH_POINTS, _KINKED_POINTS = 6, 12
-_PROFILE_INTERVALS = 512
 _BALANCE_SLICES = 100  # of statics beside a quadrature
-_UNEVEN_SLICES = 40  # of a profile that is not convex, which may bear on several parts
+_TABLE_SLICES = 30  # of a profile given by a table, which may bear on several parts
 _WALL_SLICES = 20  # that meet the walls of a pocket
 
 
-def _profile_nodes(half: int) -> np.ndarray:
-    """Return intervals of the profile before each of 2 half + 1 nodes, closer to each other towards the ends, where a profile drops steeply."""
-    s = np.arange(-half, half + 1) / half
-    return np.round((1.0 + 0.3 * s + 0.7 * np.sin(0.5 * np.pi * s)) * (_PROFILE_INTERVALS // 2)).astype(int)
-
-
-_PROFILE_NODES = _profile_nodes(6)
+def _slices(bearing: Bearing) -> Slices:
+    roller = bearing.roller
+    profile, scale, straight = SLICED_EQUALLY, 1.0, 1.0
+    if roller.slices is None and isinstance(roller.profile, NoCrown):
+        profile = STRAIGHT
+    elif roller.slices is None and isinstance(roller.profile, IsoLogCrown):
+        profile, scale = LOGARITHMIC, log_scale(roller.diameter)
+    elif roller.slices is None and isinstance(roller.profile, StraightArcCrown):
+        profile, scale, straight = STRAIGHT_ARC, roller.profile.crown_radius, roller.profile.straight_length / roller.length
+    count = roller.slices or (_TABLE_SLICES if profile == SLICED_EQUALLY else _BALANCE_SLICES)
+    points = _KINKED_POINTS if profile == STRAIGHT_ARC else _SMOOTH_POINTS
+    abscissae, weights = np.polynomial.legendre.leggauss(points)
+    return Slices(
+        profile=profile,
+        points=count if profile == SLICED_EQUALLY else points,
+        positions=slice_middles(roller.length, count),
+        crown=np.ascontiguousarray(crown_drops(roller.profile, roller.diameter, roller.length, count), np.float64),
+        walls=slice_middles(roller.length, roller.slices or _WALL_SLICES),
+        half_length=roller.length / 2,
+        scale=float(scale),
+        straight=float(straight),
+        abscissae=0.5 * abscissae * (3.0 - abscissae**2),
+        weights=0.75 * weights * (1.0 - abscissae**2),
+    )
 
 
 def _tilts(scene: Scene, roller_mass: float) -> Tilts:

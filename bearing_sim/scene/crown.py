@@ -12,7 +12,6 @@ from bearing_sim.files.limits import CROWN_FILE, CROWN_POINTS, FileError
 from bearing_sim.files.reading import read_text
 from bearing_sim.scene.quantity import check, named_law, quantity, record
 
-_LEVEL_SLOPE = 1e-9  # by which rounded numbers of a table may fall short of a convex profile
 _TABLE_HEADER = "expected a header of two columns, position and drop, each with its unit in brackets, such as position[mm],drop[um]"
 
 
@@ -108,6 +107,11 @@ def slice_middles(length: float, slices: int) -> np.ndarray:
     return (np.arange(slices) + 0.5) * (length / slices) - length / 2
 
 
+def log_scale(roller_diameter: float) -> float:
+    """Return the factor of the logarithm in the profile of ISO/TS 16281 [m]."""
+    return 0.00035 * roller_diameter
+
+
 def crown_drops(crown, roller_diameter: float, length: float, slices: int) -> np.ndarray:
     """Return the drop C_k of every slice at its middle [m], shape (slices,).
 
@@ -120,52 +124,16 @@ def crown_drops(crown, roller_diameter: float, length: float, slices: int) -> np
     roller_diameter, length : D_w and L [m].
     slices : their number, N.
     """
-    return _drops_at(crown, roller_diameter, length, slice_middles(length, slices))
-
-
-def profile_drops(crown, roller_diameter: float, length: float, intervals: int) -> np.ndarray:
-    """Return the drop at both ends and between equal intervals of a roller's length [m], shape (intervals + 1,).
-
-    At the ends of the logarithmic profile, which is infinite there, it is the number that makes the mean over the last interval right.
-
-    Parameters
-    ----------
-    crown, roller_diameter, length : as of `crown_drops`.
-    intervals : their number.
-    """
-    x = np.linspace(-length / 2, length / 2, intervals + 1)
-    if not isinstance(crown, IsoLogCrown):
-        return _drops_at(crown, roller_diameter, length, x)
-    drops, d = np.zeros(intervals + 1), 2.0 / intervals
-    drops[1:-1] = _drops_at(crown, roller_diameter, length, x[1:-1])
-    # the mean of -ln(1 - s^2) over s from 1 - d to 1
-    mean = 2.0 - np.log(d) + ((2.0 - d) * np.log(2.0 - d) - 2.0 * np.log(2.0)) / d
-    drops[[0, -1]] = 2.0 * 0.00035 * roller_diameter * mean - drops[1]
-    return drops
-
-
-def is_convex(crown) -> bool:
-    """Return whether a profile drops ever more steeply from its highest place, so that a roller bears on one part of it and not on several."""
-    if not isinstance(crown, TableCrown):
-        return True
-    return bool(np.all(np.diff(np.diff(crown.drops) / np.diff(crown.positions)) >= -_LEVEL_SLOPE))
-
-
-def is_smooth(crown) -> bool:
-    """Return whether a profile has no kink in its drop or in its slope."""
-    return isinstance(crown, (NoCrown, IsoLogCrown))
-
-
-def _drops_at(crown, roller_diameter: float, length: float, x: np.ndarray) -> np.ndarray:
+    x = slice_middles(length, slices)
     if isinstance(crown, IsoLogCrown):
-        return -0.00035 * roller_diameter * np.log1p(-((2.0 * x / length) ** 2))
+        return -log_scale(roller_diameter) * np.log1p(-((2.0 * x / length) ** 2))
     if isinstance(crown, StraightArcCrown):
         on_arc = np.maximum(np.abs(x) - crown.straight_length / 2, 0.0)
         # R - sqrt(R^2 - s^2), written without the difference of two large numbers
         return on_arc**2 / (crown.crown_radius + np.sqrt(crown.crown_radius**2 - on_arc**2))
     if isinstance(crown, TableCrown):
         return np.interp(x, crown.positions, crown.drops)
-    return np.zeros(len(x))
+    return np.zeros(slices)
 
 
 def crown_errors(crown, length: float) -> list[str]:

@@ -6,20 +6,24 @@ integral over the roller is a sum over *points*, each a whole contact with the l
 length, and with its own traction: its sliding speed follows from how fast the axes skew against each other, the rolling speed is the same for all.
 
 By default the points are those of a Gauss quadrature on the part of the roller that bears, so that no point is lost on ends without load.  The
-substitution x = (3 s - s^3)/2 takes the root of the stiffness at both ends of that part away.  The ends follow from the profile: from the nearest
-of a few nodes outside, Newton's method approaches them from outside as long as the profile is convex.  A scene can ask for equal slices instead,
-which is Deng's own sum.
+substitution x = (3 s - s^3)/2 takes the root of the stiffness at both ends of that part away.  The ends follow from the profile's law; they have
+to be continuous in penetration and lean, or implicit steps would not converge.  A table of a profile is cut into equal slices, and a
+scene can ask for them: Deng's own sum.
 
 Left out: sliding along the axis of a skewed roller, and the difference of circumference along a crowned one.
 """
 
 from bearing_sim.levels.spatial.state import D_DEPTH, D_RATE, DROP, FRACTION, POSITION, ROLLER, SLICED, SLICED_ROWS
+from bearing_sim.model.params import LOGARITHMIC, SLICED_EQUALLY, STRAIGHT
 from bearing_sim.numerics.compilation import fused, kernel, template
-from bearing_sim.numerics.simd import floor, gather, highest, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
+from bearing_sim.numerics.elementary import exponential, logarithm
+from bearing_sim.numerics.simd import highest, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, EXPONENT, damped_slice, hertz_pressure
 
-_NEWTON_STEPS = 2  # towards the ends of the loaded part, from a node outside it
-_LEVEL = 1e-18  # m; a depth that rises by less within an interval of the profile has no end
+_NEWTON_STEPS = 2  # towards the ends of the part that bears: what is left is at most 4 % of it
+_LEVEL = 1e-15  # m; a depth that changes by less over half a roller has no end
+_NEAR_END = 1e-12  # least 1 - s^2: nearer to its end the logarithmic profile counts as no deeper
+_LEAST_BEND, _LEAST_SLOPE = 0.2, 0.05  # bounds of the start and of the slope of Newton's method, from -1 to 1 of the roller
 
 
 @fused
@@ -45,59 +49,93 @@ def _clear(block, contacts, rows):
         store(contacts, block, row, 0.0)
 
 
-@template
-def _interval(position, intervals):
-    """Return the interval of the profile's table at a position, one that exists even where the position is no number."""
-    return smaller(larger(floor(position), 0.0), intervals - 1.0)
+@fused
+def _part_of_straight(depth, slope):
+    """Return both ends of the part that bears of a roller without a profile; parameters and results as of `_loaded_part`."""
+    end = -depth / where_positive(magnitude(slope) - _LEVEL, slope, _LEVEL)
+    end = smaller(larger(end, -1.0), 1.0)
+    return where_positive(depth - slope, -1.0, end), where_positive(depth + slope, 1.0, end)
 
 
 @fused
-def _loaded_part(start, slope, slices):
-    """Return both ends of the part that bears, in intervals of the profile's table from its beginning (lanes); reversed where none does.
+def _part_of_logarithmic(depth, slope):
+    """Return both ends of the part that bears of ISO's logarithmic profile; parameters and results as of `_loaded_part`, over the profile's scale.
+
+    They are the roots of 1 - exp(-(depth + slope s)) - s^2, which is concave and regular up to s = 1.  Newton's method starts from
+    the cubic that the depth follows at its largest, so that the ends are smooth in depth and slope.
+    """
+    top = slope / (1.0 + square_root(1.0 + slope * slope))  # where the depth is largest
+    square = top * top
+    rest = larger(1.0 - square, _NEAR_END)
+    half = square_root(larger(depth + slope * top + logarithm(rest), 0.0) / (1.0 + square)) * rest
+    bend = half * top * (2.0 + (2.0 / 3.0) * square) / (rest * (1.0 + square))
+    left = larger(top - half / square_root(larger(1.0 - bend, _LEAST_BEND)), -1.0)
+    right = smaller(top + half / square_root(larger(1.0 + bend, _LEAST_BEND)), 1.0)
+    for _ in range(_NEWTON_STEPS):
+        fading = exponential(-(depth + slope * left))
+        left -= (1.0 - fading - left * left) / larger(slope * fading - 2.0 * left, _LEAST_SLOPE)
+        left = larger(smaller(left, top), -1.0)
+        fading = exponential(-(depth + slope * right))
+        right -= (1.0 - fading - right * right) / smaller(slope * fading - 2.0 * right, -_LEAST_SLOPE)
+        right = smaller(larger(right, top), 1.0)
+    return left, right
+
+
+@fused
+def _right_end_of_arcs(depth, slope, straight, bend):
+    """Return the right end of the part that bears of a straight line between two arcs; see `_loaded_part`.
 
     Parameters
     ----------
-    start, slope : depth of a roller without a profile at the table's beginning [m], and its change by interval.
+    straight : where the arcs begin, in units of half the roller's length.
+    bend : half the second derivative of the drop along an arc, in those units [m]; the arc is taken as a parabola.
+    """
+    per_bend, inner, outer = 0.5 / bend, depth + slope * straight, depth - slope * straight
+    on_right = straight + (slope + square_root(larger(slope * slope + 4.0 * bend * inner, 0.0))) * per_bend
+    on_left = (slope + square_root(larger(slope * slope + 4.0 * bend * outer, 0.0))) * per_bend - straight
+    between = -depth / where_positive(magnitude(slope) - _LEVEL, slope, _LEVEL)
+    end = where_positive(inner, on_right, where_positive(slope, on_right, where_positive(outer, between, on_left)))
+    return smaller(larger(end, -1.0), 1.0)
+
+
+@fused
+def _loaded_part(depth, slope, slices):
+    """Return both ends of the part of a roller that bears, from -1 to 1 (lanes); equal where none does.
+
+    Parameters
+    ----------
+    depth, slope : penetration in the roller's middle without its profile, and its change over half the roller's length [m].
     slices : `bearing_sim.model.params.Slices`.
     """
-    profile, nodes, drops = slices.profile, slices.nodes, slices.node_drops
-    last = 1.0 * profile.shape[0]
-    left, right = spread(0.0), spread(last)
-    before = start - drops[0]
-    for k in range(1, nodes.shape[0]):
-        depth = start + slope * nodes[k] - drops[k]
-        rise = depth - before
-        left = where_positive(rise, where_positive(before, left, nodes[k - 1]), left)
-        right = smaller(right, where_positive(-rise, where_positive(depth, last, nodes[k]), last))
-        before = depth
-    for _ in range(_NEWTON_STEPS):
-        index = _interval(left, last)
-        steep = gather(profile, index, 1)
-        apart, closing = gather(profile, index, 0) + steep * (left - index) - (start + slope * left), slope - steep
-        left += where_positive(apart, where_positive(closing, apart, 0.0), 0.0) / larger(closing, _LEVEL)
-        left = smaller(left, last)
-        index = _interval(-floor(-right) - 1.0, last)
-        steep = gather(profile, index, 1)
-        apart, closing = gather(profile, index, 0) + steep * (right - index) - (start + slope * right), steep - slope
-        right -= where_positive(apart, where_positive(closing, apart, 0.0), 0.0) / larger(closing, _LEVEL)
-        right = larger(right, 0.0)
-    return left, right
+    if slices.profile == LOGARITHMIC:
+        return _part_of_logarithmic(depth * (1.0 / slices.scale), slope * (1.0 / slices.scale))
+    if slices.profile == STRAIGHT:
+        return _part_of_straight(depth, slope)
+    bend = 0.5 * slices.half_length * slices.half_length / slices.scale
+    return -_right_end_of_arcs(depth, -slope, slices.straight, bend), _right_end_of_arcs(depth, slope, slices.straight, bend)
+
+
+@fused
+def _drop(place, slices):
+    """Return the drop of the profile [m] at a place from -1 to 1 (lanes)."""
+    if slices.profile == LOGARITHMIC:
+        return -slices.scale * logarithm(larger(1.0 - place * place, _NEAR_END))
+    if slices.profile == STRAIGHT:
+        return spread(0.0)
+    arc = larger(magnitude(place) - slices.straight, 0.0) * slices.half_length
+    return arc * arc / (slices.scale + square_root(larger(slices.scale * slices.scale - arc * arc, 0.0)))
 
 
 @fused
 def _place_on_loaded_part(block, contacts, slices, points, first):
     """Write the points of a quadrature on the part that bears; parameters as of `place_points`."""
-    profile = slices.profile
-    intervals, lean = 1.0 * profile.shape[0], load(contacts, block, SLICED.lean)
-    spacing = 2.0 * slices.half_length / intervals
-    left, right = _loaded_part(load(contacts, block, SLICED.penetration) - lean * slices.half_length, lean * spacing, slices)
-    middle, half = 0.5 * (left + right), larger(0.5 * (right - left), 0.0)
+    left, right = _loaded_part(load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.lean) * slices.half_length, slices)
+    middle, half = 0.5 * (left + right), 0.5 * (right - left)
     for k in range(slices.abscissae.shape[0]):
         place = middle + half * slices.abscissae[k]
-        index = _interval(place, intervals)
-        store(points, first + k, POSITION, place * spacing - slices.half_length)
-        store(points, first + k, FRACTION, half * (slices.weights[k] * 2.0 / intervals))
-        store(points, first + k, DROP, gather(profile, index, 0) + gather(profile, index, 1) * (place - index))
+        store(points, first + k, POSITION, place * slices.half_length)
+        store(points, first + k, FRACTION, half * slices.weights[k])
+        store(points, first + k, DROP, _drop(place, slices))
 
 
 @fused
@@ -112,7 +150,7 @@ def place_points(block, contacts, slices, points, first):
         the roller's length and drop of the profile.
     first : of the block's points.
     """
-    if slices.quadrature:
+    if slices.profile != SLICED_EQUALLY:
         _place_on_loaded_part(block, contacts, slices, points, first)
         return
     for k in range(slices.positions.shape[0]):
