@@ -83,7 +83,7 @@ def rosenbrock2_step(t, y, h, model, work, memory, counts):
 
 @kernel
 def sdirk2_step(t, y, h, model, work, memory, counts):
-    return sdirk2_attempt(rate_of, rate_and_jacobian, guess_known, factor, solve, norm, t, y, h, model, work, memory, counts)
+    return sdirk2_attempt(rate_and_jacobian, guess_known, factor, solve, norm, t, y, h, model, work, memory, counts)
 
 
 @kernel

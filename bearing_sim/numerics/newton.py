@@ -13,21 +13,19 @@ from bearing_sim.numerics.time_stepping import COUNT, NON_FINITE, NOT_CONVERGED,
 
 _ITERATIONS, _DAMPED_ITERATIONS = 12, 40
 _STALLED = 0.8  # of the correction before: an iteration that hardly contracts alternates
-_SLOW = 0.4  # of the correction before: worse than this, an iteration needs new derivatives
-_FAR = 1 / 3  # of the tolerances: after a larger correction, derivatives of the iterate before are outdated
-_FRESH_CONTRACTION = 0.1  # assumed of an iteration with derivatives of this very iterate
+_CONTRACTION = 0.1  # assumed of an iteration
 
 
 @template
 def solve_implicit(
-    rhs, rhs_and_jacobian, factor, solve, error_norm,
+    rhs_and_jacobian, factor, solve, error_norm,
     t, known, shift, enough, y, rate, change, model, work, counts,
 ):  # fmt: skip
     """Solve y = known + shift f(t, y) by a damped Newton iteration.
 
     Parameters
     ----------
-    rhs, rhs_and_jacobian, factor, solve, error_norm : kernels of the level, see `bearing_sim.numerics.time_stepping`.
+    rhs_and_jacobian, factor, solve, error_norm : kernels of the level, see `bearing_sim.numerics.time_stepping`.
     known : what the stage builds on, shape (n,).
     shift : step over the method's leading coefficient [s].
     enough : error that the iteration may leave, over what the tolerances allow in a step.
@@ -40,26 +38,20 @@ def solve_implicit(
     -------
     status : OK, NOT_EVALUATED, NOT_CONVERGED (singular matrices, too) or NON_FINITE.
     """
-    # Derivatives are those of the iterate where the iteration starts: the guess is so good that one iteration is most often enough with
-    # them, while those of an earlier stage, with other contacts loaded, leave several to do.
-    before, outdated = math.inf, True
+    # Derivatives are those of each iterate: the guess is so good that one iteration is most often enough with them, while those of an
+    # earlier iterate or stage, with other contacts loaded, leave several to do.
+    before = math.inf
     fraction, calm, patience = 1.0, 0, 1  # of each correction that is taken; corrections since it changed, and until it grows
     for iteration in range(_DAMPED_ITERATIONS):
         if iteration >= _ITERATIONS and patience == 1:
             break
         counts[COUNT.right_hand_sides] += 1
-        fresh = outdated
-        if fresh:
-            counts[COUNT.jacobians] += 1
-            evaluated = rhs_and_jacobian(t, y, model, work, rate)
-        else:
-            evaluated = rhs(t, y, model, work, rate)
-        if not evaluated:
+        counts[COUNT.jacobians] += 1
+        if not rhs_and_jacobian(t, y, model, work, rate):
             return NOT_EVALUATED
-        if fresh:
-            counts[COUNT.factorisations] += 1
-            if not factor(shift, work):
-                return NOT_CONVERGED
+        counts[COUNT.factorisations] += 1
+        if not factor(shift, work):
+            return NOT_CONVERGED
         for i in range(y.shape[0]):
             change[i] = known[i] + shift * rate[i] - y[i]
         solve(work, change)
@@ -68,9 +60,8 @@ def solve_implicit(
         size = error_norm(t, y, change, model)
         if not math.isfinite(size):
             return NON_FINITE
-        if size * (_FRESH_CONTRACTION if fresh else 1.0) < enough:
+        if size * _CONTRACTION < enough:
             return OK
-        outdated = size > _SLOW * before or size > _FAR
         if size > _STALLED * before:
             fraction, calm, patience = 0.5 * fraction, 0, 2 * patience
         else:

@@ -13,12 +13,14 @@ scene can ask for them: Deng's own sum.
 Left out: sliding along the axis of a skewed roller, and the difference of circumference along a crowned one.
 """
 
+import math
+
 from bearing_sim.levels.spatial.state import D_DEPTH, D_RATE, DROP, FRACTION, POSITION, ROLLER, SLICED, SLICED_ROWS
 from bearing_sim.model.params import LOGARITHMIC, SLICED_EQUALLY, STRAIGHT
 from bearing_sim.numerics.compilation import fused, kernel, template
-from bearing_sim.numerics.elementary import exponential, logarithm
+from bearing_sim.numerics.elementary import exponential, logarithm, ninth_root
 from bearing_sim.numerics.simd import highest, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
-from bearing_sim.physics.contact import CONTACT, EXPONENT, damped_slice, hertz_pressure
+from bearing_sim.physics.contact import CONTACT, EXPONENT, TINY, damped_slice, hertz_pressure
 
 _NEWTON_STEPS = 2  # towards the ends of the part that bears: what is left is at most 4 % of it
 _LEVEL = 1e-15  # m; a depth that changes by less over half a roller has no end
@@ -138,7 +140,7 @@ def _place_on_loaded_part(block, contacts, slices, points, first):
         store(points, first + k, DROP, _drop(place, slices))
 
 
-@fused
+@kernel
 def place_points(block, contacts, slices, points, first):
     """Write where along the roller a block of contacts is evaluated.
 
@@ -205,7 +207,7 @@ def _press_points(block, contacts, points, first, count, stiffness, damping, wit
     _store_sums(block, contacts, SLICED.damping, damping, d_0, d_1, d_2)
 
 
-@fused
+@kernel
 def press_normally(block, contacts, slices, points, stiffness, damping):
     """Write normal force, tilting moment and their derivatives of a block of contacts, no traction.
 
@@ -377,21 +379,28 @@ def average_laminae(fraction, params, work):
         present = load(work.rollers, block, ROLLER.present)
         if touches(block, contacts, reach):
             for k in range(number):
-                inner = laminae.risers[k] * _lamina_load(block, k, contacts, laminae, part, damping)
-                means[0, k] += share * total(present * (inner * inner) * (inner * inner))
+                depth, factor = _lamina_depth(block, k, contacts, laminae, damping)
+                # q^4 = (K/N)^4 delta^4 delta^(4/9)
+                inner, root = depth * factor * (laminae.risers[k] * part), ninth_root(larger(depth, TINY))
+                inner, root = inner * inner, root * root
+                means[0, k] += share * total(present * (inner * inner) * (root * root))
         if touches(blocks + block, contacts, reach):
             for k in range(number):
-                outer = laminae.risers[k] * _lamina_load(blocks + block, k, contacts, laminae, part, damping)
-                means[1, k] += share * total(present * (outer * outer) * (outer * outer) * square_root(outer))
+                depth, factor = _lamina_depth(blocks + block, k, contacts, laminae, damping)
+                # q^(9/2) = (K/N)^(9/2) delta^5
+                stiffness, square, factor_square = laminae.risers[k] * part, depth * depth, factor * factor
+                scale = share * (stiffness * stiffness) * (stiffness * stiffness) * math.sqrt(stiffness)
+                outer = square * square * depth * (factor_square * factor_square) * square_root(factor)
+                means[1, k] += scale * total(present * outer)
 
 
-@fused
-def _lamina_load(block, k, contacts, laminae, part, damping):
-    """Return the normal force of lamina k of a block of contacts [N]."""
+@template
+def _lamina_depth(block, k, contacts, laminae, damping):
+    """Return the depth of lamina k of a block of contacts [m] and the factor of its damping, neither below 0."""
     x = laminae.positions[k]
     depth = load(contacts, block, SLICED.penetration) + load(contacts, block, SLICED.lean) * x - (laminae.crown[k] + laminae.highest)
     rate = load(contacts, block, SLICED.rate) + load(contacts, block, SLICED.lean_rate) * x
-    return damped_slice(depth, rate, part, damping)[0]
+    return larger(depth, 0.0), larger(1.0 + damping * rate, 0.0)
 
 
 @kernel
@@ -403,7 +412,8 @@ def _largest_laminae(first, params, work):
     for block in range(work.rollers.shape[0]):
         present = load(work.rollers, block, ROLLER.present)
         for k in range(number):
-            pressed = present * _lamina_load(first + block, k, contacts, laminae, part, damping)
+            depth, factor = _lamina_depth(first + block, k, contacts, laminae, damping)
+            pressed = present * (part * factor * depth * ninth_root(larger(depth, TINY)))
             anywhere = larger(anywhere, pressed)
             if k == 0 or k == number - 1:
                 at_ends = larger(at_ends, pressed)
