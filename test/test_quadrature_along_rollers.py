@@ -47,7 +47,7 @@ def integrals(params, crown, penetration, lean, rate, lean_rate):
 # largest errors of load and damping, and of stiffness, in relation to the whole; a kink of the profile costs accuracy
 CROWNS = {
     "none": (NoCrown(), 2e-4, 2e-3),
-    "iso_log": (IsoLogCrown(), 4e-3, 2e-2),
+    "iso_log": (IsoLogCrown(), 1.5e-2, 3e-2),
     ARC: (StraightArcCrown(straight_length=4e-3, crown_radius=1.5), 6e-3, 1e-2),
 }
 
