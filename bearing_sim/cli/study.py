@@ -160,7 +160,7 @@ def misalignment(scene_name, overrides, largest, points, crowns, slices, table, 
             from bearing_sim.studies.misalignment import draw
 
             with picture.draft() as draft:
-                draw(draft, f"{scene_name} {' '.join(overrides)}: misalignment of the inner ring, {slices} slices", found)
+                draw(draft, f"{scene_name} {' '.join(overrides)}: misalignment of the inner ring, {slices} laminae", found)
     if as_json:
         print_json({"scene": scene_name, "slices": slices, "points": rows})
     else:

@@ -137,6 +137,6 @@ def _along(axes, found):
         width = still.slice_middles[1] - still.slice_middles[0]
         heaviest = still.inner_slices[np.argmax(still.inner)]
         axes.plot(1e3 * still.slice_middles, 1e-3 * heaviest / width, marker=marker, ms=3, color=colour)
-    title = f"most heavily loaded roller at {1e3 * shown:g} mrad, quasi-static"
+    title = f"most loaded roller, {1e3 * shown:g} mrad, quasi-static"
     axes.set(xlabel="along the roller, x [mm]", ylabel="load per length, inner raceway [N/mm]", title=title, ylim=(0, None))
     axes.grid(alpha=0.3)
