@@ -86,7 +86,7 @@ DIMENSIONS: Mapping[str, Callable] = {
     "fixed": _choice(False, False, False, True),
     "tolerances": _logarithmic(1e-8, 1.0),  # times the default ones
     "step": _logarithmic(1e-7, 1e-3),
-    "slices": lambda u: 1 + min(int(200 * u * u), 199),
+    "slices": lambda u: 0 if u < 0.5 else 1 + min(int(200 * (2 * u - 1) ** 2), 199),  # 0: the quadrature
     "crown": _choice(*_CROWNS),
     "misalignment": _or_zero(0.4, lambda u: 5e-3 * u * u),
     "gyroscopic": _choice("true", "true", "false"),
@@ -156,7 +156,7 @@ def overrides_of(level: str, point: Mapping) -> list[str]:
         f"bearing.cage.mass={point['cage_mass']!r}",
         f"bearing.cage.land_squeeze={point['land_squeeze']}",
         f"bearing.cage.pocket_friction={point['pocket_friction']!r}",
-        f"bearing.roller.slices={point['slices']}",
+        f"bearing.roller.slices={point['slices'] or 'null'}",
         oil_of(point["viscosity"], point["temperature"]),
         f"lubricant.temperature={point['temperature']!r}",
         f"lubricant.mixture_fraction={point['mixture_fraction']!r}",
