@@ -2,8 +2,11 @@
 """First guess of a stage's solution, as at level ``planar`` (see `bearing_sim.levels.planar.predictor`).
 
 With ring tilts, cage, orbit and skew extrapolated, each roller's position and tilt follow from two scalar equations of its own normal contacts,
-which all rollers share with the ring's centre: a few Newton iterations, from which the rollers are eliminated one by one.
+which all rollers share with the ring's centre: a few Newton iterations, from which the rollers are eliminated one by one.  Contacts are the
+expensive part: once the ring has settled, only those blocks of rollers go on that have not.
 """
+
+import math
 
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.prediction import ITERATIONS, SETTLED, free_ring, move_ring
@@ -89,75 +92,79 @@ def _place(block, guess, shift, inner_radius, params, rows, contacts):
 
 
 @fused
-def _eliminate(shift, params, rows, contacts):
-    """Write by how much each roller moves and tilts in a Newton step, alone and with the ring, and return what all do to the ring.
+def _eliminate(block, shift, params, rows, contacts):
+    """Write by how much a block of rollers moves and tilts in a Newton step, alone and with the ring, and its inner load after that step.
 
     With f and g the residuals of a roller's equations, a, b, d their derivatives by its radius and tilt, and -p, -q by the ring's displacement
     along e_r, x, a Newton step solves a dr + b dtilt = p x - f, b dr + d dtilt = q x - g.  r'' and tilt'' are those of the normal forces, orbit
     and spin are as they are.
-
-    Returns
-    -------
-    M_yy, M_yz, M_zz [N/m], b_y, b_z [N]
-        Of the sum of Q_i e_r = M x - b, see `bearing_sim.levels.common.prediction.move_ring`.
     """
-    mass, inertia, blocks, per_shift = params.rollers.mass, params.tilts.roller_inertia, rows.shape[0], 1.0 / shift
+    mass, inertia, outer, per_shift = params.rollers.mass, params.tilts.roller_inertia, rows.shape[0] + block, 1.0 / shift
+    radius, tilt, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.orbital_speed)
+    speed = (radius - load(rows, block, ROLLER.known_radius)) * per_shift
+    tilt_speed = (tilt - load(rows, block, ROLLER.known_tilt)) * per_shift
+    pressed = load(contacts, block, SLICED.load)
+    force = load(contacts, outer, SLICED.load) - pressed
+    force += mass * ((speed - load(rows, block, ROLLER.known_speed)) * per_shift - radius * orbital_speed * orbital_speed)
+    gyroscopic = params.variants.gyroscopic * params.rollers.inertia * load(rows, block, ROLLER.spin)
+    moment = load(contacts, outer, SLICED.tilting) - load(contacts, block, SLICED.tilting)
+    moment += inertia * (tilt_speed - load(rows, block, ROLLER.known_tilt_speed)) * per_shift
+    moment -= (gyroscopic + 2.0 * inertia * orbital_speed) * load(rows, block, ROLLER.skew_speed)
+    moment -= (gyroscopic + inertia * orbital_speed) * orbital_speed * tilt
+    p = load(contacts, block, SLICED.stiffness) + per_shift * load(contacts, block, SLICED.damping)
+    q = load(contacts, block, SLICED.stiffness + 1) + per_shift * load(contacts, block, SLICED.damping + 1)
+    a = mass * per_shift * per_shift + p + load(contacts, outer, SLICED.stiffness) + per_shift * load(contacts, outer, SLICED.damping)
+    b = q + load(contacts, outer, SLICED.stiffness + 1) + per_shift * load(contacts, outer, SLICED.damping + 1)
+    d = inertia * per_shift * per_shift + load(contacts, outer, SLICED.stiffness + 2) + load(contacts, block, SLICED.stiffness + 2)
+    d += per_shift * (load(contacts, outer, SLICED.damping + 2) + load(contacts, block, SLICED.damping + 2))
+    inverse = 1.0 / (a * d - b * b)
+    moves_alone, tilts_alone = (b * moment - d * force) * inverse, (b * force - a * moment) * inverse
+    follows_ring, tilts_with_ring = (d * p - b * q) * inverse, (a * q - b * p) * inverse
+    store(rows, block, ROLLER.moves_alone, moves_alone)
+    store(rows, block, ROLLER.follows_ring, follows_ring)
+    store(rows, block, ROLLER.tilts_alone, tilts_alone)
+    store(rows, block, ROLLER.tilts_with_ring, tilts_with_ring)
+    store(rows, block, ROLLER.load_alone, pressed - p * moves_alone - q * tilts_alone)
+    store(rows, block, ROLLER.load_by_ring, p - p * follows_ring - q * tilts_with_ring)
+
+
+@fused
+def _step_ring(known, shift, ring_load, guess, mass, rows):
+    """Take one Newton step of the ring with the rollers eliminated, and return it, y and z [m].
+
+    Parameters
+    ----------
+    ring_load : see `bearing_sim.levels.common.prediction.free_ring`.
+    mass : of the ring [kg].
+    """
     m_yy, m_yz, m_zz, b_y, b_z = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    for block in range(blocks):
-        outer = blocks + block
-        radius, tilt, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.orbital_speed)
-        speed = (radius - load(rows, block, ROLLER.known_radius)) * per_shift
-        tilt_speed = (tilt - load(rows, block, ROLLER.known_tilt)) * per_shift
-        pressed = load(contacts, block, SLICED.load)
-        force = load(contacts, outer, SLICED.load) - pressed
-        force += mass * ((speed - load(rows, block, ROLLER.known_speed)) * per_shift - radius * orbital_speed * orbital_speed)
-        gyroscopic = params.variants.gyroscopic * params.rollers.inertia * load(rows, block, ROLLER.spin)
-        moment = load(contacts, outer, SLICED.tilting) - load(contacts, block, SLICED.tilting)
-        moment += inertia * (tilt_speed - load(rows, block, ROLLER.known_tilt_speed)) * per_shift
-        moment -= (gyroscopic + 2.0 * inertia * orbital_speed) * load(rows, block, ROLLER.skew_speed)
-        moment -= (gyroscopic + inertia * orbital_speed) * orbital_speed * tilt
-        p = load(contacts, block, SLICED.stiffness) + per_shift * load(contacts, block, SLICED.damping)
-        q = load(contacts, block, SLICED.stiffness + 1) + per_shift * load(contacts, block, SLICED.damping + 1)
-        a = mass * per_shift * per_shift + p + load(contacts, outer, SLICED.stiffness) + per_shift * load(contacts, outer, SLICED.damping)
-        b = q + load(contacts, outer, SLICED.stiffness + 1) + per_shift * load(contacts, outer, SLICED.damping + 1)
-        d = inertia * per_shift * per_shift + load(contacts, outer, SLICED.stiffness + 2) + load(contacts, block, SLICED.stiffness + 2)
-        d += per_shift * (load(contacts, outer, SLICED.damping + 2) + load(contacts, block, SLICED.damping + 2))
-        inverse = 1.0 / (a * d - b * b)
-        moves_alone, tilts_alone = (b * moment - d * force) * inverse, (b * force - a * moment) * inverse
-        follows_ring, tilts_with_ring = (d * p - b * q) * inverse, (a * q - b * p) * inverse
-        store(rows, block, ROLLER.moves_alone, moves_alone)
-        store(rows, block, ROLLER.follows_ring, follows_ring)
-        store(rows, block, ROLLER.tilts_alone, tilts_alone)
-        store(rows, block, ROLLER.tilts_with_ring, tilts_with_ring)
+    for block in range(rows.shape[0]):
         present, cosine, sine = load(rows, block, ROLLER.present), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
-        stiffness = present * (p - p * follows_ring - q * tilts_with_ring)
-        pushed = present * (pressed - p * moves_alone - q * tilts_alone)
+        stiffness, pushed = present * load(rows, block, ROLLER.load_by_ring), present * load(rows, block, ROLLER.load_alone)
         m_yy += stiffness * cosine * cosine
         m_yz += stiffness * cosine * sine
         m_zz += stiffness * sine * sine
         b_y -= pushed * cosine
         b_z -= pushed * sine
-    return total(m_yy), total(m_yz), total(m_zz), total(b_y), total(b_z)
+    sums = total(m_yy), total(m_yz), total(m_zz), total(b_y), total(b_z)
+    return move_ring(known, shift, guess, BORDER, ring_load, mass, sums)
 
 
 @fused
-def _balance(known, shift, ring_load, guess, params, rows, contacts):
-    """Take one Newton step from the normal forces at the guess, and return the largest change of the position of a body or of a roller's end [m].
+def _step_rollers(block, y, z, params, rows):
+    """Take the Newton step of a block of rollers, the ring's own step being y, z [m]; write the largest change of a roller's end [m]."""
+    along = y * load(rows, block, ROLLER.cosine) + z * load(rows, block, ROLLER.sine)
+    outwards = load(rows, block, ROLLER.moves_alone) + load(rows, block, ROLLER.follows_ring) * along
+    tilting = load(rows, block, ROLLER.tilts_alone) + load(rows, block, ROLLER.tilts_with_ring) * along
+    store(rows, block, ROLLER.radius, load(rows, block, ROLLER.radius) + outwards)
+    store(rows, block, ROLLER.tilt, load(rows, block, ROLLER.tilt) + tilting)
+    store(rows, block, ROLLER.moved, larger(magnitude(outwards), magnitude(tilting) * (0.5 * params.rollers.length)))
 
-    Parameters
-    ----------
-    ring_load : see `bearing_sim.levels.common.prediction.free_ring`.
-    """
-    y, z = move_ring(known, shift, guess, BORDER, ring_load, params.ring.mass, _eliminate(shift, params, rows, contacts))
-    largest = spread(max(abs(y), abs(z)))
-    for block in range(rows.shape[0]):
-        along = y * load(rows, block, ROLLER.cosine) + z * load(rows, block, ROLLER.sine)
-        outwards = load(rows, block, ROLLER.moves_alone) + load(rows, block, ROLLER.follows_ring) * along
-        tilting = load(rows, block, ROLLER.tilts_alone) + load(rows, block, ROLLER.tilts_with_ring) * along
-        store(rows, block, ROLLER.radius, load(rows, block, ROLLER.radius) + outwards)
-        store(rows, block, ROLLER.tilt, load(rows, block, ROLLER.tilt) + tilting)
-        largest = larger(largest, larger(magnitude(outwards), magnitude(tilting) * (0.5 * params.rollers.length)))
-    return highest(largest)
+
+@fused
+def _unsettled(block, ring_step, enough, rows):
+    """Return whether the last step of the ring or of a block of rollers was ``enough`` [m] or more."""
+    return ring_step >= enough or not highest(load(rows, block, ROLLER.moved)) < enough
 
 
 @fused
@@ -179,14 +186,28 @@ def predict(t, known, shift, slope, model, work, guess):
     enough, ring_load = SETTLED * model.tolerances.position, free_ring(t, model, work.support)
     _extrapolate(known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
+    ring_step = math.inf
     for _ in range(ITERATIONS):
         for block in range(blocks):
-            _place(block, guess, shift, inner_radius, params, rows, contacts)
-            press_normally(block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
-            press_normally(blocks + block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
+            if _unsettled(block, ring_step, enough, rows):
+                _place(block, guess, shift, inner_radius, params, rows, contacts)
+                press_normally(block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
+                press_normally(blocks + block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
         if params.flanges.load > 0.0:
             press_axially(params, rows, contacts)
-        if _balance(known, shift, ring_load, guess, params, rows, contacts) < enough:
+        for block in range(blocks):
+            if _unsettled(block, ring_step, enough, rows):
+                _eliminate(block, shift, params, rows, contacts)
+        y, z, before, settled = 0.0, 0.0, ring_step, True
+        if ring_step >= enough:
+            y, z = _step_ring(known, shift, ring_load, guess, params.ring.mass, rows)
+            ring_step = max(abs(y), abs(z))
+            settled = ring_step < enough
+        for block in range(blocks):
+            if _unsettled(block, before, enough, rows):
+                _step_rollers(block, y, z, params, rows)
+                settled = settled and highest(load(rows, block, ROLLER.moved)) < enough
+        if settled:
             break
     per_shift, whole = 1.0 / shift, count // LANES
     for k in range(2):
