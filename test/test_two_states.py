@@ -15,11 +15,11 @@ from bearing_sim.cli.main import main
 from bearing_sim.estimation import correction as corrections
 from bearing_sim.estimation.correction import Correction, correction_domain, correction_path, write_correction
 from bearing_sim.estimation.response import coordinates, embedded
-from bearing_sim.estimation.two_states import TwoStates, laws_of_two_states, two_states_at
+from bearing_sim.estimation.two_states import TwoStates, laws_of_table
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.model.validity import still_sample
+from bearing_sim.model.validity import outside, still_sample
 from bearing_sim.recording.reader import Recording
 from bearing_sim.scene.loader import load_scene
 
@@ -74,6 +74,10 @@ def at_speed(scene, *speeds):
     return samples
 
 
+def two_states_at(scene, samples):
+    return outside(scene, samples, ("table_states",), laws_of_table(scene))
+
+
 def test_operating_points_next_to_one_of_two_states_have_both_slips_and_others_have_none():
     found = TwoStates(correction := made_up(corrected()))
     fast, slow = correction.conditions[-2], correction.conditions[0]
@@ -94,13 +98,13 @@ def test_there_is_no_warning_of_one_state_at_rest_of_a_plain_table_and_at_other_
     keep(scene)
     assert two_states_at(scene, at_speed(scene, SLOW)) == two_states_at(scene, at_speed(scene, 0.0)) == []
     for others in (["table.correction=none"], ["level=slip"]):
-        assert laws_of_two_states(load_scene(scene, others)) == ()
+        assert laws_of_table(load_scene(scene, others)) == ()
     keep(scene, two_states_at_speed=None)
-    assert laws_of_two_states(scene) == ()
+    assert laws_of_table(scene) == ()
 
 
 def test_a_correction_that_is_not_on_disk_is_not_judged_by(keep):
-    assert laws_of_two_states(corrected()) == ()
+    assert laws_of_table(corrected()) == ()
 
 
 def test_run_warns_of_two_states_and_reports_them(keep):

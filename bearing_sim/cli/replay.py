@@ -170,7 +170,7 @@ def _choice(scene, course) -> dict:
     import numpy as np
 
     from bearing_sim.cli.table import build_with_progress
-    from bearing_sim.estimation.two_states import laws_of_two_states
+    from bearing_sim.estimation.two_states import laws_of_table
     from bearing_sim.model.table_span import rounded_temperatures, spanning
     from bearing_sim.simulation import Simulation
 
@@ -178,7 +178,7 @@ def _choice(scene, course) -> dict:
     kelvin = np.append(course.values.get("oil_temperature", ()), [] if "oil_temperature" in course.stamps else scene.lubricant.temperature)
     ends = rounded_temperatures(float(kelvin.min()), float(kelvin.max()))
     table = build_with_progress(scene, ends)[0]
-    return {"model": partial(Simulation, table=table), "laws": laws_of_two_states(scene, ends)}
+    return {"model": partial(Simulation, table=table), "laws": laws_of_table(scene, ends)}
 
 
 def _report(result, course, recorded, scene, out) -> dict:

@@ -77,7 +77,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
     uncertainty` shows more.
     """
     from bearing_sim.cli.uncertainty import bands_of
-    from bearing_sim.estimation.two_states import two_states_at
+    from bearing_sim.estimation.two_states import laws_of_table
     from bearing_sim.messages.events import validity_event
     from bearing_sim.model.validity import outside
     from bearing_sim.scene.loader import SceneError, load_scene
@@ -109,7 +109,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
         first = time.perf_counter()
         outcome = _advance(simulation, plan, sinks, progress, estimation)
         wall = time.perf_counter() - first
-        warnings = [*outside(scene, outcome.window), *two_states_at(scene, outcome.window, _table_temperatures(scene))]
+        warnings = outside(scene, outcome.window, laws=laws_of_table(scene, _table_temperatures(scene)))
         for sink in sinks:
             for each in warnings:
                 sink.write_event(validity_event(outcome.simulated, each))

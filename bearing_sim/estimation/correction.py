@@ -30,6 +30,7 @@ from bearing_sim.files.kept_arrays import read_arrays, write_arrays
 from bearing_sim.files.limits import RESPONSE_FILE
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table_builder import FOLDER
+from bearing_sim.model.validity import BY_NAME
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.heat import NoHeat
 from bearing_sim.scene.scene import Scene
@@ -37,7 +38,7 @@ from bearing_sim.scene.scene import Scene
 VERSION = 2  # of the files
 LIFE_EXPONENT = 4.0
 """A life falls with this power of the equivalent loads: 4.5 times 8/9 (`bearing_sim.physics.rating_life.rating_life_revolutions`)."""
-STATES_APART = 0.005
+STATES_APART = 0.01 * BY_NAME["table_states"].high
 """Slips of two states differ by more."""
 _SLOWEST = 0.1  # of the largest speed; slower points are corrected as these
 _FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)

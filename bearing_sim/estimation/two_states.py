@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A limit of validity of corrected tables: operating points at which level ``planar`` has two states, one of which the table has.
 
-It stands apart from `bearing_sim.model.validity.LAWS`, because what it judges by belongs to the correction of one table.
+What it judges by belongs to the correction of one table, which is on disk: `laws_of_table` reads it for all who judge samples.
 """
 
 import math
@@ -10,27 +10,10 @@ from functools import partial
 import numpy as np
 from scipy.spatial import cKDTree
 
-from bearing_sim.estimation.correction import STATES_APART, Correction, correction_domain, correction_path, read_correction
+from bearing_sim.estimation.correction import Correction, correction_domain, correction_path, read_correction
 from bearing_sim.estimation.response import CONDITIONS
-from bearing_sim.model.validity import Conditions, Exceedance, Law, worst
+from bearing_sim.model.validity import BY_NAME, Conditions, Law
 from bearing_sim.scene.scene import Scene
-
-_MOST_SAMPLES = 100  # of a run at constant inputs
-
-TABLE_STATES = Law(
-    "table_states",
-    "validity.level",
-    "corrected table of level steady",
-    "the difference of slip between two states that level planar has at this operating point",
-    "points",
-    -math.inf,
-    100.0 * STATES_APART,
-    "from ideal rolling level planar settles in the state that the table has, from more slip in another",
-    "use level planar",
-    lambda scene: scene.level == "steady" and scene.table.correction != "none",
-    lambda at: np.zeros(len(at.samples)),
-)
-"""The limit in general; that of a table (`laws_of_two_states`) judges by its correction."""
 
 
 class TwoStates:
@@ -61,37 +44,23 @@ class TwoStates:
         return self._slips[self._tree.query(self._correction.places(conditions))[1]]
 
 
-def laws_of_two_states(scene: Scene, temperatures: tuple[float, float] | None = None) -> tuple[Law, ...]:
-    """Return `TABLE_STATES` for the corrected table of a scene; nothing at other levels, of plain tables, and where no point has two states.
+def laws_of_table(scene: Scene, temperatures: tuple[float, float] | None = None) -> tuple[Law, ...]:
+    """Return the laws that the corrected table of a scene is judged by, in place of those of the same name in `bearing_sim.model.validity.LAWS`.
+
+    There are none at other levels, of plain tables, and of tables without a correction on disk beside them.
 
     Parameters
     ----------
     scene : whose samples are judged.
     temperatures : lowest and highest oil temperature of the table [K], instead of the scene's.
     """
-    if not TABLE_STATES.applies(scene):
-        return ()
-    correction = read_correction(correction_path(scene, correction_domain(scene, temperatures)))
+    law = BY_NAME["table_states"]
+    correction = read_correction(correction_path(scene, correction_domain(scene, temperatures))) if law.applies(scene) else None
     if correction is None or not len(correction.two_states):
         return ()
     rpm, loads = np.abs(correction.two_states[:, 0]) * (30.0 / math.pi), correction.two_states[:, 1]
     where = f"at {len(loads)} points measured, {rpm.min():.5g} to {rpm.max():.5g} rpm and {loads.min():.3g} to {loads.max():.3g} N"
-    return (TABLE_STATES._replace(source=f"{TABLE_STATES.source}: {where}", value=partial(_points_apart, TwoStates(correction))),)
-
-
-def two_states_at(scene: Scene, samples: np.ndarray, temperatures: tuple[float, float] | None = None) -> list[Exceedance]:
-    """Return whether level ``planar`` has two states where a corrected table was used, as `bearing_sim.model.validity.outside` returns other limits.
-
-    Parameters
-    ----------
-    scene : of the samples.
-    samples : of a run at constant inputs, shape (n,), n at least 1.
-    temperatures : as of `laws_of_two_states`.
-    """
-    few, found = samples[:: max(len(samples) // _MOST_SAMPLES, 1)], []
-    for law in laws_of_two_states(scene, temperatures):
-        found += worst(law, *law.limits(scene), law.value(Conditions(scene, few)))
-    return found
+    return (law._replace(source=f"{law.source}: {where}", value=partial(_points_apart, TwoStates(correction))),)
 
 
 def _points_apart(states: TwoStates, at: Conditions) -> np.ndarray:

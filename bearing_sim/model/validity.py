@@ -5,6 +5,9 @@ One entry of `LAWS` for each limit: the quantity, its range, where the range com
 the quantity follows from a scene and its samples.  A result outside a range is still computed, but it carries a warning: `outside` finds
 them all, the command line prints them, and `bearing_sim.monitoring.limits` turns them into events.  A new limit is one entry here and
 one case in ``test/test_validity.py``.
+
+Some limits are judged by more than a scene and its samples, such as by what is kept of a table on disk.  Who knows it passes laws that
+replace those of the same name (see `sample_laws`).
 """
 
 import functools
@@ -491,6 +494,10 @@ def _of_the_table(conditions: Conditions) -> np.ndarray:
     return conditions.while_turning(np.maximum.reduce(ratios))
 
 
+def _has_corrected_table(scene: Scene) -> bool:
+    return scene.level == "steady" and scene.table.correction != "none"
+
+
 LAWS = (
     Law(
         "table_correction",
@@ -502,8 +509,21 @@ LAWS = (
         1.0,
         "the table: beyond it points are solved for without what level planar adds",
         "widen the scene's block table, or use level planar",
-        lambda scene: scene.level == "steady" and scene.table.correction != "none",
+        _has_corrected_table,
         _of_the_table,
+    ),
+    Law(
+        "table_states",
+        "validity.level",
+        "corrected table of level steady",
+        "the difference of slip between two states that level planar has at this operating point",
+        "points",
+        -math.inf,
+        0.5,
+        "from ideal rolling level planar settles in the state that the table has, from more slip in another",
+        "use level planar",
+        _has_corrected_table,
+        lambda at: at.while_turning(np.zeros(len(at.samples))),  # in place of which comes that of a table: `bearing_sim.estimation.two_states`
     ),
     Law(
         "oil_4109_class",
@@ -1340,12 +1360,19 @@ def scene_exceedances(scene: Scene) -> list[Exceedance]:
     return found
 
 
-def sample_laws(scene: Scene) -> list[tuple[Law, float, float]]:
-    """Return the laws of a scene whose quantity depends on the sample, each with its range."""
-    return [(law, *law.limits(scene)) for law in LAWS if not law.of_scene and law.applies(scene)]
+def sample_laws(scene: Scene, laws: Iterable[Law] = ()) -> list[tuple[Law, float, float]]:
+    """Return the laws of a scene whose quantity depends on the sample, each with its range, in the order of `LAWS`.
+
+    Parameters
+    ----------
+    scene : of the samples.
+    laws : that replace those of the same name, such as `bearing_sim.estimation.two_states.laws_of_table`.
+    """
+    known = BY_NAME | {law.name: law for law in laws}
+    return [(law, *law.limits(scene)) for law in known.values() if not law.of_scene and law.applies(scene)]
 
 
-def outside(scene: Scene, samples: np.ndarray, names: Sequence[str] = ()) -> list[Exceedance]:
+def outside(scene: Scene, samples: np.ndarray, names: Sequence[str] = (), laws: Iterable[Law] = ()) -> list[Exceedance]:
     """Return the limits that a scene or any of its samples exceeds, each with its worst value, in the order of `LAWS`.
 
     Parameters
@@ -1353,9 +1380,10 @@ def outside(scene: Scene, samples: np.ndarray, names: Sequence[str] = ()) -> lis
     scene : of the samples.
     samples : shape (n,), n at least 1, see `bearing_sim.model.sample`.
     names : of the only laws to judge; all by default.
+    laws : as in `sample_laws`.
     """
     at, found = Conditions(scene, samples), scene_exceedances(scene)
-    for law, low, high in sample_laws(scene):
+    for law, low, high in sample_laws(scene, laws):
         if not names or law.name in names:
             found += worst(law, low, high, law.value(at))
     return in_order(each for each in found if not names or each.law.name in names)

@@ -5,13 +5,13 @@ Samples in, events out.  All times are those of the samples.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level, validity_event
 from bearing_sim.model.params import pack
-from bearing_sim.model.validity import LAWS, Conditions, Exceedance, Law, sample_laws, scene_exceedances, worst
+from bearing_sim.model.validity import Conditions, Exceedance, Law, in_order, sample_laws, scene_exceedances, worst
 from bearing_sim.monitoring.monitor import Alarm
 from bearing_sim.scene.scene import Hold, Scene
 
@@ -56,7 +56,7 @@ class LimitsMonitor:
     Parameters
     ----------
     scene : of the run.
-    further : laws to watch besides those of the scene, such as `bearing_sim.estimation.two_states.laws_of_two_states`.
+    laws : that replace those of the same name, as in `bearing_sim.model.validity.sample_laws`.
 
     Attributes
     ----------
@@ -64,16 +64,14 @@ class LimitsMonitor:
         The worst exceedance of each law so far, by its name; hysteresis and hold times have no part in it.
     """
 
-    def __init__(self, scene: Scene, further: Sequence[Law] = ()):
-        self._scene, self._params, self._further = scene, pack(scene), tuple(further)
-        self._places = {law.name: place for place, law in enumerate((*LAWS, *further))}
+    def __init__(self, scene: Scene, laws: Iterable[Law] = ()):
+        self._scene, self._params, self._laws = scene, pack(scene), tuple(laws)
         self._of_scene = scene_exceedances(scene)
         self.restart()
 
     def restart(self) -> None:
         """Forget the run so far."""
-        further = [(law, *law.limits(self._scene)) for law in self._further]
-        self._ranges = [_Range(*each) for each in (*sample_laws(self._scene), *further)]
+        self._ranges = [_Range(*each) for each in sample_laws(self._scene, self._laws)]
         self._next = -math.inf
         self.worst: dict[str, Exceedance] = {}
 
@@ -120,12 +118,9 @@ class LimitsMonitor:
         if self._next == -math.inf:
             return []
         holding = [*self._of_scene, *(each.holding for each in self._ranges if each.holding is not None)]
-        return [validity_event(now, each) for each in self._in_order(holding)]
+        return [validity_event(now, each) for each in in_order(holding)]
 
     @property
     def exceedances(self) -> list[Exceedance]:
         """The worst exceedance of each law so far, in the order of the laws."""
-        return self._in_order(self.worst.values())
-
-    def _in_order(self, exceedances: Iterable[Exceedance]) -> list[Exceedance]:
-        return sorted(exceedances, key=lambda each: self._places[each.law.name])
+        return in_order(self.worst.values())

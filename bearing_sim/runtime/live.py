@@ -15,7 +15,7 @@ import numpy as np
 
 from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.estimation.response import ResponseModel
-from bearing_sim.estimation.two_states import laws_of_two_states
+from bearing_sim.estimation.two_states import laws_of_table
 from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, unused_event, with_values
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import Bands
@@ -127,7 +127,7 @@ class Model:
         self._bands: list[Bands] = []
         self._counted: np.void | None = None  # the newest sample that is in the bearing's state
         self.scene, self.gate, self.solver, self.start_ns = scene, gate, solver, start_ns
-        self.health, self.monitor, self.limits = Health(), Monitor(scene), LimitsMonitor(scene, laws_of_two_states(scene))
+        self.health, self.monitor, self.limits = Health(), Monitor(scene), LimitsMonitor(scene, laws_of_table(scene))
         self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
         self.sinks = SinkRegistry()
         self.level = Level.OK

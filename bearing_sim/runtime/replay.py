@@ -180,7 +180,7 @@ def replay(
     model : makes the simulation.
     keeper : of the state of the bearing whose log it is; times that the state contains are not counted again.  None counts nothing.
     response : of the scene, for what its block ``estimation`` asks for; None estimates nothing.
-    laws : whose ranges are watched besides those of the scene (`bearing_sim.monitoring.limits.LimitsMonitor`).
+    laws : that replace those of the same name (see `bearing_sim.monitoring.limits.LimitsMonitor`).
 
     Returns
     -------

@@ -481,15 +481,14 @@ def subjects() -> str:
 
 def validity() -> str:
     """Return the limits of all laws: range, source, what happens outside, and the test that drives each out of its range."""
-    from bearing_sim.estimation.two_states import TABLE_STATES
     from bearing_sim.model.validity import LAWS
 
-    tests = {law.name: f"test_validity.py -k {law.name}" for law in LAWS} | {TABLE_STATES.name: "test_two_states.py"}
-    laws, sections = (*LAWS, TABLE_STATES), []
-    for kind in dict.fromkeys(law.kind for law in laws):
+    tests = {law.name: f"test_validity.py -k {law.name}" for law in LAWS} | {"table_states": "test_two_states.py"}
+    sections = []
+    for kind in dict.fromkeys(law.kind for law in LAWS):
         rows = [
             [code(law.name), f"{law.law}: {law.quantity}", law.general_range, law.source, law.instead, code(tests[law.name])]
-            for law in laws
+            for law in LAWS
             if law.kind == kind
         ]
         head = ["name", "law and quantity", "range", "source", "outside: a warning, and the advice", "tests"]
