@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Run, replay and live model warn where a corrected table has one of two states that level planar has."""
+"""Run, replays and live model warn where a corrected table has one of two states that level planar has, and beyond its ends."""
 
 import json
 import math
@@ -100,11 +100,20 @@ def test_there_is_no_warning_of_one_state_at_rest_of_a_plain_table_and_at_other_
     for others in (["table.correction=none"], ["level=slip"]):
         assert laws_of_table(load_scene(scene, others)) == ()
     keep(scene, two_states_at_speed=None)
-    assert laws_of_table(scene) == ()
+    assert two_states_at(scene, at_speed(scene, FAST)) == []
 
 
 def test_a_correction_that_is_not_on_disk_is_not_judged_by(keep):
-    assert laws_of_table(corrected()) == ()
+    assert two_states_at(corrected(), at_speed(corrected(), FAST)) == []
+
+
+def test_the_ends_of_a_table_are_those_of_the_temperatures_that_it_was_built_for():
+    scene = corrected()
+    samples = at_speed(scene, SLOW)
+    for kelvin, ends, beyond in ((300.0, None, True), (300.0, (295.0, 305.0), False), (scene.lubricant.temperature, (295.0, 305.0), True)):
+        samples["oil_temperature"] = kelvin
+        found = outside(scene, samples, ("table_correction",), laws_of_table(scene, ends))
+        assert [each.law.name for each in found] == ["table_correction"] * beyond
 
 
 def test_run_warns_of_two_states_and_reports_them(keep):
@@ -114,6 +123,15 @@ def test_run_warns_of_two_states_and_reports_them(keep):
     assert found["table_states"]["value"] == pytest.approx(12.0) and "warning: table_states: " in printed
     found, printed = command("run", "deng2017_table1", "--duration", "0.05", "--set", f"operating.shaft_speed={SLOW} rad/s")
     assert "table_states" not in found and "table_states" not in printed
+
+
+def test_replay_judges_by_the_table_that_it_builds_for_the_speeds_and_temperatures_of_the_log(keep, tmp_path):
+    log, times = tmp_path / "log.mcap", np.arange(11) * 0.2
+    write_log(log, [(time, 1.3 * FAST) for time in times.tolist()], [(time, LOAD, 0.0) for time in times.tolist()])
+    found, printed = command("replay", log, "--scene", "deng2017_table1", "--oil-temperature", "30 degC")
+    assert "table_correction" not in found and "table_correction" not in printed
+    found, _ = command("replay", log, "--scene", "deng2017_table1", "--set", f"table.maximum_speed={FAST} rad/s")
+    assert found["table_correction"]["value"] == pytest.approx(1.3)
 
 
 def replayed(folder, fast_from, fast_until):

@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A limit of validity of corrected tables: operating points at which level ``planar`` has two states, one of which the table has.
+"""Limits of validity of corrected tables: their ends, and operating points at which level ``planar`` has two states, one of which the table has.
 
-What it judges by belongs to the correction of one table, which is on disk: `laws_of_table` reads it for all who judge samples.
+What they judge by belongs to one table and its correction, which is on disk: `laws_of_table` finds it for all who judge samples.
 """
 
 import math
@@ -12,7 +12,8 @@ from scipy.spatial import cKDTree
 
 from bearing_sim.estimation.correction import Correction, correction_domain, correction_path, read_correction
 from bearing_sim.estimation.response import CONDITIONS
-from bearing_sim.model.validity import BY_NAME, Conditions, Law
+from bearing_sim.model.table_span import span_of
+from bearing_sim.model.validity import BY_NAME, Conditions, Law, towards_ends
 from bearing_sim.scene.scene import Scene
 
 
@@ -47,20 +48,23 @@ class TwoStates:
 def laws_of_table(scene: Scene, temperatures: tuple[float, float] | None = None) -> tuple[Law, ...]:
     """Return the laws that the corrected table of a scene is judged by, in place of those of the same name in `bearing_sim.model.validity.LAWS`.
 
-    There are none at other levels, of plain tables, and of tables without a correction on disk beside them.
+    There are none at other levels and of plain tables.  Without a correction on disk beside the table two states are not known.
 
     Parameters
     ----------
     scene : whose samples are judged.
     temperatures : lowest and highest oil temperature of the table [K], instead of the scene's.
     """
-    law = BY_NAME["table_states"]
-    correction = read_correction(correction_path(scene, correction_domain(scene, temperatures))) if law.applies(scene) else None
-    if correction is None or not len(correction.two_states):
+    ends, states = BY_NAME["table_correction"], BY_NAME["table_states"]
+    if not states.applies(scene):
         return ()
+    ends = ends._replace(value=partial(towards_ends, span=span_of(scene, temperatures)))
+    correction = read_correction(correction_path(scene, correction_domain(scene, temperatures)))
+    if correction is None or not len(correction.two_states):
+        return (ends,)
     rpm, loads = np.abs(correction.two_states[:, 0]) * (30.0 / math.pi), correction.two_states[:, 1]
     where = f"at {len(loads)} points measured, {rpm.min():.5g} to {rpm.max():.5g} rpm and {loads.min():.3g} to {loads.max():.3g} N"
-    return (law._replace(source=f"{law.source}: {where}", value=partial(_points_apart, TwoStates(correction))),)
+    return ends, states._replace(source=f"{states.source}: {where}", value=partial(_points_apart, TwoStates(correction)))
 
 
 def _points_apart(states: TwoStates, at: Conditions) -> np.ndarray:

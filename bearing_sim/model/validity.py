@@ -21,7 +21,7 @@ from bearing_sim.model.oil import OilState, oil_at, viscosity_100
 from bearing_sim.model.params import Params, mixture_fraction, pack, replenishment
 from bearing_sim.model.running_clearance import largest_hoop_stress, mounted, seat_pressure, sleeve_pressure
 from bearing_sim.model.sample import new_block, part_temperature
-from bearing_sim.model.table_span import span_of
+from bearing_sim.model.table_span import Span, span_of
 from bearing_sim.model.temperatures import film_temperatures
 from bearing_sim.physics.film import replenishment_rate
 from bearing_sim.scene.bearing import Bearing
@@ -485,9 +485,15 @@ _RIGS = "assumption: {} on rigs for aviation oils, widened {}"
 _OTHER_TRACTION = "use lubricant.traction.law eyring with the oil's own data, or constant or kragelskii with coefficients measured for this oil"
 
 
-def _of_the_table(conditions: Conditions) -> np.ndarray:
-    """Return how far operating points are towards the ends of the table of level steady; more than 1 beyond them."""
-    span, samples = span_of(conditions.scene), conditions.samples
+def towards_ends(conditions: Conditions, span: Span | None = None) -> np.ndarray:
+    """Return how far operating points are towards the ends of a table of level ``steady``; more than 1 beyond them, NaN at rest.
+
+    Parameters
+    ----------
+    conditions : of n samples.
+    span : what the table spans; what the block ``table`` of the scene says where absent.
+    """
+    span, samples = span or span_of(conditions.scene), conditions.samples
     middle, half = 0.5 * (span.minimum_temperature + span.maximum_temperature), 0.5 * (span.maximum_temperature - span.minimum_temperature)
     temperature = np.abs(samples["oil_temperature"] - middle) / max(half, _SAME_OIL)
     ratios = np.abs(samples["shaft_speed"]) / span.maximum_speed, np.hypot(samples["load_y"], samples["load_z"]) / span.maximum_load, temperature
@@ -510,7 +516,7 @@ LAWS = (
         "the table: beyond it points are solved for without what level planar adds",
         "widen the scene's block table, or use level planar",
         _has_corrected_table,
-        _of_the_table,
+        towards_ends,
     ),
     Law(
         "table_states",
