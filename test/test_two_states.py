@@ -16,6 +16,8 @@ from bearing_sim.estimation import correction as corrections
 from bearing_sim.estimation.correction import Correction, correction_domain, correction_path, write_correction
 from bearing_sim.estimation.response import coordinates, embedded
 from bearing_sim.estimation.two_states import TwoStates, laws_of_table
+from bearing_sim.fleet import replay as fleet_replay
+from bearing_sim.levels.steady import table_builder
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.messages.events import Event, Level
@@ -23,6 +25,7 @@ from bearing_sim.model.validity import outside, still_sample
 from bearing_sim.recording.reader import Recording
 from bearing_sim.scene.loader import load_scene
 
+PAPER = "deng2017_table1"
 CORRECTED = ("level=steady", "table.correction=planar")
 SLOW, FAST = 20_000.0 * math.pi / 30.0, 45_000.0 * math.pi / 30.0
 LOAD = 800.0
@@ -44,6 +47,9 @@ def keep(tmp_path, monkeypatch):
     """Return a function that keeps a made-up correction of a scene on disk; tables are empty, so that operating points are solved for."""
     monkeypatch.setattr(corrections, "FOLDER", tmp_path)
     monkeypatch.setattr(table_command, "build_with_progress", lambda *given: (empty_table(), None))
+    monkeypatch.setattr(table_builder, "FOLDER", tmp_path)
+    monkeypatch.setattr(fleet_replay, "obtain_table", lambda *given: (empty_table(), None))
+    monkeypatch.setattr(fleet_replay, "_tables", {})
 
     def made(scene, temperatures=None, **options):
         found = made_up(scene, temperatures, **options)
@@ -53,7 +59,7 @@ def keep(tmp_path, monkeypatch):
 
 
 def corrected(*overrides):
-    return load_scene("deng2017_table1", [*CORRECTED, *overrides])
+    return load_scene(PAPER, [*CORRECTED, *overrides])
 
 
 def constant(scene):
@@ -119,18 +125,18 @@ def test_the_ends_of_a_table_are_those_of_the_temperatures_that_it_was_built_for
 def test_run_warns_of_two_states_and_reports_them(keep):
     scene = corrected()
     keep(scene, constant(scene))
-    found, printed = command("run", "deng2017_table1", "--duration", "0.05")
+    found, printed = command("run", PAPER, "--duration", "0.05")
     assert found["table_states"]["value"] == pytest.approx(12.0) and "warning: table_states: " in printed
-    found, printed = command("run", "deng2017_table1", "--duration", "0.05", "--set", f"operating.shaft_speed={SLOW} rad/s")
+    found, printed = command("run", PAPER, "--duration", "0.05", "--set", f"operating.shaft_speed={SLOW} rad/s")
     assert "table_states" not in found and "table_states" not in printed
 
 
 def test_replay_judges_by_the_table_that_it_builds_for_the_speeds_and_temperatures_of_the_log(keep, tmp_path):
     log, times = tmp_path / "log.mcap", np.arange(11) * 0.2
     write_log(log, [(time, 1.3 * FAST) for time in times.tolist()], [(time, LOAD, 0.0) for time in times.tolist()])
-    found, printed = command("replay", log, "--scene", "deng2017_table1", "--oil-temperature", "30 degC")
+    found, printed = command("replay", log, "--scene", PAPER, "--oil-temperature", "30 degC")
     assert "table_correction" not in found and "table_correction" not in printed
-    found, _ = command("replay", log, "--scene", "deng2017_table1", "--set", f"table.maximum_speed={FAST} rad/s")
+    found, _ = command("replay", log, "--scene", PAPER, "--set", f"table.maximum_speed={FAST} rad/s")
     assert found["table_correction"]["value"] == pytest.approx(1.3)
 
 
@@ -139,7 +145,7 @@ def replayed(folder, fast_from, fast_until):
     log, out, times = folder / "log.mcap", folder / "out.mcap", np.arange(61) * 0.2
     speeds = [(time, FAST if fast_from <= time <= fast_until else SLOW) for time in times.tolist()]
     write_log(log, speeds, [(time, LOAD, 0.0) for time, _ in speeds])
-    found, printed = command("replay", log, "--scene", "deng2017_table1", "-o", out)
+    found, printed = command("replay", log, "--scene", PAPER, "-o", out)
     events = [(each.time, each.level) for each in Recording(out) if isinstance(each, Event) and each.subject == "table_states"]
     return found, printed, events
 
@@ -160,6 +166,32 @@ def test_replay_away_from_two_states_is_silent(keep, tmp_path):
     keep(scene, constant(scene))
     found, printed, events = replayed(tmp_path, 99.0, 99.0)
     assert "table_states" not in found and "table_states" not in printed and not events
+
+
+def test_a_fleet_counts_bearings_at_two_states_and_beyond_the_corrected_table_in_its_table_and_on_stderr(keep, tmp_path):
+    scene, times = corrected(), (np.arange(6) * 0.2).tolist()
+    keep(scene, constant(scene))
+    (tmp_path / "logs").mkdir()
+    for name, speed in (("slow", SLOW), ("fast", FAST)):
+        write_log(tmp_path / "logs" / f"{name}.mcap", [(time, speed) for time in times], [(time, LOAD, 0.0) for time in times])
+
+    def replay_fleet(*words):
+        settings = [word for each in CORRECTED for word in ("--set", each)]
+        common = ["--scene", PAPER, "--workers", "1", "-o", tmp_path / "fleet.parquet", "--force", *settings]
+        result = CliRunner().invoke(main, ["replay-fleet", str(tmp_path / "logs"), *map(str, common), *words], catch_exceptions=False)
+        assert result.exit_code == 0, result.output
+        return result
+
+    def reported(*words):
+        report = json.loads(replay_fleet("--json", *words).stdout)
+        return {row["bearing"]: row["warnings"] for row in report["bearings"]}, report["warnings"]
+
+    cells, (told,) = reported()
+    assert cells == {"slow": "", "fast": "table_states 12 points"}
+    assert told.startswith("1 x table_states: ") and told.endswith("use level planar")
+    assert f"warning: {told}" in replay_fleet().stderr.splitlines()
+    cells, (told,) = reported("--set", "table.maximum_load=400 N")
+    assert cells == {"slow": "table_correction 2", "fast": "table_correction 2"} and told.startswith("2 x table_correction: ")
 
 
 @pytest.mark.parametrize(("speed", "is_told"), [(SLOW, True), (FAST, False)])

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.estimation.response import ResponseModel, response_digest
+from bearing_sim.estimation.two_states import laws_of_table
 from bearing_sim.fleet.logs import Log, Reading, read_log
 from bearing_sim.inputs.csv_text import TableError
 from bearing_sim.inputs.log import InputLogError
@@ -294,8 +295,10 @@ def _replay_bearing(bearing: Bearing, longest_gap: float | None, temperatures: t
     scene, log = bearing.scene, read_log(bearing.log, bearing.reading)
     held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
     profile = judge(log, scene.accepted_inputs, held, longest_gap, scene.heat.law)
-    model = Simulation if temperatures is None else partial(Simulation, table=_operating_points(scene, temperatures))
-    result = replay(scene, profile, model=model, response=response)
+    model, laws = Simulation, ()
+    if temperatures is not None:
+        model, laws = partial(Simulation, table=_operating_points(scene, temperatures)), laws_of_table(scene, temperatures)
+    result = replay(scene, profile, model=model, response=response, laws=laws)
     status, reason = (FAILED, result.given_up) if result.given_up else (OK, "")
     if profile.unknown_seconds and not reason:
         status, reason = UNKNOWN, profile.unknown_event.text
