@@ -97,6 +97,7 @@ class Fallen:
 
     def __init__(self, simulation):
         self._simulation = simulation
+        self.scene = load_scene("deng2017_table1", ["level=slip"])
 
     def consider(self, simulated, spent):
         return None

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from recordings import write_log
+from test_governor import TICK, FakeLevel
 from test_live import Bench, ListRecorder
 
 from bearing_sim.cli import table as table_command
@@ -23,6 +24,7 @@ from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.validity import outside, still_sample
 from bearing_sim.recording.reader import Recording
+from bearing_sim.runtime.governor import Governor
 from bearing_sim.scene.loader import load_scene
 
 PAPER = "deng2017_table1"
@@ -206,3 +208,27 @@ def test_the_live_model_reports_two_states_once_in_news_recording_and_diagnostic
         told = [event for event in events if event.subject == "table_states"]
         assert len(told) == is_told
         assert all(event.kind == "validity.level" and event.level is Level.WARN and event.action == "use level planar" for event in told)
+
+
+def test_a_governor_at_a_corrected_table_has_its_limits_until_it_returns(keep):
+    wanted, faster, told = FakeLevel("planar"), FakeLevel("steady"), {"table_states", "table_correction"}
+    faster.scene = corrected("table.maximum_load=400 N")
+    keep(faster.scene, two_states_at_speed=SLOW)
+    bench = Bench(scene=["level=planar"], simulation=wanted, governor=Governor([wanted, faster], patience=0.3))
+
+    def warned():
+        return told & {event.subject for event in bench.live.condition(bench.now_ns).events}
+
+    bench.run(0.2)
+    assert warned() == set()
+    wanted.seconds_per_tick, faster.seconds_per_tick = 3.0 * TICK, 0.5 * TICK
+    bench.run(1.5)
+    assert bench.live.condition(bench.now_ns).values["level"] == "steady" and warned() == told
+    wanted.seconds_per_tick = faster.seconds_per_tick = 0.0
+    bench.run(1.5)
+    condition = bench.live.condition(bench.now_ns)
+    bench.live.close()
+    assert condition.values["level"] == "planar" and not told & {event.subject for event in condition.events}
+    for subject in told:
+        (event,) = [event for event in bench.news if event.subject == subject]
+        assert event.level is Level.WARN and event.kind == "validity.level"

@@ -366,6 +366,26 @@ def test_a_warning_comes_once_and_goes_late(scenes):
     assert monitor.worst == {} and monitor.events(0.0) == []
 
 
+def test_another_setting_continues_the_warnings_of_its_laws_ends_those_of_others_and_keeps_the_thresholds(scenes):
+    scene = load_scene(scenes["motor"])
+    other = load_scene(scene, [*CORRECTED, "table.maximum_load=4 kN"])
+    monitor = LimitsMonitor(scene)
+
+    def holding(now, load):
+        monitor.take(block_of(scene, [now], [load]))
+        return {event.subject for event in monitor.events(now)} & {"hertz_pressure", "table_correction"}
+
+    assert holding(0.0, 40e3) == {"hertz_pressure"}
+    monitor.follow(other)
+    assert holding(1.0, 1e3) == {"hertz_pressure", "table_correction"}, "the pressure has not been back for 5 s"
+    monitor.follow(scene)
+    assert holding(2.0, 1e3) == {"hertz_pressure"} and holding(8.0, 1e3) == set()
+    assert {"hertz_pressure", "table_correction"} <= monitor.worst.keys()
+    monitor.adjust(load_scene(scene, ["thresholds.slip_from_speed=4000 rpm"]).thresholds)  # faster than the shaft
+    monitor.follow(other)
+    assert holding(9.0, 1e3) == set()
+
+
 def test_samples_are_judged_at_most_ten_times_a_second(scenes, monkeypatch):
     scene, judged = load_scene(scenes["motor"]), []
     monitor = LimitsMonitor(scene)

@@ -6,6 +6,7 @@ Samples in, events out.  All times are those of the samples.
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from bearing_sim.messages.events import Event, Level, validity_event
 from bearing_sim.model.params import pack
 from bearing_sim.model.validity import Conditions, Exceedance, Law, in_order, sample_laws, scene_exceedances, worst
 from bearing_sim.monitoring.monitor import Alarm
-from bearing_sim.scene.scene import Hold, Scene
+from bearing_sim.scene.scene import Hold, Scene, Thresholds
 
 _EVERY = 0.1  # [s] least time between two samples that are judged: one costs about 0.2 ms
 # A warning is raised at once, because an overload of an instant is enough to dent a raceway, and cleared late, so that it does not flicker.
@@ -33,6 +34,12 @@ class _Range:
     def is_pending(self) -> bool:
         """Whether the warning holds, or may change with values inside the range."""
         return any(alarm.is_pending for alarm in self._alarms)
+
+    def continuing(self, before: "_Range | None") -> "_Range":
+        """Return the range as it stands after another one of the same law, if that has the same ends."""
+        if before is not None and (before.low, before.high) == (self.low, self.high):
+            self._alarms, self.holding = before._alarms, before.holding
+        return self
 
     def judge(self, now: float, value: float) -> list[Event]:
         """Take the value at an instant [s] and return the event if the warning begins or ends."""
@@ -65,9 +72,12 @@ class LimitsMonitor:
     """
 
     def __init__(self, scene: Scene, laws: Iterable[Law] = ()):
+        self._use(scene, laws)
+        self.restart()
+
+    def _use(self, scene: Scene, laws: Iterable[Law]) -> None:
         self._scene, self._params, self._laws = scene, pack(scene), tuple(laws)
         self._of_scene = scene_exceedances(scene)
-        self.restart()
 
     def restart(self) -> None:
         """Forget the run so far."""
@@ -75,9 +85,26 @@ class LimitsMonitor:
         self._next = -math.inf
         self.worst: dict[str, Exceedance] = {}
 
-    def adjust(self, scene: Scene) -> None:
-        """Judge from the scene's ``thresholds.slip_from_speed`` on from now on; nothing else may have changed."""
-        self._scene = scene
+    def adjust(self, thresholds: Thresholds) -> None:
+        """Judge from ``thresholds.slip_from_speed`` on from now on."""
+        self._scene = replace(self._scene, thresholds=thresholds)
+
+    def follow(self, scene: Scene, laws: Iterable[Law] = ()) -> None:
+        """Judge by another setting of the same bearing from now on, such as another level.
+
+        Warnings continue where both settings have the law with the same range; those of other laws of the setting before end without an event.
+        The thresholds stay.
+
+        Parameters
+        ----------
+        scene : that computes the samples from now on.
+        laws : as of the class, for this scene.
+        """
+        before = {each.law.name: each for each in self._ranges}
+        self._use(replace(scene, thresholds=self._scene.thresholds), laws)
+        self._ranges = [_Range(*each).continuing(before.get(each[0].name)) for each in sample_laws(self._scene, self._laws)]
+        if self._next > -math.inf:
+            self._note_worst(self._of_scene)
 
     def take(self, block: np.ndarray) -> list[Event]:
         """Judge samples, only one of those within 0.1 s, and return the warnings that begin or end.
@@ -97,12 +124,15 @@ class LimitsMonitor:
         for each in self._ranges:
             values = each.law.value(at)
             found = worst(each.law, each.low, each.high, values)
-            for one in found:
-                self.worst[one.law.name] = max(self.worst.get(one.law.name, one), one, key=lambda exceedance: exceedance.excess)
+            self._note_worst(found)
             if found or each.is_pending:
                 for time, value in zip(times, values.tolist()):
                     changes += each.judge(time, value)
         return sorted(changes, key=lambda event: event.time)
+
+    def _note_worst(self, found: Iterable[Exceedance]) -> None:
+        for one in found:
+            self.worst[one.law.name] = max(self.worst.get(one.law.name, one), one, key=lambda exceedance: exceedance.excess)
 
     def _due(self, times: list[float]) -> list[int]:
         """Return the places of the samples to judge."""

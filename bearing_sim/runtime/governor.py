@@ -62,7 +62,12 @@ class Governor:
     @property
     def level(self) -> str:
         """The level that runs."""
-        return self._ladder[self._rung].scene.level
+        return self.scene.level
+
+    @property
+    def scene(self) -> Scene:
+        """The scene at the setting that runs."""
+        return self._ladder[self._rung].scene
 
     @property
     def wanted(self) -> str:

@@ -190,7 +190,7 @@ class Model:
         """Use other thresholds from now on; what was learned about the measured cage is kept."""
         self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
         self.monitor.adjust(thresholds)
-        self.limits.adjust(self.scene)
+        self.limits.adjust(thresholds)
         self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
         if self._estimation is not None:
             self._estimation.adjust(thresholds)
@@ -480,7 +480,7 @@ class LiveModel(Model):
         keeper: StateKeeper | None = None,
         response: ResponseModel | None = None,
     ):
-        self._governor = governor
+        self._governor, self._fallen = governor, None
         self._sample_rate, self.schedule = sample_rate, tick_schedule(sample_rate, publish_rate)
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / tick_schedule(sample_rate, math.inf).tick)
         begin, used = (None, None) if keeper is None else (warm_start(keeper, lambda: self.stamp(clock() - began)), keeper.used)
@@ -580,6 +580,14 @@ class LiveModel(Model):
     def _running_setting(self) -> str:
         return self._governor.setting if self._governor is not None else ""
 
+    def _follow_setting(self) -> None:
+        """Let limits of validity be those of the setting that runs now, which a governor may have changed."""
+        fallen = None if self._governor is None or self._governor.is_at_wanted else self._governor.scene
+        if fallen is not self._fallen:
+            self._fallen = fallen
+            scene = self.scene if fallen is None else fallen
+            self.limits.follow(scene, laws_of_table(scene))
+
     def _setting_values(self) -> dict[str, object]:
         newest = self.solver.newest
         if self._governor is None or newest is not None and not self._governor.is_measured_at(newest):
@@ -601,6 +609,7 @@ class LiveModel(Model):
             else:
                 blocks.append(item)
         self.monitor.take_all(blocks[judged:])
+        self._follow_setting()
         if blocks[judged:]:
             self.limits.take(blocks[-1])
         if blocks and self._estimation is not None:
