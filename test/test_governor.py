@@ -147,6 +147,13 @@ def test_a_scene_that_needs_its_level_has_no_governor():
     assert governor_of(Simulation(crowned)) is None
 
 
+def test_a_governor_falls_to_a_plain_table_where_the_corrected_one_that_a_scene_asks_for_was_never_built():
+    scene = load_scene("deng2017_table1", ["level=slip", "table.correction=planar", "table.maximum_speed=45678 rpm"])
+    made = governor_of(Simulation(scene))
+    assert [rung.scene.level for rung in made._ladder] == ["slip", "steady"]
+    assert made._ladder[1].scene.table.correction == "none"
+
+
 def test_live_model_tells_the_change_and_keeps_telling_the_level():
     wanted, cheaper = FakeLevel("planar"), FakeLevel("slip")
     wanted.seconds_per_tick = 3 * TICK

@@ -17,6 +17,7 @@ from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.estimation.two_states import laws_of_table
 from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, unused_event, with_values
+from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.diagnostics import SETTING_ERRORS, further_condition
@@ -71,7 +72,8 @@ def warmed_up(scene: Scene) -> Simulation:
 def governor_of(simulation: Simulation, settings: Sequence[KeptSetting] = (), courses: Sequence[KeptCourse] = ()) -> Governor | None:
     """Return a governor over a simulation's settings, or its level and the levels of lower fidelity that support its scene; None if there are none.
 
-    Their code is compiled or loaded here.  Without measured settings lower levels use the scene's tolerances.
+    Their code is compiled or loaded here.  Without measured settings lower levels use the scene's tolerances, and level ``steady`` a plain table
+    where the scene's corrected one is not on disk.
 
     Parameters
     ----------
@@ -95,8 +97,16 @@ def governor_of(simulation: Simulation, settings: Sequence[KeptSetting] = (), co
         if len(ladder) > 1:
             return Governor(ladder, settings=chosen, courses=courses)
     scene = dataclasses.replace(simulation.scene, integration=dataclasses.replace(simulation.scene.integration, fixed_step=None))
-    lower = [warmed_up(dataclasses.replace(scene, level=level)) for level in lower_levels(scene)]
+    lower = [warmed_up(_at_lower_level(scene, level)) for level in lower_levels(scene)]
     return Governor([simulation, *lower]) if lower else None
+
+
+def _at_lower_level(scene: Scene, level: str) -> Scene:
+    """Return a scene at a lower level, whose table is a plain one where the corrected one that it asks for is not on disk."""
+    lower = dataclasses.replace(scene, level=level)
+    if level != "steady" or lower.table.correction == "none" or cached_table(lower) is not None:
+        return lower
+    return dataclasses.replace(lower, table=dataclasses.replace(lower.table, correction="none"))
 
 
 class Model:

@@ -11,9 +11,6 @@ from bearing_sim.physics.growth import total_growth
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # golden section: the number that ratios of integers approximate worst
 HALF_PITCH = 1.0 / (2.0 + 1.0 / (3.0 + GOLDEN))  # 0.4393
 FIFTH_PITCH = 1.0 / (4.0 + GOLDEN)  # 0.2165
-# of the position tolerance, what an error of the ring's centre may be (assumption).  It shifts the loads of all rollers at once, and in resonance
-# with the passing rollers nothing damps it as the raceways damp a roller's: `doc/theory/tolerances.md` shows what this is worth.
-RING_TOLERANCE = 0.3
 
 
 class Drive(NamedTuple):

@@ -8,7 +8,7 @@ implicit steps: `bearing_sim.levels.planar.jacobian`.
 import math
 
 from bearing_sim.levels.common.flanges import observe_flanges
-from bearing_sim.levels.common.model import FIFTH_PITCH, RING_TOLERANCE, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
@@ -68,14 +68,14 @@ def solve(work, x):
 def error_norm(t, y, change, model):
     """Return the largest ratio of any state's change to its tolerance.
 
-    Positions are the rollers' radii and the ring's centre, whose tolerance is finer; play have the rollers in their pockets and the cage.
-    Spins count by the speed of the roller's surface.  Radial speeds and those of both centres follow the positions and are not weighed.
+    Positions are the rollers' radii and the ring's centre; play have the rollers in their pockets and the cage.  Spins count by the
+    speed of the roller's surface.  Radial speeds and those of both centres follow the positions and are not weighed.
     """
     raceways, rollers = model.params.raceways, model.params.rollers
     position, play = 1.0 / model.tolerances.position, 1.0 / model.tolerances.play
-    ring, speed = position / RING_TOLERANCE, 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
+    speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
     offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
-    largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * ring, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
+    largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
     largest = max(largest, abs(change[OMEGA]) * speed)
     count = rollers.count
     if change.shape[0] > ROLLERS + BLOCK * count:

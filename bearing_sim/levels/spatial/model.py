@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.flanges import largest_corner, observe_flanges
-from bearing_sim.levels.common.model import FIFTH_PITCH, RING_TOLERANCE, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
@@ -156,10 +156,10 @@ def error_norm(t, y, change, model):
     """
     raceways, rollers, half = model.params.raceways, model.params.rollers, 0.5 * model.params.rollers.length
     position, play = 1.0 / model.tolerances.position, 1.0 / model.tolerances.play
-    ring, speed = position / RING_TOLERANCE, 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
+    speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
     offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
     tilt, skew = position * half, play * half
-    largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * ring, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
+    largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
     largest = max(largest, abs(change[OMEGA]) * speed, max(abs(change[RING_TILT_Y]), abs(change[RING_TILT_Z])) * tilt)
     largest = max(largest, max(abs(change[CAGE_TILT_Y]), abs(change[CAGE_TILT_Z])) * play * model.params.tilts.land_position)
     count = rollers.count
