@@ -5,7 +5,6 @@ from bearing_sim.levels.common.model import load_at
 from bearing_sim.numerics.compilation import template
 
 ITERATIONS = 4
-SETTLED = 0.5  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system (assumption)
 
 
 @template

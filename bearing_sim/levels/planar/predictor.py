@@ -12,7 +12,7 @@ one, cost a fraction of one iteration of the whole system.  A ring on an elastic
 """
 
 from bearing_sim.levels.common.model import inner_growth
-from bearing_sim.levels.common.prediction import ITERATIONS, SETTLED, free_ring, move_ring
+from bearing_sim.levels.common.prediction import ITERATIONS, free_ring, move_ring
 from bearing_sim.levels.common.rollers import follow_contour
 from bearing_sim.levels.common.support import extrapolate_support
 from bearing_sim.levels.planar.forces import normal_forces
@@ -20,6 +20,8 @@ from bearing_sim.levels.planar.state import BLOCK, BORDER, PHI, PHI_SPEED, R_SPE
 from bearing_sim.numerics.compilation import fused
 from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, spread_run, square_root, store, store_run, total
 from bearing_sim.physics.contact import CONTACT
+
+_SETTLED = 0.5  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system (assumption)
 
 
 @fused
@@ -137,7 +139,7 @@ def predict(t, known, shift, slope, model, work, guess):
     inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # where the inputs start: a guess needs no more
     _extrapolate(known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
-    enough, ring_load = SETTLED * model.tolerances.position, free_ring(t, model, work.support)
+    enough, ring_load = _SETTLED * model.tolerances.position, free_ring(t, model, work.support)
     for _ in range(ITERATIONS):
         if _balance(known, shift, ring_load, guess, inner_radius, params, rows, work.contacts) < enough:
             break

@@ -9,7 +9,7 @@ expensive part: once the ring has settled, only those blocks of rollers go on th
 import math
 
 from bearing_sim.levels.common.model import inner_growth
-from bearing_sim.levels.common.prediction import ITERATIONS, SETTLED, free_ring, move_ring
+from bearing_sim.levels.common.prediction import ITERATIONS, free_ring, move_ring
 from bearing_sim.levels.common.rollers import follow_contour
 from bearing_sim.levels.common.support import extrapolate_support
 from bearing_sim.levels.spatial.forces import press_axially
@@ -36,6 +36,8 @@ from bearing_sim.levels.spatial.state import (
 )
 from bearing_sim.numerics.compilation import fused
 from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, spread_run, square_root, store, store_run, total
+
+_SETTLED = 0.2  # of the position tolerance: tilts of hardly loaded rollers converge less well, and what is left of them shortens steps (assumption)
 
 
 @fused
@@ -183,7 +185,7 @@ def predict(t, known, shift, slope, model, work, guess):
     params, rows, contacts = model.params, work.rollers, work.contacts
     count, blocks = params.rollers.count, work.rollers.shape[0]
     inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # as at level `planar`
-    enough, ring_load = SETTLED * model.tolerances.position, free_ring(t, model, work.support)
+    enough, ring_load = _SETTLED * model.tolerances.position, free_ring(t, model, work.support)
     _extrapolate(known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
     ring_step = math.inf
