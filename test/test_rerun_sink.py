@@ -2,8 +2,11 @@
 """The rerun sink: what it writes, and that it never holds up the run."""
 
 import math
+import os
+import signal
 import socket
 import threading
+import time
 
 import numpy as np
 import psutil
@@ -17,6 +20,7 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.plots import RunSeries, log10_hours
 from bearing_sim.view.run_view import FileFrames, LiveFrames
 from bearing_sim.view.sink import RerunSink
+from bearing_sim.view.viewer import is_complete
 from bearing_sim.view.worker import RerunFile
 
 SCENE = load_scene("deng2017_table1")
@@ -166,6 +170,23 @@ def _listening_address(port):
             return found
         threading.Event().wait(0.05)
     return set()
+
+
+def test_a_file_whose_process_is_too_slow_for_the_end_of_the_run_is_left_to_it_and_completed(tmp_path):
+    path, block = tmp_path / "run.rrd", synthetic_block(SCENE, TIMES)
+    sink = RerunSink(SCENE, path)
+    assert sink.wait_until_ready()
+    os.kill(sink.pid, signal.SIGSTOP)  # a machine that is too busy for it
+    try:
+        sink.write(block)
+        assert not sink.close(timeout=0.2)
+    finally:
+        os.kill(sink.pid, signal.SIGCONT)
+    deadline = time.monotonic() + 60.0
+    while not is_complete(path):
+        assert time.monotonic() < deadline, "the file has no end"
+        time.sleep(0.05)
+    np.testing.assert_allclose(column(path, "/slip/cage", "Scalars:scalars")[0], block["time"], atol=1e-6)
 
 
 def test_a_sink_without_file_and_port_is_refused():

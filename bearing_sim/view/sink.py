@@ -12,7 +12,6 @@ import json
 import logging
 import os
 import pickle
-import queue
 import socket
 import subprocess
 import sys
@@ -71,6 +70,7 @@ class RerunSink(View):
         if serve_port is not None:
             _require_free(serve_port)
         super().__init__()
+        self._path = path
         self._dropped_there = 0
         self.no_browsers: str | None = None
         paths = os.pathsep.join(entry for entry in sys.path if entry)
@@ -102,22 +102,25 @@ class RerunSink(View):
         return self._process.pid
 
     def close(self, timeout: float = 5.0) -> bool:
-        """Show the queued items and end the process, by force after ``timeout`` [s]; return whether everything was shown.
+        """Show the queued items and end the process; return whether everything was shown within ``timeout`` [s].
 
+        A process that needs longer and writes a file completes it by itself, even after the end of this one; another is ended by force.
         A second call does nothing.
         """
-        deadline = wall.monotonic() + timeout
         if self._closed:
             return self.failure is None
         self._closed = True
+        self._queue.end()
         try:
-            self._queue.put(None, timeout=timeout)
-            finished = self._process.wait(max(0.0, deadline - wall.monotonic())) == 0
-        except (queue.Full, subprocess.TimeoutExpired):
+            finished = self._process.wait(timeout) == 0
+        except subprocess.TimeoutExpired:
+            finished = False
+            if self._path is not None:
+                _log.warning("%s is not complete after %g s; the view process (id %d) is still completing it", self._path, timeout, self.pid)
+                return finished
             _log.warning("the view did not finish within %g s and was ended", timeout)
             self._process.kill()
             self._process.wait()
-            finished = False
         self._feeder.join(1.0)
         self._listener.join(1.0)
         return finished and self.failure is None

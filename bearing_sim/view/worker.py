@@ -66,6 +66,12 @@ class RowQueue(queue.Queue):
         self._rows -= _rows(item)
         return item
 
+    def end(self) -> None:
+        """Put None behind all that is queued, however full the queue is."""
+        with self.mutex:
+            self._put(None)
+            self.not_empty.notify()
+
 
 def _rows(item) -> int:
     return len(item) if isinstance(item, np.ndarray) else 1
