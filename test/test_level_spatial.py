@@ -281,3 +281,14 @@ def test_a_held_ring_is_inclined_from_the_start_even_where_no_balance_is_found(m
     monkeypatch.setattr("bearing_sim.levels.spatial.model.balance", lost)
     run = Simulation(load_scene("deng2017_table1", ["level=spatial", "operating.misalignment=1 mrad", "operating.misalignment_angle=90 deg"]))
     assert run.sample["ring_tilt_z"] == pytest.approx(1e-3)
+
+
+@pytest.mark.parametrize("speed", [5000, 45000])
+def test_laminae_count_for_life_as_the_loads_of_whole_rollers_do_though_not_at_every_short_step(speed):
+    """Aligned rollers without crown carry the same along their length, so that both means are the same but for the instants that count."""
+    run = Simulation(load_scene("deng2017_table1", ["level=spatial", f"operating.shaft_speed={speed} rpm", "operating.radial_load=3 kN"]))
+    run.advance(10.0 * 2.0 * np.pi / (0.43 * run.inputs.shaft_speed))
+    laminae, work = run._params.life.laminae, run._work
+    number = len(laminae.risers)
+    for raceway, exponent in enumerate((4.0, 4.5)):
+        np.testing.assert_allclose(work.lamina_means[raceway] * (number / laminae.risers) ** exponent, work.load_moments[raceway, 0], rtol=0.03)

@@ -22,7 +22,7 @@ from bearing_sim.levels.spatial import jacobian
 from bearing_sim.levels.spatial import state as spatial_state
 from bearing_sim.levels.spatial.forces import equations
 from bearing_sim.levels.spatial.power import spatial_powers
-from bearing_sim.levels.spatial.slices import average_laminae, lamina_pressures
+from bearing_sim.levels.spatial.slices import average_laminae, lamina_pressures, sum_lamina_powers
 from bearing_sim.levels.spatial.state import (
     BLOCK,
     BORDER,
@@ -198,7 +198,7 @@ def average_loads(h, y, model, work):
     count, turned = model.params.rollers.count, h * y[OMEGA]
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
     average_moments(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_moments)
-    average_laminae(fraction, model.params, work)
+    average_laminae(abs(turned), FIFTH_PITCH * 2.0 * math.pi / count, model.params, work)
 
 
 @kernel
@@ -220,6 +220,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
     rows, count = work.rollers, model.params.rollers.count
     inner, outer = work.load_moments[0, 0] ** (1.0 / ROTATING_EXPONENT), work.load_moments[1, 0] ** (1.0 / STATIONARY_EXPONENT)
     oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
+    sum_lamina_powers(work)
     equivalent = equivalent_lamina_loads(inner, outer, work.lamina_means[0], work.lamina_means[1], oil, model.params.life)
     observe_course(t, y[THETA], y[OMEGA], equivalent, oil, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]

@@ -15,7 +15,7 @@ Left out: sliding along the axis of a skewed roller, and the difference of circu
 
 import math
 
-from bearing_sim.levels.spatial.state import D_DEPTH, D_RATE, DROP, FRACTION, POSITION, ROLLER, SLICED, SLICED_ROWS
+from bearing_sim.levels.spatial.state import D_DEPTH, D_RATE, DROP, FRACTION, INNER, OUTER, POSITION, ROLLER, SLICED, SLICED_ROWS
 from bearing_sim.model.params import LOGARITHMIC, SLICED_EQUALLY, STRAIGHT
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.elementary import exponential, logarithm, ninth_root
@@ -353,45 +353,62 @@ def damped_power(block, contacts, points, first_points, count, stiffness, dampin
 
 
 @fused
-def average_laminae(fraction, params, work):
+def average_laminae(turned, interval, params, work):
     """Include the laminae's loads of this instant, with stress risers, in their running means to the exponents of both rings (ISO/TS 16281).
 
-    The means are those of `bearing_sim.physics.lamina_life.add_lamina_powers`; the first instant starts them.  Laminae are as many as the scene
+    The means are those of `bearing_sim.physics.lamina_life.add_lamina_powers`, each the sum over the lanes of ``work.lamina_powers``.  The first
+    instant starts them.  After that the end of that step counts in which the cage passes the next of equal angles: laminae at every step cost a
+    tenth of it, and with angles that do not depend on the steps, a long step counts more often than a short one.  Laminae are as many as the scene
     wants for its life, whatever the number of slices that carry the roller: their loads follow from its penetration and lean.
 
     Parameters
     ----------
-    fraction : weight of this instant.
+    turned : by which the cage turned in this step [rad], not negative.
+    interval : angle between two instants that count [rad]; as with steps, no small multiple of it may be a pitch.
     params, work : of the level; the right-hand side has been evaluated into ``work``.
     """
-    laminae, contacts, means = params.life.laminae, work.contacts, work.lamina_means
+    laminae, contacts, powers = params.life.laminae, work.contacts, work.lamina_powers
     number, blocks, reach = laminae.crown.shape[0], work.rollers.shape[0], laminae.positions[laminae.crown.shape[0] - 1]
-    part, damping = params.raceways.stiffness / number, params.ring.contact_damping
-    started = 0.0
+    work.lamina_turn[0] += turned
+    started = spread(0.0)
+    for k in range(number):  # the end laminae of a crowned roller may never be loaded
+        started += load(powers, INNER, k) + load(powers, OUTER, k)
+    passed = interval * math.floor(work.lamina_turn[0] / interval)
+    weight = 1.0 - math.exp(-passed / (2.0 * math.pi))
+    if not total(started) > 0.0:
+        weight = 1.0
+    elif not passed > 0.0:
+        return
+    work.lamina_turn[0] -= passed
     for k in range(number):
-        started += means[0, k] + means[1, k]
-    weight = fraction if started > 0.0 else 1.0  # the end laminae of a crowned roller may never be loaded
-    for k in range(number):
-        means[0, k] -= weight * means[0, k]
-        means[1, k] -= weight * means[1, k]
-    share = weight / params.rollers.count
+        store(powers, INNER, k, load(powers, INNER, k) * (1.0 - weight))
+        store(powers, OUTER, k, load(powers, OUTER, k) * (1.0 - weight))
+    part, damping, share = params.raceways.stiffness / number, params.ring.contact_damping, weight / params.rollers.count
     for block in range(blocks):
-        present = load(work.rollers, block, ROLLER.present)
+        present = load(work.rollers, block, ROLLER.present) * share
         if touches(block, contacts, reach):
             for k in range(number):
                 depth, factor = _lamina_depth(block, k, contacts, laminae, damping)
                 # q^4 = (K/N)^4 delta^4 delta^(4/9)
                 inner, root = depth * factor * (laminae.risers[k] * part), ninth_root(larger(depth, TINY))
                 inner, root = inner * inner, root * root
-                means[0, k] += share * total(present * (inner * inner) * (root * root))
+                store(powers, INNER, k, load(powers, INNER, k) + present * (inner * inner) * (root * root))
         if touches(blocks + block, contacts, reach):
             for k in range(number):
                 depth, factor = _lamina_depth(blocks + block, k, contacts, laminae, damping)
                 # q^(9/2) = (K/N)^(9/2) delta^5
                 stiffness, square, factor_square = laminae.risers[k] * part, depth * depth, factor * factor
-                scale = share * (stiffness * stiffness) * (stiffness * stiffness) * math.sqrt(stiffness)
+                scale = (stiffness * stiffness) * (stiffness * stiffness) * math.sqrt(stiffness)
                 outer = square * square * depth * (factor_square * factor_square) * square_root(factor)
-                means[1, k] += scale * total(present * outer)
+                store(powers, OUTER, k, load(powers, OUTER, k) + present * outer * scale)
+
+
+@kernel
+def sum_lamina_powers(work):
+    """Write the means of `average_laminae` into ``work.lamina_means``."""
+    for k in range(work.lamina_means.shape[1]):
+        work.lamina_means[INNER, k] = total(load(work.lamina_powers, INNER, k))
+        work.lamina_means[OUTER, k] = total(load(work.lamina_powers, OUTER, k))
 
 
 @template

@@ -45,6 +45,7 @@ RING_Y, RING_Z, RING_TILT_Y, RING_TILT_Z, CAGE_Y, CAGE_Z, CAGE_TILT_Y, CAGE_TILT
 OMEGA = BORDER + THETA
 ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the nine
 R, PHI, TILT, SKEW, R_SPEED, PHI_SPEED, TILT_SPEED, SKEW_SPEED, SPIN = range(BLOCK)
+INNER, OUTER = 0, 1  # raceways in the means of laminae
 _PLAIN_ROWS = 73  # of a roller without flanges
 ROLLER_ROWS = _PLAIN_ROWS + 2 * FLANGE_ROWS
 
@@ -197,7 +198,9 @@ class Work(NamedTuple):
     factored: Factored  # of I - gamma h J
     support: np.ndarray  # memory of the support, see `bearing_sim.levels.common.support.new_support`
     load_moments: np.ndarray  # as at level ``planar``, shape (2, MOMENTS)
-    lamina_means: np.ndarray  # running means of `bearing_sim.physics.lamina_life.add_lamina_powers` over a cage turn, shape (2, laminae)
+    lamina_powers: np.ndarray  # by lanes, see `bearing_sim.levels.spatial.slices.average_laminae`, shape (2, laminae, LANES)
+    lamina_means: np.ndarray  # sums of them over the lanes where a sample was asked for, shape (2, laminae)
+    lamina_turn: np.ndarray  # by which the cage has turned since laminae were last averaged, beyond their interval [rad], shape (1,)
 
 
 def new_work(params):
@@ -221,6 +224,8 @@ def new_work(params):
         factored=new_factored(count),
         support=new_support(params.support, 2 * BORDER + BLOCK * count),
         load_moments=np.zeros((2, MOMENTS)),
+        lamina_powers=new_blocks(2, len(params.life.laminae.positions)),
+        lamina_turn=np.zeros(1),
         lamina_means=np.zeros((2, len(params.life.laminae.positions))),
     )
 
