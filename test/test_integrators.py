@@ -72,7 +72,7 @@ def keep_longest(h, y, model, work):
 
 
 @kernel
-def guess_known(t, known, shift, slope, model, work, guess):
+def guess_known(known, shift, slope, model, work, guess):
     guess[0] = known[0]
 
 

@@ -9,12 +9,9 @@ import pytest
 from bearing_sim import Inputs, Simulation, load_scene
 from bearing_sim.levels.planar import model as planar
 from bearing_sim.levels.planar.forces import equations
-from bearing_sim.levels.planar.predictor import predict as planar_predict
 from bearing_sim.levels.planar.state import BLOCK, BORDER, LOCAL, ROLLERS
-from bearing_sim.levels.spatial import model as spatial
-from bearing_sim.levels.spatial.predictor import predict as spatial_predict
-from bearing_sim.levels.spatial.state import BORDER as SPATIAL_BORDER
 from bearing_sim.numerics.simd import LANES
+from bearing_sim.scene.loader import scene_from_yaml
 from bearing_sim.studies.validation.independent import INDEPENDENT
 
 
@@ -196,32 +193,18 @@ def test_an_attempt_that_failed_leaves_nothing_behind_in_lanes_without_a_roller(
     assert (simulation.advance(1e-3)["cage_slip"] == other.advance(1e-3)["cage_slip"]).all()
 
 
-@pytest.mark.parametrize("level", ["planar", "spatial"])
-@pytest.mark.parametrize(("speed", "most"), [(5000, 3.7), (45000, 2.2)])
-def test_one_iteration_of_the_whole_system_is_enough_in_many_stages_at_low_and_nearly_all_at_high_speed(level, speed, most):
-    """With the ring merely extrapolated, all stages at 5,000 rpm took two."""
-    run = simulation(f"level={level}", f"operating.shaft_speed={speed} rpm")
-    run.advance(0.01)
+def test_steps_do_not_collapse_where_a_catalogue_bearing_creeps_under_a_heavy_load():
+    """A first guess that moved the ring without the tractions on it took twenty times the steps here, though it saved some on the paper's bearing."""
+    text = """
+        name: creeping
+        level: planar
+        bearing: {preset: NU 210/C3}
+        lubricant: {oil: ISO VG 68, supply: oil_bath, temperature: 40 degC}
+        operating: {shaft_speed: 90 rpm, radial_load: 20 kN}
+    """
+    run = Simulation(scene_from_yaml(text))
+    run.advance(0.3)
     before = run.counters
-    run.advance(0.05)
+    run.advance(0.3)
     steps, iterations = run.counters.steps - before.steps, run.counters.jacobians - before.jacobians
-    assert 2 * steps <= iterations <= most * steps
-
-
-@pytest.mark.parametrize("level", ["planar", "spatial"])
-def test_the_first_guess_has_ring_and_rollers_in_balance_where_a_load_has_jumped(level):
-    """Equations of motion at the guess, against the guess: what is left is far below the tolerances, but for what the guess leaves out."""
-    run = simulation(f"level={level}", "operating.shaft_speed=5000 rpm")
-    run.advance(0.02)
-    model, state, shift = run._model(run.inputs, 1.0), run.state, 5e-5
-    model = model._replace(drive=model.drive._replace(load_y=1500.0))
-    rhs, predict, border = {"planar": (planar.rhs, planar_predict, BORDER), "spatial": (spatial.rhs, spatial_predict, SPATIAL_BORDER)}[level]
-    slope = np.zeros_like(state)
-    rhs(0.0, state, model, run._work, slope)
-    guess, rate = np.zeros_like(state), np.zeros_like(state)
-    predict(0.0, state, shift, slope, model, run._work, guess)
-    rhs(0.0, guess, model, run._work, rate)
-    stiffness = run._params.ring.mass / shift**2 + 2e8  # N/m at least: the inertia of the ring and a contact
-    left = run._params.ring.mass * np.abs(rate[border : border + 2] - (guess[border : border + 2] - state[border : border + 2]) / shift)
-    assert np.all(left / stiffness < 0.02 * run.scene.integration.absolute_tolerance.position)
-    assert np.abs(guess[:2] - state[:2] - shift * state[border : border + 2]).max() > 1e-7
+    assert steps < 200 and iterations < 12 * steps

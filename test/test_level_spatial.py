@@ -90,12 +90,12 @@ def test_the_first_guess_of_a_step_is_that_of_its_state_whatever_was_computed_be
     state, model, slope = run.state, run._model(run.inputs, 1.0), np.zeros(len(run.state))
     expected, found = np.zeros(len(state)), np.zeros(len(state))
     predict, row = {"planar": (planar_predict, PLANAR_ROLLER), "spatial": (spatial_predict, ROLLER)}[level]
-    predict(0.0, state, 1e-6, slope, model, run._work, expected)
+    predict(state, 1e-6, slope, model, run._work, expected)
     constant = [row.present, row.pitch_cosine, row.pitch_sine]
     kept = run._work.rollers[:, constant].copy()
     run._work.rollers[:], run._work.contacts[:] = math.nan, math.nan
     run._work.rollers[:, constant] = kept
-    predict(0.0, state, 1e-6, slope, model, run._work, found)
+    predict(state, 1e-6, slope, model, run._work, found)
     np.testing.assert_array_equal(found, expected)
 
 

@@ -40,11 +40,10 @@ def sdirk2_attempt(rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h
         known[i] = y[i]
     for stage in range(2):
         # a loop and not two texts: the kernels are compiled into it, and both copies would not fit the instruction cache
-        now = t + (h if stage else shift)
-        predict(now, known, shift, slope if stage == 0 else error, model, work, result)
+        predict(known, shift, slope if stage == 0 else error, model, work, result)
         outcome = solve_implicit(
             rhs_and_jacobian, factor, solve, error_norm,
-            now, known, shift, _ENOUGH, result, rate, change, model, work, counts,
+            t + (h if stage else shift), known, shift, _ENOUGH, result, rate, change, model, work, counts,
         )  # fmt: skip
         if outcome != OK:
             return outcome

@@ -5,7 +5,7 @@ It knows no bearing and no method.  A level comes in as kernels:
 
 rhs, rhs_and_jacobian : ``(t, y, model, work, rate)`` write dy/dt into ``rate``, the second also the Jacobian into ``work``;
     return False where they cannot be evaluated.
-predict : ``(t, known, shift, slope, model, work, guess)`` writes a first guess of the solution of guess = known + shift f(t, guess),
+predict : ``(known, shift, slope, model, work, guess)`` writes a first guess of the solution of guess = known + shift f(guess),
     given f a little earlier.
 factor : ``(shift, work)`` factors I - shift J; returns False where it is singular.
 solve : ``(work, x)`` replaces the right side by the solution with the last factorisation.

@@ -94,11 +94,9 @@ class RollerRow(NamedTuple):
     guide_force: int = 37  # of the pocket on the roller, outwards from the cage [N]
     guide_stiffness: int = 38  # derivatives of the force against the offset, by it and by its rate [N/m, N s/m]
     guide_damping: int = 39
-    moves_alone: int = 40  # by an iteration of a prediction, were the ring held [m]
-    follows_ring: int = 41  # by how much of the ring's displacement towards it in that iteration
-    moved: int = 42  # by the last iteration of a prediction [m]
-    inner_flange: int = 43  # from here on flanges: of the inner ring, rows `bearing_sim.levels.common.flanges.FLANGE` without skew
-    outer_flange: int = 48  # of the outer ring, likewise
+    moved: int = 40  # by the last iteration of a prediction [m]
+    inner_flange: int = 41  # from here on flanges: of the inner ring, rows `bearing_sim.levels.common.flanges.FLANGE` without skew
+    outer_flange: int = 46  # of the outer ring, likewise
 
 
 ROLLER = RollerRow()

@@ -1,13 +1,13 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """First guess of a stage's solution, as at level ``planar`` (see `bearing_sim.levels.planar.predictor`).
 
-With ring tilts, cage, orbit and skew extrapolated, each roller's position and tilt follow from two scalar equations of its own normal contacts,
-which all rollers share with the ring's centre: a few Newton steps, from which the rollers are eliminated one by one.  Contacts are the expensive
-part: once the ring has settled, only those blocks are computed in which a roller goes on.
+With ring, cage, orbit and skew extrapolated, each roller's position and tilt follow from two scalar equations of its
+own normal contacts: a few Newton iterations of all rollers at once.
 """
 
+import math
+
 from bearing_sim.levels.common.model import inner_growth
-from bearing_sim.levels.common.prediction import ITERATIONS, SETTLED, UNSETTLED, free_ring, goes_on_above, move_ring
 from bearing_sim.levels.common.rollers import follow_contour
 from bearing_sim.levels.common.support import extrapolate_support
 from bearing_sim.levels.spatial.forces import press_axially
@@ -33,20 +33,10 @@ from bearing_sim.levels.spatial.state import (
     R,
 )
 from bearing_sim.numerics.compilation import fused
-from bearing_sim.numerics.simd import (
-    LANES,
-    highest,
-    larger,
-    load,
-    magnitude,
-    spread,
-    spread_run,
-    square_root,
-    store,
-    store_run,
-    total,
-    where_positive,
-)
+from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread_run, square_root, store, store_run, where_positive
+
+_ITERATIONS = 4
+_SETTLED = 0.2  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system
 
 
 @fused
@@ -77,7 +67,7 @@ def _start(known, shift, guess, count, raceways, rows):
     spread_run(known, ROLLERS + TILT_SPEED * count, count, rows, ROLLER.known_tilt_speed)
     for block in range(rows.shape[0]):
         follow_contour(ROLLER, block, shift, raceways.contour, rows)
-        store(rows, block, ROLLER.moved, UNSETTLED)
+        store(rows, block, ROLLER.moved, math.inf)
 
 
 @fused
@@ -104,94 +94,45 @@ def _place(block, guess, shift, inner_radius, params, rows, contacts):
 
 
 @fused
-def _eliminate(block, shift, params, rows, contacts):
-    """Write by how much a block of rollers moves and tilts in a Newton step, alone and with the ring, and its inner load after that step.
+def _balance(block, shift, enough, params, rows, contacts):
+    """Take one Newton step of those rollers whose last one moved them or their ends by ``enough`` [m], and return the largest last step [m].
 
-    With f and g the residuals of a roller's equations, a, b, d their derivatives by its radius and tilt, and -p, -q by the ring's displacement
-    along e_r, x, a Newton step solves a dr + b dtilt = p x - f, b dr + d dtilt = q x - g.  r'' and tilt'' are those of the normal forces, orbit
-    and spin are as they are.
+    r'' and tilt'' are those of the normal forces, orbit and spin are as they are.
     """
     mass, inertia, outer, per_shift = params.rollers.mass, params.tilts.roller_inertia, rows.shape[0] + block, 1.0 / shift
     radius, tilt, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.orbital_speed)
     speed = (radius - load(rows, block, ROLLER.known_radius)) * per_shift
     tilt_speed = (tilt - load(rows, block, ROLLER.known_tilt)) * per_shift
-    pressed = load(contacts, block, SLICED.load)
-    force = load(contacts, outer, SLICED.load) - pressed
+    force = load(contacts, outer, SLICED.load) - load(contacts, block, SLICED.load)
     force += mass * ((speed - load(rows, block, ROLLER.known_speed)) * per_shift - radius * orbital_speed * orbital_speed)
     gyroscopic = params.variants.gyroscopic * params.rollers.inertia * load(rows, block, ROLLER.spin)
     moment = load(contacts, outer, SLICED.tilting) - load(contacts, block, SLICED.tilting)
     moment += inertia * (tilt_speed - load(rows, block, ROLLER.known_tilt_speed)) * per_shift
     moment -= (gyroscopic + 2.0 * inertia * orbital_speed) * load(rows, block, ROLLER.skew_speed)
     moment -= (gyroscopic + inertia * orbital_speed) * orbital_speed * tilt
-    p = load(contacts, block, SLICED.stiffness) + per_shift * load(contacts, block, SLICED.damping)
-    q = load(contacts, block, SLICED.stiffness + 1) + per_shift * load(contacts, block, SLICED.damping + 1)
-    a = mass * per_shift * per_shift + p + load(contacts, outer, SLICED.stiffness) + per_shift * load(contacts, outer, SLICED.damping)
-    b = q + load(contacts, outer, SLICED.stiffness + 1) + per_shift * load(contacts, outer, SLICED.damping + 1)
+    a = mass * per_shift * per_shift + load(contacts, outer, SLICED.stiffness) + load(contacts, block, SLICED.stiffness)
+    a += per_shift * (load(contacts, outer, SLICED.damping) + load(contacts, block, SLICED.damping))
+    b = load(contacts, outer, SLICED.stiffness + 1) + load(contacts, block, SLICED.stiffness + 1)
+    b += per_shift * (load(contacts, outer, SLICED.damping + 1) + load(contacts, block, SLICED.damping + 1))
     d = inertia * per_shift * per_shift + load(contacts, outer, SLICED.stiffness + 2) + load(contacts, block, SLICED.stiffness + 2)
     d += per_shift * (load(contacts, outer, SLICED.damping + 2) + load(contacts, block, SLICED.damping + 2))
     inverse = 1.0 / (a * d - b * b)
-    moves_alone, tilts_alone = (b * moment - d * force) * inverse, (b * force - a * moment) * inverse
-    follows_ring, tilts_with_ring = (d * p - b * q) * inverse, (a * q - b * p) * inverse
-    store(rows, block, ROLLER.moves_alone, moves_alone)
-    store(rows, block, ROLLER.follows_ring, follows_ring)
-    store(rows, block, ROLLER.tilts_alone, tilts_alone)
-    store(rows, block, ROLLER.tilts_with_ring, tilts_with_ring)
-    store(rows, block, ROLLER.load_alone, pressed - p * moves_alone - q * tilts_alone)
-    store(rows, block, ROLLER.load_by_ring, p - p * follows_ring - q * tilts_with_ring)
-
-
-@fused
-def _step_ring(known, shift, ring_load, guess, mass, rows):
-    """Take one Newton step of the ring with the rollers eliminated, and return it, y and z [m].
-
-    Parameters
-    ----------
-    ring_load : see `bearing_sim.levels.common.prediction.free_ring`.
-    mass : of the ring [kg].
-    """
-    m_yy, m_yz, m_zz, b_y, b_z = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    for block in range(rows.shape[0]):
-        present, cosine, sine = load(rows, block, ROLLER.present), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
-        stiffness, pushed = present * load(rows, block, ROLLER.load_by_ring), present * load(rows, block, ROLLER.load_alone)
-        m_yy += stiffness * cosine * cosine
-        m_yz += stiffness * cosine * sine
-        m_zz += stiffness * sine * sine
-        b_y -= pushed * cosine
-        b_z -= pushed * sine
-    sums = total(m_yy), total(m_yz), total(m_zz), total(b_y), total(b_z)
-    return move_ring(known, shift, guess, BORDER, ring_load, mass, sums)
-
-
-@fused
-def _step_rollers(block, y, z, threshold, params, rows):
-    """Take the Newton step of those rollers of a block whose last one was above ``threshold`` [m], the ring's own step being y, z [m].
-
-    Steps are those of the roller or of its ends, whichever is longer.
-    """
+    outwards, tilting = (d * force - b * moment) * inverse, (a * moment - b * force) * inverse
     moved = load(rows, block, ROLLER.moved)
-    goes_on = moved - threshold
-    along = y * load(rows, block, ROLLER.cosine) + z * load(rows, block, ROLLER.sine)
-    outwards = where_positive(goes_on, load(rows, block, ROLLER.moves_alone) + load(rows, block, ROLLER.follows_ring) * along, 0.0)
-    tilting = where_positive(goes_on, load(rows, block, ROLLER.tilts_alone) + load(rows, block, ROLLER.tilts_with_ring) * along, 0.0)
-    store(rows, block, ROLLER.radius, load(rows, block, ROLLER.radius) + outwards)
-    store(rows, block, ROLLER.tilt, load(rows, block, ROLLER.tilt) + tilting)
+    goes_on = moved - enough  # each roller by itself: a guess depends on no other roller that happens to stand in the same block
+    store(rows, block, ROLLER.radius, radius - where_positive(goes_on, outwards, 0.0))
+    store(rows, block, ROLLER.tilt, tilt - where_positive(goes_on, tilting, 0.0))
     moved = where_positive(goes_on, larger(magnitude(outwards), magnitude(tilting) * (0.5 * params.rollers.length)), moved)
     store(rows, block, ROLLER.moved, moved)
+    return highest(moved)
 
 
 @fused
-def _goes_on(block, threshold, rows):
-    """Return whether the last step of a roller of a block was above ``threshold`` [m]."""
-    return highest(load(rows, block, ROLLER.moved)) > threshold
-
-
-@fused
-def predict(t, known, shift, slope, model, work, guess):
-    """Write a first guess of the solution of guess = known + shift f(t, guess).
+def predict(known, shift, slope, model, work, guess):
+    """Write a first guess of the solution of guess = known + shift f(guess).
 
     Parameters
     ----------
-    t : time of the stage [s].
     known : what the stage builds on.
     shift : gamma h [s].
     slope : f a little earlier, or zeros.
@@ -201,30 +142,22 @@ def predict(t, known, shift, slope, model, work, guess):
     params, rows, contacts = model.params, work.rollers, work.contacts
     count, blocks = params.rollers.count, work.rollers.shape[0]
     inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # as at level `planar`
-    enough, ring_load, ring_step = SETTLED * model.tolerances.position, free_ring(t, model, work.support), UNSETTLED
+    enough = _SETTLED * model.tolerances.position
     _extrapolate(known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
-    for _ in range(ITERATIONS):
-        threshold = goes_on_above(ring_step, enough)
+    for _ in range(_ITERATIONS):
+        settled = True
         for block in range(blocks):
-            if _goes_on(block, threshold, rows):
-                _place(block, guess, shift, inner_radius, params, rows, contacts)
-                press_normally(block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
-                press_normally(blocks + block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
+            if highest(load(rows, block, ROLLER.moved)) < enough:
+                continue
+            _place(block, guess, shift, inner_radius, params, rows, contacts)
+            press_normally(block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
+            press_normally(blocks + block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
         if params.flanges.load > 0.0:
             press_axially(params, rows, contacts)
         for block in range(blocks):
-            if _goes_on(block, threshold, rows):
-                _eliminate(block, shift, params, rows, contacts)
-        y, z = 0.0, 0.0
-        if threshold < 0.0:
-            y, z = _step_ring(known, shift, ring_load, guess, params.ring.mass, rows)
-            ring_step = max(abs(y), abs(z))
-        settled = ring_step < enough
-        for block in range(blocks):
-            if _goes_on(block, threshold, rows):
-                _step_rollers(block, y, z, threshold, params, rows)
-                settled = settled and highest(load(rows, block, ROLLER.moved)) < enough
+            if not highest(load(rows, block, ROLLER.moved)) < enough:
+                settled = _balance(block, shift, enough, params, rows, contacts) < enough and settled
         if settled:
             break
     per_shift, whole = 1.0 / shift, count // LANES

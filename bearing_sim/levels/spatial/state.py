@@ -46,7 +46,7 @@ OMEGA = BORDER + THETA
 ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the nine
 R, PHI, TILT, SKEW, R_SPEED, PHI_SPEED, TILT_SPEED, SKEW_SPEED, SPIN = range(BLOCK)
 INNER, OUTER = 0, 1  # raceways in the means of laminae
-_PLAIN_ROWS = 73  # of a roller without flanges
+_PLAIN_ROWS = 67  # of a roller without flanges
 ROLLER_ROWS = _PLAIN_ROWS + 2 * FLANGE_ROWS
 
 
@@ -169,13 +169,7 @@ class RollerRow(NamedTuple):
     guide_moment: int = 59  # sum of force times position along the axis [N m]
     guide_stiffness: int = 60  # as ``pocket_stiffness``
     guide_damping: int = 63
-    moves_alone: int = 66  # in an iteration of a prediction, were the ring held [m]
-    follows_ring: int = 67  # by how much of the ring's displacement towards it in that iteration
-    tilts_alone: int = 68  # likewise [rad]
-    tilts_with_ring: int = 69  # [rad/m]
-    load_alone: int = 70  # of the inner contact after that iteration, were the ring held [N]
-    load_by_ring: int = 71  # and by how much the ring's displacement towards the roller raises it [N/m]
-    moved: int = 72  # an end of the roller, by the last iteration of a prediction [m]
+    moved: int = 66  # by the last iteration of a prediction [m]
     inner_flange: int = _PLAIN_ROWS  # from here on flanges: of the inner ring, rows `bearing_sim.levels.common.flanges.FLANGE`
     outer_flange: int = _PLAIN_ROWS + FLANGE_ROWS  # of the outer ring, likewise
 

@@ -1,0 +1,99 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Steps and iterations that levels ``planar`` and ``spatial`` take on several bearings, from creeping to fast and from light to heavy loads.
+
+python test/benchmarks/work_of_steps.py --csv before.csv
+python test/benchmarks/work_of_steps.py --against before.csv
+
+Counts of work do not depend on what else the machine does.  What saves work on one bearing may cost a hundred times as much on another: look here
+before and after a change of method, first guess or iteration.
+"""
+
+import csv
+
+import click
+
+from bearing_sim import IntegrationError, Simulation, load_scene
+from bearing_sim.scene.loader import scene_from_yaml
+
+CATALOGUE = """
+name: work_of_steps
+level: planar
+bearing: {{preset: {0}}}
+lubricant: {{oil: {1}, supply: oil_bath, temperature: 40 degC}}
+operating: {{shaft_speed: 1000 rpm, radial_load: 1 kN}}
+"""
+BEARINGS = {"NU 210/C3": "ISO VG 68", "NU 232": "ISO VG 220"}
+POINTS = (
+    ("NU 210/C3", 90, "5 kN"), ("NU 210/C3", 90, "20 kN"), ("NU 210/C3", 1000, "5 kN"), ("NU 210/C3", 3000, "1 kN"), ("NU 210/C3", 3000, "20 kN"),
+    ("NU 210/C3", 6000, "5 kN"), ("NU 232", 60, "50 kN"), ("NU 232", 600, "50 kN"), ("NU 232", 1500, "2 kN"), ("NU 232", 1500, "20 kN"),
+    ("deng2017_table1", 100, "3 kN"), ("deng2017_table1", 2000, "50 kN"), ("deng2017_table1", 5000, "800 N"), ("deng2017_table1", 15000, "800 N"),
+    ("deng2017_table1", 25000, "100 N"), ("deng2017_table1", 45000, "800 N"), ("deng2017_table1", 45000, "20 kN"),
+)  # fmt: skip
+COLUMNS = ("level", "bearing", "speed_rpm", "load", "steps_per_second", "iterations_per_step", "rejected_per_second")
+
+
+def scene_of(bearing, level, speed, load):
+    """Return a scene of a bearing of the catalogue or of a built-in one at a speed [rpm] and a load with its unit."""
+    overrides = [f"level={level}", f"operating.shaft_speed={speed} rpm", f"operating.radial_load={load}"]
+    if bearing not in BEARINGS:
+        return load_scene(bearing, overrides)
+    return scene_from_yaml(CATALOGUE.format(bearing, BEARINGS[bearing]), overrides)
+
+
+def work_of(scene):
+    """Return steps a second, iterations a step and rejected steps a second after settling, each for a third of a hundred turns of the shaft."""
+    run = Simulation(scene)
+    span = min(0.3, max(0.05, 200.0 / run.inputs.shaft_speed))
+    run.advance(span)
+    before = run.counters
+    run.advance(span)
+    steps = run.counters.steps - before.steps
+    rejected = run.counters.rejected_steps - before.rejected_steps
+    return steps / span, (run.counters.jacobians - before.jacobians) / steps, rejected / span
+
+
+def measured(level):
+    for bearing, speed, load in POINTS:
+        try:
+            work = [f"{figure:.4g}" for figure in work_of(scene_of(bearing, level, speed, load))]
+        except IntegrationError as error:
+            work = [f"failed: {error}", "", ""]
+        yield dict(zip(COLUMNS, (level, bearing, str(speed), load, *work), strict=True))
+
+
+@click.command()
+@click.option("--level", "levels", multiple=True, type=click.Choice(["planar", "spatial"]), default=["planar"], show_default=True)
+@click.option("--csv", "path", type=click.Path(dir_okay=False), help="Write the counts to a table.")
+@click.option("--against", type=click.Path(exists=True, dir_okay=False), help="A table of an earlier run to compare with.")
+def main(levels, path, against):
+    earlier = {}
+    if against:
+        with open(against, newline="") as file:
+            earlier = {tuple(row[name] for name in COLUMNS[:4]): row for row in csv.DictReader(file)}
+    rows = []
+    for level in levels:
+        for row in measured(level):
+            rows.append(row)
+            text = "{level:8s} {bearing:16s} {speed_rpm:>6s} rpm {load:>6s}: {steps_per_second:>7s} steps a second, ".format(**row)
+            text += "{iterations_per_step} iterations each, {rejected_per_second} rejected a second".format(**row)
+            old = earlier.get(tuple(row[name] for name in COLUMNS[:4]))
+            if old:
+                ratio = _iterations(row) / _iterations(old)
+                text += f"; {ratio:.2f} times the iterations of before"
+            print(text, flush=True)
+    if path:
+        with open(path, "w", newline="") as file:
+            writer = csv.DictWriter(file, COLUMNS)
+            writer.writeheader()
+            writer.writerows(rows)
+
+
+def _iterations(row):
+    try:
+        return float(row["steps_per_second"]) * float(row["iterations_per_step"])
+    except ValueError:
+        return float("nan")
+
+
+if __name__ == "__main__":
+    main()
