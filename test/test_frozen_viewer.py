@@ -118,8 +118,9 @@ def test_a_frozen_process_of_the_view_never_blocks_the_run_and_what_is_dropped_i
     assert any(f"dropped {dropped} blocks" in text for texts in logged for (text,) in texts), "the view says so"
 
 
-def test_close_ends_a_frozen_process_of_the_view(tmp_path):
-    sink = RerunSink(SCENE, path=tmp_path / "run.rrd")
+def test_close_ends_a_frozen_process_that_only_serves_a_view():
+    """One that writes a file is left to complete it, see `test_rerun_sink`."""
+    sink = RerunSink(SCENE, serve_port=free_port())
     assert sink.wait_until_ready()
     os.kill(sink.pid, signal.SIGSTOP)
     feed(sink, 2)
