@@ -121,8 +121,7 @@ def test_a_frozen_process_of_the_view_never_blocks_the_run_and_what_is_dropped_i
 def test_close_ends_a_frozen_process_that_only_serves_a_view():
     """One that writes a file is left to complete it, see `test_rerun_sink`."""
     sink = RerunSink(SCENE, serve_port=free_port())
-    assert sink.wait_until_ready()
-    os.kill(sink.pid, signal.SIGSTOP)
+    os.kill(sink.pid, signal.SIGSTOP)  # serving or not yet: on a busy machine idle time may be long in coming
     feed(sink, 2)
     assert sink.close(timeout=0.5) is False
     assert not os.path.exists(f"/proc/{sink.pid}")
