@@ -14,9 +14,10 @@ import pytest
 pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
 
 from mcap.reader import make_reader  # noqa: E402
-from ros_bench import GOOD, PATIENCE, Client, NodeProcess, fresh_domain  # noqa: E402
+from ros_bench import GOOD, Client, NodeProcess, fresh_domain  # noqa: E402
 from rosbags.highlevel import AnyReader  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
+from waiting import wait_for  # noqa: E402
 
 from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.messages.events import Event  # noqa: E402
@@ -78,10 +79,7 @@ def test_speed_and_load_from_another_process_come_back_as_slip_and_life_and_as_a
     assert values["phase"] == "running" and values["messages refused"] == "0"
     assert ended_well(process, signal.SIGTERM)
     _check_recording(recording)
-    deadline = time.monotonic() + PATIENCE
-    while not is_complete(view):  # its process may outlive the node on a busy machine
-        assert time.monotonic() < deadline, "the view has no end"
-        time.sleep(0.1)
+    wait_for(lambda: is_complete(view))  # its process may outlive the node on a busy machine
     assert subprocess.run([_rerun(), "rrd", "verify", str(view)], capture_output=True, timeout=60).returncode == 0
 
 

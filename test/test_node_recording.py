@@ -12,6 +12,7 @@ pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_
 
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
+from waiting import wait_for  # noqa: E402
 
 from bearing_sim.inputs.log import read_input_log  # noqa: E402
 from bearing_sim.recording.reader import Recording  # noqa: E402
@@ -54,13 +55,6 @@ def recorders_of(process):
         if b"bearing_sim.recording.recorder_server" in command and grandparent == process.process.pid:  # the node is the child of its watchdog
             found.append(int(place.name))
     return found
-
-
-def wait_for(condition, seconds=60.0):
-    limit = time.monotonic() + seconds
-    while not condition() and time.monotonic() < limit:
-        time.sleep(0.02)
-    assert condition()
 
 
 def slips_in(path):

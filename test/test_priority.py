@@ -15,6 +15,7 @@ import pytest
 from mcap.reader import make_reader
 from rerun.chunk import RrdReader
 from synthetic_run import synthetic_block
+from waiting import wait_for
 
 from bearing_sim.recording import priority
 from bearing_sim.recording.recorder import Recorder
@@ -37,14 +38,6 @@ def policies(pid):
     """Return the policy of every thread of a process, by the kernel; but for those of Mesa's disk cache, which set their own where they may."""
     threads = {int(thread.name): (thread / "comm").read_text() for thread in Path(f"/proc/{pid}/task").iterdir()}
     return {number: LIBC.sched_getscheduler(number) for number, name in threads.items() if ":disk$" not in name}
-
-
-def wait_for(condition, seconds=60.0):
-    limit = time.monotonic() + seconds
-    while not (found := condition()) and time.monotonic() < limit:
-        time.sleep(0.02)
-    assert found
-    return found
 
 
 def is_gone(pid):

@@ -6,7 +6,6 @@ import os
 import signal
 import socket
 import threading
-import time
 
 import numpy as np
 import psutil
@@ -14,6 +13,7 @@ import pytest
 import rerun as rr
 from rerun.chunk import RrdReader
 from synthetic_run import synthetic_block
+from waiting import wait_for
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.scene.loader import load_scene
@@ -182,10 +182,7 @@ def test_a_file_whose_process_is_too_slow_for_the_end_of_the_run_is_left_to_it_a
         assert not sink.close(timeout=0.2)
     finally:
         os.kill(sink.pid, signal.SIGCONT)
-    deadline = time.monotonic() + 60.0
-    while not is_complete(path):
-        assert time.monotonic() < deadline, "the file has no end"
-        time.sleep(0.05)
+    wait_for(lambda: is_complete(path))
     np.testing.assert_allclose(column(path, "/slip/cage", "Scalars:scalars")[0], block["time"], atol=1e-6)
 
 

@@ -11,7 +11,7 @@ from bearing_sim import SceneError, load_scene
 from bearing_sim.inputs.csv_import import SpeedColumn
 from bearing_sim.inputs.log import source
 from bearing_sim.scene.loader import scene_from_yaml, scene_names, scene_to_yaml
-from bearing_sim.scene.quantity import Quantity, to_si
+from bearing_sim.scene.quantity import Quantity, in_digits, to_si
 from bearing_sim.sweep.grid import read_axis
 
 
@@ -273,3 +273,11 @@ def test_tolerances_are_read_with_their_units():
     integration = load_scene("deng2017_table1", [absolute, "integration.relative_tolerance=2 %"]).integration
     assert integration.absolute_tolerance.position == pytest.approx(1e-6) and integration.absolute_tolerance.play == pytest.approx(2e-6)
     assert integration.absolute_tolerance.speed == pytest.approx(3e-3) and integration.relative_tolerance == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [(1258.3, 3, "1260"), (99.92, 2, "100"), (210.4, 2, "210"), (0.0472, 2, "0.047"), (-3.456, 2, "-3.5"), (math.nan, 2, "nan")],
+)
+def test_a_number_in_digits_has_no_exponent_where_it_is_large(value, digits, text):
+    assert in_digits(value, digits) == text

@@ -30,6 +30,7 @@ from bearing_sim.cli.reporting import (
     print_rows,
     write_csv,
 )
+from bearing_sim.scene.quantity import in_digits
 
 _COURSES = ("manoeuvre", "run_down", "start", "idle")
 _ERRORS = {
@@ -256,7 +257,7 @@ def print_trade(name, found) -> None:
     for row in sorted(rows_of(found), key=lambda row: -row["real_time_factor"]):
         points = f"{row['slip_error_points']:.3f}", f"{row['largest_slip_error_points']:.3f}"
         percents = ("load_error", "life_error", "largest_window_life_error", *(("edge_error",) if has_edges else ()))
-        values = f"{row['real_time_factor']:.3g}", *points, *(f"{100 * row[column]:.2g}" for column in percents)
+        values = in_digits(row["real_time_factor"], 3), *points, *(in_digits(100 * row[column], 2) for column in percents)
         rows.append(("*" if row["on_front"] else "", row["level"], row["setting"], *values, row["failure"]))
     words = ("", "level", "setting")
     numbers = ("x real time", "slip, points", "largest, points", "load, %", "life, %", "of a window, %", *(("edge, %",) if has_edges else ()))
@@ -287,4 +288,4 @@ def _recommendation(one) -> str:
     if one is None:
         return "none"
     options = " ".join(f'--set "{item}"' for item in (f"level={one.setting.level}", *one.setting.overrides))
-    return f"{one.setting.name} ({one.real_time_factor:.3g} x real time, {one.errors.slip:.2g} points): {options}"
+    return f"{one.setting.name} ({in_digits(one.real_time_factor, 3)} x real time, {one.errors.slip:.2g} points): {options}"

@@ -19,6 +19,7 @@ from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.scene.fidelity import NUMBERS, lower_levels
 from bearing_sim.scene.kept_front import KeptCourse, KeptFront, KeptSetting, complete_overrides, is_coarser
 from bearing_sim.scene.loader import with_setting
+from bearing_sim.scene.quantity import in_digits
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
 
@@ -157,13 +158,15 @@ class Governor:
             self._wait = min(2.0 * self._wait, _LONGEST_WAIT) if self._stayed < self._wait else self._patience
         factor, left = self.factor, self.setting or self.level
         simulation = self._change(self._rung + 1)
-        text = f"level {left} reaches {factor:.3g} of real time on this machine: {self._told()} continues from the same cage angle and speed"
+        text = (
+            f"level {left} reaches {in_digits(factor, 3)} of real time on this machine: {self._told()} continues from the same cage angle and speed"
+        )
         self._left_at, self._came_up = factor, False
         return Change(simulation, True, text, self.setting)
 
     def _go_up(self, promised: float) -> Change:
         simulation = self._change(self._rung - 1)
-        text = f"level {self._told()}, expected to reach {promised:.3g} of real time, continues from the same cage angle and speed"
+        text = f"level {self._told()}, expected to reach {in_digits(promised, 3)} of real time, continues from the same cage angle and speed"
         self._came_up = True
         return Change(simulation, False, text, self.setting)
 

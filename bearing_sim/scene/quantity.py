@@ -269,6 +269,11 @@ class QuantityOrName(Quantity):
             raise PydanticCustomError("quantity", "{reason}", {"reason": reason}) from None
 
 
+def in_digits(value: float, digits: int) -> str:
+    """Return a number as text, rounded to so many digits, without an exponent where it is large."""
+    return f"{float(f'{value:.{digits}g}'):.12g}"
+
+
 def quantity(unit: str, meaning: str, minimum: float = -math.inf, maximum: float = math.inf, shown_in: str = ""):
     """Return the annotated float type of a scene field (see `Quantity`)."""
     return Annotated[float, Quantity(unit, meaning, minimum, maximum, shown_in)]

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from bearing_sim.scene.errors import InvalidField, did_you_mean
 from bearing_sim.scene.fidelity import LEVELS, WANTS, WHIRLING, Choice, asked_for, choose, levels_with
 from bearing_sim.scene.kept_front import KeptFront, KeptSetting, extent_in_words
-from bearing_sim.scene.quantity import to_si
+from bearing_sim.scene.quantity import in_digits, to_si
 
 _ROUNDED = 1.0 + 1e-9  # an error in points and the same one as a fraction are equal
 _LARGEST = 3.0  # times a wanted error that the largest error of any bin or window may be
@@ -130,23 +130,18 @@ def reason_of(setting: KeptSetting, errors: Mapping[str, float], front: KeptFron
     courses = ", ".join(dict.fromkeys(course.name for course in front.courses))
     found = ", ".join(_beside(name, most, setting) for name, most in errors.items())
     factor = setting.real_time_factor
-    spare = f"{_in_digits(100.0 * (1.0 - 1.0 / factor), 2)} % of a core to spare" if factor > 1.0 else "too slow to follow a live bearing"
+    spare = f"{in_digits(100.0 * (1.0 - 1.0 / factor), 2)} % of a core to spare" if factor > 1.0 else "too slow to follow a live bearing"
     table = f"; a node needs its table: bearing-sim table {shlex.quote(origin)}" if setting.is_corrected else ""
     return (
         f"level {setting.level} chosen with {setting.detail}, the fastest setting whose measured errors keep the wants: {found}; measured on this "
-        f"bearing and machine ({courses}) at {_in_digits(factor, 3)} times real time, {spare}{table}"
+        f"bearing and machine ({courses}) at {in_digits(factor, 3)} times real time, {spare}{table}"
     )
 
 
 def _beside(name: str, most: float, setting: KeptSetting) -> str:
     how = MEASURED[name]
     error, largest = (100.0 * how.scale * setting.errors[each] for each in (how.error, how.largest))
-    return f"{name} {_in_digits(error, 2)} of {100.0 * most:.3g} {how.unit} (largest {_in_digits(largest, 2)})"
-
-
-def _in_digits(value: float, digits: int) -> str:
-    """Return a number rounded to so many digits, without an exponent where it is large."""
-    return f"{float(f'{value:.{digits}g}'):.12g}"
+    return f"{name} {in_digits(error, 2)} of {100.0 * most:.3g} {how.unit} (largest {in_digits(largest, 2)})"
 
 
 def without_measurement(scene, errors: Mapping[str, float], kept: KeptFront | None, origin: str) -> Choice:

@@ -114,13 +114,13 @@ class RerunSink(View):
         try:
             finished = self._process.wait(timeout) == 0
         except subprocess.TimeoutExpired:
-            finished = False
             if self._path is not None:
                 _log.warning("%s is not complete after %g s; the view process (id %d) is still completing it", self._path, timeout, self.pid)
-                return finished
+                return False
             _log.warning("the view did not finish within %g s and was ended", timeout)
             self._process.kill()
             self._process.wait()
+            finished = False
         self._feeder.join(1.0)
         self._listener.join(1.0)
         return finished and self.failure is None

@@ -22,7 +22,7 @@ import sys
 import threading
 import time
 import time as wall
-from contextlib import AbstractContextManager, suppress
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -186,14 +186,10 @@ class ViewThread(View):
         -------
         finished : whether everything queued was shown.
         """
-        deadline = wall.monotonic() + timeout
         if not self._closed:
             self._closed = True
-            try:
-                self._queue.put(None, timeout=timeout)
-            except queue.Full:
-                _log.warning("rerun did not take the last blocks within %g s; they are not shown", timeout)
-        self._worker.join(max(0.0, deadline - wall.monotonic()))
+            self._queue.end()
+        self._worker.join(timeout)
         if self._worker.is_alive():
             _log.warning("rerun did not finish within %g s and was abandoned", timeout)
         return not self._worker.is_alive() and self.failure is None
@@ -294,8 +290,7 @@ class RerunFile(ViewThread):
         self._is_abandoned = True
         if isinstance(error, SystemExit) and isinstance(error.code, int):
             self._exit_code = error.code
-        with suppress(queue.Full):
-            self._queue.put_nowait(None)
+        self._queue.end()
 
     def _end_process(self) -> None:
         """End the process if the thread is still in rerun.

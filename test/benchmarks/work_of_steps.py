@@ -9,11 +9,13 @@ before and after a change of method, first guess or iteration.
 """
 
 import csv
+from pathlib import Path
 
 import click
 
 from bearing_sim import IntegrationError, Simulation, load_scene
 from bearing_sim.scene.loader import scene_from_yaml
+from bearing_sim.scene.quantity import in_digits
 
 CATALOGUE = """
 name: work_of_steps
@@ -41,7 +43,7 @@ def scene_of(bearing, level, speed, load):
 
 
 def work_of(scene):
-    """Return steps a second, iterations a step and rejected steps a second after settling, each for a third of a hundred turns of the shaft."""
+    """Return steps a second, iterations a step and rejected steps a second over 32 turns of the shaft, 0.05 to 0.3 s, after as long a settling."""
     run = Simulation(scene)
     span = min(0.3, max(0.05, 200.0 / run.inputs.shaft_speed))
     run.advance(span)
@@ -52,47 +54,50 @@ def work_of(scene):
     return steps / span, (run.counters.jacobians - before.jacobians) / steps, rejected / span
 
 
-def measured(level):
-    for bearing, speed, load in POINTS:
-        try:
-            work = [f"{figure:.4g}" for figure in work_of(scene_of(bearing, level, speed, load))]
-        except IntegrationError as error:
-            work = [f"failed: {error}", "", ""]
-        yield dict(zip(COLUMNS, (level, bearing, str(speed), load, *work), strict=True))
+def row_of(level, point):
+    """Return a row of the table as texts; where the run failed, the work is empty."""
+    work = ("", "", "")
+    try:
+        work = [in_digits(figure, 4) for figure in work_of(scene_of(point[0], level, *point[1:]))]
+    except IntegrationError as error:
+        print(f"{level} {' '.join(map(str, point))}: {error}")
+    return dict(zip(COLUMNS, (level, *map(str, point), *work), strict=True))
+
+
+def compared(row, old):
+    """Return a row as text, with the ratio of its iterations to those of an earlier row, if there is one and neither failed."""
+    words = [row[name] for name in COLUMNS[:4]]
+    if not row["steps_per_second"]:
+        return "{} {} {} rpm {}: failed".format(*words)
+    text = "{:8s} {:16s} {:>6s} rpm {:>6s}: ".format(*words)
+    text += "{steps_per_second:>6s} steps a second, {iterations_per_step:>5s} iterations each, {rejected_per_second} rejected a second".format(**row)
+    if old is None or not old["steps_per_second"]:
+        return text
+    now, before = (float(each["steps_per_second"]) * float(each["iterations_per_step"]) for each in (row, old))
+    return f"{text}; {now / before:.2f} times the iterations of before"
 
 
 @click.command()
 @click.option("--level", "levels", multiple=True, type=click.Choice(["planar", "spatial"]), default=["planar"], show_default=True)
-@click.option("--csv", "path", type=click.Path(dir_okay=False), help="Write the counts to a table.")
+@click.option("--csv", "path", type=click.Path(dir_okay=False), help="Write the counts to a new table.")
 @click.option("--against", type=click.Path(exists=True, dir_okay=False), help="A table of an earlier run to compare with.")
 def main(levels, path, against):
+    if path and Path(path).exists():
+        raise click.UsageError(f"{path} exists; name a new file")
     earlier = {}
     if against:
         with open(against, newline="") as file:
             earlier = {tuple(row[name] for name in COLUMNS[:4]): row for row in csv.DictReader(file)}
     rows = []
     for level in levels:
-        for row in measured(level):
-            rows.append(row)
-            text = "{level:8s} {bearing:16s} {speed_rpm:>6s} rpm {load:>6s}: {steps_per_second:>7s} steps a second, ".format(**row)
-            text += "{iterations_per_step} iterations each, {rejected_per_second} rejected a second".format(**row)
-            old = earlier.get(tuple(row[name] for name in COLUMNS[:4]))
-            if old:
-                ratio = _iterations(row) / _iterations(old)
-                text += f"; {ratio:.2f} times the iterations of before"
-            print(text, flush=True)
+        for point in POINTS:
+            rows.append(row_of(level, point))
+            print(compared(rows[-1], earlier.get(tuple(rows[-1][name] for name in COLUMNS[:4]))), flush=True)
     if path:
-        with open(path, "w", newline="") as file:
+        with open(path, "x", newline="") as file:
             writer = csv.DictWriter(file, COLUMNS)
             writer.writeheader()
             writer.writerows(rows)
-
-
-def _iterations(row):
-    try:
-        return float(row["steps_per_second"]) * float(row["iterations_per_step"])
-    except ValueError:
-        return float("nan")
 
 
 if __name__ == "__main__":

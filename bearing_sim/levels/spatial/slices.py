@@ -15,6 +15,7 @@ Left out: sliding along the axis of a skewed roller, and the difference of circu
 
 import math
 
+from bearing_sim.levels.common.rollers import add
 from bearing_sim.levels.spatial.state import D_DEPTH, D_RATE, DROP, FRACTION, INNER, OUTER, POSITION, ROLLER, SLICED, SLICED_ROWS
 from bearing_sim.model.params import LOGARITHMIC, SLICED_EQUALLY, STRAIGHT
 from bearing_sim.numerics.compilation import fused, kernel, template
@@ -357,9 +358,9 @@ def average_laminae(turned, interval, params, work):
     """Include the laminae's loads of this instant, with stress risers, in their running means to the exponents of both rings (ISO/TS 16281).
 
     The means are those of `bearing_sim.physics.lamina_life.add_lamina_powers`, each the sum over the lanes of ``work.lamina_powers``.  The first
-    instant starts them.  After that the end of that step counts in which the cage passes the next of equal angles: laminae at every step cost a
-    tenth of it, and with angles that do not depend on the steps, a long step counts more often than a short one.  Laminae are as many as the scene
-    wants for its life, whatever the number of slices that carry the roller: their loads follow from its penetration and lean.
+    instant starts them.  After that the end of each step counts in which the cage passes the next of equal angles: all short steps would cost too
+    much, and with angles that do not depend on the steps, a long step counts more often than a short one.  Laminae are as many as the scene wants
+    for its life, whatever the number of slices that carry the roller: their loads follow from its penetration and lean.
 
     Parameters
     ----------
@@ -373,12 +374,10 @@ def average_laminae(turned, interval, params, work):
     started = spread(0.0)
     for k in range(number):  # the end laminae of a crowned roller may never be loaded
         started += load(powers, INNER, k) + load(powers, OUTER, k)
-    passed = interval * math.floor(work.lamina_turn[0] / interval)
-    weight = 1.0 - math.exp(-passed / (2.0 * math.pi))
-    if not total(started) > 0.0:
-        weight = 1.0
-    elif not passed > 0.0:
+    has_started, passed = total(started) > 0.0, interval * math.floor(work.lamina_turn[0] / interval)
+    if has_started and not passed > 0.0:
         return
+    weight = 1.0 - math.exp(-passed / (2.0 * math.pi)) if has_started else 1.0
     work.lamina_turn[0] -= passed
     for k in range(number):
         store(powers, INNER, k, load(powers, INNER, k) * (1.0 - weight))
@@ -392,7 +391,7 @@ def average_laminae(turned, interval, params, work):
                 # q^4 = (K/N)^4 delta^4 delta^(4/9)
                 inner, root = depth * factor * (laminae.risers[k] * part), ninth_root(larger(depth, TINY))
                 inner, root = inner * inner, root * root
-                store(powers, INNER, k, load(powers, INNER, k) + present * (inner * inner) * (root * root))
+                add(powers, INNER, k, present * (inner * inner) * (root * root))
         if touches(blocks + block, contacts, reach):
             for k in range(number):
                 depth, factor = _lamina_depth(blocks + block, k, contacts, laminae, damping)
@@ -400,7 +399,7 @@ def average_laminae(turned, interval, params, work):
                 stiffness, square, factor_square = laminae.risers[k] * part, depth * depth, factor * factor
                 scale = (stiffness * stiffness) * (stiffness * stiffness) * math.sqrt(stiffness)
                 outer = square * square * depth * (factor_square * factor_square) * square_root(factor)
-                store(powers, OUTER, k, load(powers, OUTER, k) + present * outer * scale)
+                add(powers, OUTER, k, present * outer * scale)
 
 
 @kernel
