@@ -35,6 +35,7 @@ _REAL_TIME = {
     "test_priority",
     "test_recorder",
     "test_recording_files",
+    "test_shared_memory",
     "test_solver",
     "test_view",
 }

@@ -20,6 +20,7 @@ from rclpy.qos import qos_profile_sensor_data  # noqa: E402
 from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.messages.diagnostics import SUBJECTS, WHOLE, events_of  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
+from bearing_sim.ros.shared_memory import remove_unfinished_ports  # noqa: E402
 from bearing_sim.simulation import Inputs  # noqa: E402
 
 GOOD = Inputs(shaft_speed=1000.0, load_y=800.0, load_z=0.0, oil_temperature=393.15)
@@ -102,6 +103,7 @@ class Client:
     """Publishes inputs, keeps outputs, calls services."""
 
     def __init__(self, domain: int, namespace: str = "", scalar: bool = False):
+        remove_unfinished_ports()  # of nodes that tests have killed
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=domain)
         self.node = rclpy.create_node("test_client", context=self.context, namespace=namespace, enable_rosout=False)

@@ -494,9 +494,12 @@ def command(counts, scene, overrides, parameters, duration, input_rate, rate, li
     import rclpy
 
     from bearing_sim.ros.network import use_loopback
+    from bearing_sim.ros.shared_memory import remove_unfinished_ports
 
     use_loopback()
     rclpy.init(args=[])
+    for warning in remove_unfinished_ports():
+        click.echo(warning, err=True)
     names = [name.strip() for name in listen.split(",") if name.strip()]
     cases = []
     try:

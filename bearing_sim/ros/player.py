@@ -33,6 +33,7 @@ from bearing_sim.messages import topics
 from bearing_sim.ros.messages import message, message_class
 from bearing_sim.ros.network import close_other_interfaces, use_loopback
 from bearing_sim.ros.process import signals_end
+from bearing_sim.ros.shared_memory import remove_unfinished_ports
 from bearing_sim.runtime.sim_time import CAUGHT_UP
 from bearing_sim.simulation import Inputs
 
@@ -393,6 +394,8 @@ def main(args: list[str] | None = None) -> int:
     except RuntimeError as error:
         click.echo(f"bearing_player: cannot start ROS: {' '.join(str(error).split())}", err=True)
         return 2
+    for warning in remove_unfinished_ports():
+        click.echo(f"bearing_player: {warning}", err=True)
     ended = Future()
     try:
         with signals_end(ended):

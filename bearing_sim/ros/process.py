@@ -17,6 +17,7 @@ from rclpy.task import Future
 
 from bearing_sim.recording.priority import lower_thread_priority
 from bearing_sim.ros.network import use_loopback
+from bearing_sim.ros.shared_memory import remove_unfinished_ports
 
 _TIMERS = "dds.ev"  # name of the timer thread of Fast DDS
 _LONG = 3600.0  # [s] without a limit, the EventsExecutor of an rclpy built against glibc before 2.30 waits busily and receives nothing
@@ -100,6 +101,8 @@ def _run(name: str, make_node: Callable[[Future], Node], args: list[str] | None,
     try:
         if note:
             get_logger(name).info(note)
+        for warning in remove_unfinished_ports():
+            get_logger(name).warning(warning)
         try:
             node = make_node(ended)
         except rclpy_implementation.RCLError as error:  # such as a middleware that cannot do what the environment asks for

@@ -13,7 +13,6 @@ the files: cut short, overwritten, missing, or an older one in place of the newe
 otherwise.
 """
 
-import os
 import random
 import shutil
 import sys
@@ -35,6 +34,7 @@ from std_msgs.msg import Float64  # noqa: E402
 
 from bearing_sim.cli.options import json_option  # noqa: E402
 from bearing_sim.cli.reporting import FailedRun, print_json, print_table  # noqa: E402
+from bearing_sim.ros.shared_memory import remove_unfinished_ports  # noqa: E402
 from bearing_sim.scene.loader import load_scene  # noqa: E402
 from bearing_sim.simulation import Inputs, Simulation  # noqa: E402
 from bearing_sim.stored_state.state_file import previous_path, read_state  # noqa: E402
@@ -49,7 +49,6 @@ _RATE = 50.0  # [Hz] of inputs
 _INPUTS = Inputs(shaft_speed=1000.0, load_y=800.0, load_z=0.0, oil_temperature=393.15)
 _SETTINGS = {"scene": "deng2017_table1", "overrides": "['level=steady']", "governor": "false", "input_type": "scalar", "maximum_lag": "10.0"}
 _LIFETIME = 3600  # [s] after which a node that is left over ends
-_TRANSPORTS = {"FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}  # a process that is killed within shared memory leaves it locked for the others
 _READY = "ready: listening"  # in the node's log
 FAULTS = ("cut short", "overwritten", "missing", "older")
 """What a loss of power does to a file."""
@@ -106,6 +105,7 @@ class Driver:
     """Sends inputs to the nodes of all chains and hears the life that they publish."""
 
     def __init__(self, domain: int, chains: list[Chain]):
+        remove_unfinished_ports()
         self._context = rclpy.Context()
         rclpy.init(context=self._context, domain_id=domain)
         self._node = rclpy.create_node("state_kills", context=self._context, enable_rosout=False)
@@ -155,8 +155,6 @@ def kill_nodes(folder: Path, kills: int, at_once: int, seed: int, progress=lambd
     longest : life of a node after its first output [s].
     """
     chance, domain = random.Random(seed), fresh_domain()
-    before = {name: os.environ.get(name) for name in _TRANSPORTS}
-    os.environ.update(_TRANSPORTS)
     chains = [Chain(number, folder / f"bearing_{number}.json") for number in range(at_once)]
     driver, done, started = Driver(domain, chains), 0, 0
     try:
@@ -176,8 +174,6 @@ def kill_nodes(folder: Path, kills: int, at_once: int, seed: int, progress=lambd
             if chain.process is not None:
                 chain.process.end(9)
         driver.close()
-        for name, value in before.items():
-            os.environ.pop(name) if value is None else os.environ.update({name: value})
     return [kill for chain in chains for kill in chain.kills]
 
 
