@@ -77,13 +77,18 @@ def guess_known(known, shift, slope, model, work, guess):
 
 
 @kernel
+def keep_correction(y, change, model, work):
+    pass
+
+
+@kernel
 def rosenbrock2_step(t, y, h, model, work, memory, counts):
     return rosenbrock2_attempt(rate_of, rate_and_jacobian, factor, solve, t, y, h, model, work, memory, counts)
 
 
 @kernel
 def sdirk2_step(t, y, h, model, work, memory, counts):
-    return sdirk2_attempt(rate_and_jacobian, guess_known, factor, solve, norm, t, y, h, model, work, memory, counts)
+    return sdirk2_attempt(rate_and_jacobian, guess_known, factor, solve, norm, keep_correction, t, y, h, model, work, memory, counts)
 
 
 @kernel

@@ -9,8 +9,9 @@ import pytest
 from bearing_sim import Inputs, Simulation, load_scene
 from bearing_sim.levels.planar import model as planar
 from bearing_sim.levels.planar.forces import equations
-from bearing_sim.levels.planar.state import BLOCK, BORDER, LOCAL, ROLLERS
+from bearing_sim.levels.planar.state import BLOCK, BORDER, LOCAL, ROLLERS, RollerRow
 from bearing_sim.numerics.simd import LANES
+from bearing_sim.physics.contact import CONTACT
 from bearing_sim.scene.loader import scene_from_yaml
 from bearing_sim.studies.validation.independent import INDEPENDENT
 
@@ -208,3 +209,78 @@ def test_steps_do_not_collapse_where_a_catalogue_bearing_creeps_under_a_heavy_lo
     run.advance(0.3)
     steps, iterations = run.counters.steps - before.steps, run.counters.jacobians - before.jacobians
     assert steps < 200 and iterations < 12 * steps
+
+
+def test_heavy_loads_at_speed_take_no_more_iterations_than_light_ones():
+    """The traction of single rollers bends within a step; an iteration that overshot the bend took seven to ten a step here, alternating."""
+    text = """
+        name: fast and heavy
+        level: planar
+        bearing: {preset: NU 210/C3}
+        lubricant: {oil: ISO VG 68, supply: oil_bath, temperature: 40 degC}
+        operating: {shaft_speed: 6000 rpm, radial_load: 5 kN}
+    """
+    run = Simulation(scene_from_yaml(text))
+    run.advance(0.05)
+    before = run.counters
+    run.advance(0.05)
+    assert run.counters.jacobians - before.jacobians < 4 * (run.counters.steps - before.steps)
+
+
+def corrected(run, roller, **states):
+    """Return state and correction after `planar.restrain` of a correction of one roller, and where its states stand: r, phi, r', phi', w."""
+    model, work, y = run._model(run.inputs, 1.0), run._work, run._state.copy()
+    equations(0.0, y, model, work, np.zeros_like(y), False)
+    own = ROLLERS + roller + run._params.rollers.count * np.arange(BLOCK)
+    change = np.zeros_like(y)
+    for name, value in states.items():
+        change[own[RollerRow._fields.index(name)]] = value
+    before = y.copy()
+    y += change
+    planar.restrain(y, change, model, work)
+    assert np.allclose(y - before, change, rtol=0.0, atol=1e-9), "state and correction change together"
+    return y, change, own
+
+
+def contact_of(run, y, roller, raceway):
+    """Return the row of a contact, by name."""
+    work = run._work
+    equations(0.0, y, run._model(run.inputs, 1.0), work, np.zeros_like(y), False)
+    return CONTACT.__class__(*work.contacts[raceway * work.rollers.shape[0] + roller // LANES, :, roller % LANES])
+
+
+def test_a_correction_from_a_flat_part_of_the_traction_across_pure_rolling_ends_there():
+    run = simulation("operating.radial_load=5 kN", "operating.shaft_speed=5000 rpm")
+    run.advance(0.02)
+    roller = int(np.argmax(run.sample["inner_load"]))
+    run._state[ROLLERS + 4 * run._params.rollers.count + roller] += 400.0  # the spin: far beyond the maximum of the traction
+    before = np.array([contact_of(run, run._state, roller, raceway).sliding for raceway in range(2)])
+    y, change, own = corrected(run, roller, spin=2.5 * before[0] / run._params.rollers.radius)
+    after = np.array([contact_of(run, y, roller, raceway).sliding for raceway in range(2)])
+    assert np.all(after / before > -1e-9) and np.min(after / before) < 1e-6, "one contact rolls, and the other one has not passed that point"
+
+
+def test_a_correction_that_stays_on_its_side_or_begins_where_the_traction_is_steep_is_kept():
+    run = simulation("operating.radial_load=5 kN", "operating.shaft_speed=5000 rpm")
+    run.advance(0.02)
+    roller = int(np.argmax(run.sample["inner_load"]))
+    run._state[ROLLERS + 4 * run._params.rollers.count + roller] += contact_of(run, run._state, roller, 0).sliding / run._params.rollers.radius + 0.05
+    steep = contact_of(run, run._state, roller, 0)
+    assert abs(steep.force) == pytest.approx(steep.d_sliding * abs(steep.sliding), rel=0.2), "the roller nearly rolls on the inner ring"
+    across = 2.5 * steep.sliding / run._params.rollers.radius
+    _, change, own = corrected(run, roller, spin=across)
+    assert change[own[4]] == across
+
+
+def test_a_correction_that_opens_or_closes_an_outer_contact_ends_where_it_barely_touches():
+    run = simulation()
+    run.advance(0.01)
+    roller = int(np.argmin(run.sample["inner_load"]))
+    depth = contact_of(run, run._state, roller, 1).penetration
+    assert depth > 1e-8, "the roller lies on the outer raceway"
+    y, change, own = corrected(run, roller, radius=-3.0 * depth, radial_speed=-1.0)
+    assert contact_of(run, y, roller, 1).penetration == pytest.approx(1e-9, abs=1e-12)
+    assert change[own[2]] == pytest.approx(-(depth - 1e-9) / (3.0 * depth), rel=1e-6), "speed and position of an implicit step change together"
+    run._state[own[0]] -= 3.0 * depth
+    y, _, _ = corrected(run, roller, radius=5.0 * depth)
+    assert contact_of(run, y, roller, 1).penetration == pytest.approx(1e-9, abs=1e-12)

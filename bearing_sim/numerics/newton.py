@@ -2,8 +2,9 @@
 """One damped Newton iteration for the equations of implicit methods, y = known + shift f(t, y).
 
 The damping is an assumption that contacts and laws of friction made necessary.  Where the corrections alternate across a bend of f,
-such as between the two flat ends of a law of traction, half of each is taken, then a quarter and so on, and for longer each time
-before a whole correction is tried again: the solution lies in the middle, at the bend.
+half of one is taken; if they alternate again, a quarter and so on, and for longer each time before a whole correction is tried again: the
+solution lies in the middle, at the bend.  Where a level knows the bend, it restrains its own part of a correction instead, as programs for
+circuits limit the voltage of each junction (L. W. Nagel: SPICE2, Memorandum ERL-M520, Univ. of California, Berkeley 1975).
 """
 
 import math
@@ -18,14 +19,14 @@ _CONTRACTION = 0.1  # assumed of an iteration
 
 @template
 def solve_implicit(
-    rhs_and_jacobian, factor, solve, error_norm,
+    rhs_and_jacobian, factor, solve, error_norm, restrain,
     t, known, shift, enough, y, rate, change, model, work, counts,
 ):  # fmt: skip
     """Solve y = known + shift f(t, y) by a damped Newton iteration.
 
     Parameters
     ----------
-    rhs_and_jacobian, factor, solve, error_norm : kernels of the level, see `bearing_sim.numerics.time_stepping`.
+    rhs_and_jacobian, factor, solve, error_norm, restrain : kernels of the level, see `bearing_sim.numerics.time_stepping`.
     known : what the stage builds on, shape (n,).
     shift : step over the method's leading coefficient [s].
     enough : error that the iteration may leave, over what the tolerances allow in a step.
@@ -41,9 +42,9 @@ def solve_implicit(
     # Derivatives are those of each iterate: the guess is so good that one iteration is most often enough with them, while those of an
     # earlier iterate or stage, with other contacts loaded, leave several to do.
     before = math.inf
-    fraction, calm, patience = 1.0, 0, 1  # of each correction that is taken; corrections since it changed, and until it grows
+    fraction, calm, patience = 1.0, 0, 0  # of each correction that is taken; corrections since it changed, and until it grows
     for iteration in range(_DAMPED_ITERATIONS):
-        if iteration >= _ITERATIONS and patience == 1:
+        if iteration >= _ITERATIONS and patience == 0:
             break
         counts[COUNT.right_hand_sides] += 1
         counts[COUNT.jacobians] += 1
@@ -62,8 +63,9 @@ def solve_implicit(
             return NON_FINITE
         if size * _CONTRACTION < enough:
             return OK
+        restrain(y, change, model, work)
         if size > _STALLED * before:
-            fraction, calm, patience = 0.5 * fraction, 0, 2 * patience
+            fraction, calm, patience = 0.5 * fraction, 0, max(2 * patience, 1)
         else:
             calm += 1
             if calm >= patience:

@@ -10,6 +10,8 @@ predict : ``(known, shift, slope, model, work, guess)`` writes a first guess of 
 factor : ``(shift, work)`` factors I - shift J; returns False where it is singular.
 solve : ``(work, x)`` replaces the right side by the solution with the last factorisation.
 error_norm : ``(t, y, change, model)`` returns the largest ratio of any state's change to what the tolerances allow it.
+restrain : ``(y, change, model, work)`` shortens the part of an iteration's correction that has carried ``y`` too far for its equations to be linear,
+    in both.
 step_limit : ``(t, y, model)`` returns the longest sensible step [s].
 step_taken : ``(h, y, model, work)`` is called after each accepted step.
 attempt : ``(t, y, h, model, work, memory, counts)`` computes a step of ``h`` [s] from (t, y): a method bound to the kernels above, such as

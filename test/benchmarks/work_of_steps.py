@@ -42,23 +42,30 @@ def scene_of(bearing, level, speed, load):
     return scene_from_yaml(CATALOGUE.format(bearing, BEARINGS[bearing]), overrides)
 
 
-def work_of(scene):
-    """Return steps a second, iterations a step and rejected steps a second over 32 turns of the shaft, 0.05 to 0.3 s, after as long a settling."""
+def work_of(scene, stretches=1):
+    """Return steps a second, iterations a step and rejected steps a second.
+
+    Parameters
+    ----------
+    scene : what to run.
+    stretches : of 32 turns of the shaft, 0.05 to 0.3 s, to count over, after another one to settle.
+    """
     run = Simulation(scene)
     span = min(0.3, max(0.05, 200.0 / run.inputs.shaft_speed))
     run.advance(span)
     before = run.counters
+    span *= stretches
     run.advance(span)
     steps = run.counters.steps - before.steps
     rejected = run.counters.rejected_steps - before.rejected_steps
     return steps / span, (run.counters.jacobians - before.jacobians) / steps, rejected / span
 
 
-def row_of(level, point):
+def row_of(level, point, stretches):
     """Return a row of the table as texts; where the run failed, the work is empty."""
     work = ("", "", "")
     try:
-        work = [in_digits(figure, 4) for figure in work_of(scene_of(point[0], level, *point[1:]))]
+        work = [in_digits(figure, 4) for figure in work_of(scene_of(point[0], level, *point[1:]), stretches)]
     except IntegrationError as error:
         print(f"{level} {' '.join(map(str, point))}: {error}")
     return dict(zip(COLUMNS, (level, *map(str, point), *work), strict=True))
@@ -79,9 +86,10 @@ def compared(row, old):
 
 @click.command()
 @click.option("--level", "levels", multiple=True, type=click.Choice(["planar", "spatial"]), default=["planar"], show_default=True)
+@click.option("--stretches", default=1, show_default=True, type=click.IntRange(1), help="Of 0.05 to 0.3 s to count over; creeping bearings scatter.")
 @click.option("--csv", "path", type=click.Path(dir_okay=False), help="Write the counts to a new table.")
 @click.option("--against", type=click.Path(exists=True, dir_okay=False), help="A table of an earlier run to compare with.")
-def main(levels, path, against):
+def main(levels, stretches, path, against):
     if path and Path(path).exists():
         raise click.UsageError(f"{path} exists; name a new file")
     earlier = {}
@@ -91,7 +99,7 @@ def main(levels, path, against):
     rows = []
     for level in levels:
         for point in POINTS:
-            rows.append(row_of(level, point))
+            rows.append(row_of(level, point, stretches))
             print(compared(rows[-1], earlier.get(tuple(rows[-1][name] for name in COLUMNS[:4]))), flush=True)
     if path:
         with open(path, "x", newline="") as file:

@@ -17,6 +17,8 @@ from bearing_sim.numerics.simd import LANES, floor, load, square_root, store
 from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.raceway import contour_lanes
 
+_TOUCH = 1e-9  # m; assumption: bodies that barely touch, which carries some 0.1 N
+
 
 @template
 def add(array, block, row, value):
@@ -199,3 +201,68 @@ def land_eccentricity(ring_y, ring_z, cage_y, cage_z, cage):
     """Return the eccentricity of the cage in what guides it, over its clearance; ``cage`` as in `bearing_sim.model.params.CageBody`."""
     turning = cage.guidance.turning
     return math.hypot(cage_y - turning * ring_y, cage_z - turning * ring_z) / cage.guide_clearance
+
+
+@template
+def restrain_rollers(row, contact, states, y, change, params, rows, contacts):
+    """Shorten an iteration's correction where it carries a roller across a bend that linear equations do not see.
+
+    **Sliding.** Every law of traction is steep at pure rolling and flat far from it.  An iteration that starts in a flat part sees no more than that,
+    overshoots to the flat part on the other side and comes back.  So a correction from a flat part across pure rolling ends at pure rolling, from
+    where the next one finds the solution.  A law is flat where its slope is less than half of that of the chord from pure rolling (assumption).
+
+    **Touching.** An open contact has no stiffness, so a correction that closes it overshoots to loads a hundred times too large; one that opens
+    it leaves a free roller.  A correction across either way ends where roller and outer raceway barely touch.
+
+    Parameters
+    ----------
+    row, contact : rows of ``rows`` and ``contacts``, see the docstring of the module.
+    states : where the rollers' radii, azimuths, radial speeds, orbital speeds and spins begin in ``y``.
+    y, change : state after the correction, and the correction; changed.
+    params : of the bearing.
+    rows, contacts : of the state before the correction.
+    """
+    radii, angles, radial_speeds, orbits, spins = states
+    for j in range(params.rollers.count):
+        block, lane = j // LANES, j % LANES
+        orbit, spin = y[radii + j] * change[orbits + j], params.rollers.radius * change[spins + j]
+        outer = contacts.shape[0] // 2 + block
+        depth = contacts[outer, contact.penetration, lane]
+        touching = _up_to_touching(depth, change[radii + j] - rows[block, row.slope, lane] * change[angles + j])
+        rolling = min(
+            _up_to_rolling(contact, contacts, block, lane, -orbit - spin),
+            _up_to_rolling(contact, contacts, outer, lane, spin - orbit),
+        )
+        if touching < 1.0:
+            _shorten(y, change, radii + j, touching)
+            _shorten(y, change, radial_speeds + j, touching)
+        if rolling < 1.0:
+            _shorten(y, change, angles + j, rolling)
+            _shorten(y, change, orbits + j, rolling)
+            _shorten(y, change, spins + j, rolling)
+
+
+@template
+def _up_to_touching(depth, deepens):
+    """Return the fraction of a change of a penetration [m] that leads to where bodies barely touch; 1 where it leads nowhere else."""
+    if depth * (depth + deepens) >= 0.0 or abs(depth) <= _TOUCH or abs(depth + deepens) <= _TOUCH:
+        return 1.0
+    return (_TOUCH - depth) / deepens
+
+
+@template
+def _up_to_rolling(contact, contacts, block, lane, slides):
+    """Return the fraction of a change of a sliding speed [m/s] that leads from a flat part of the law to pure rolling; 1 where it does not."""
+    sliding = contacts[block, contact.sliding, lane]
+    if sliding * (sliding + slides) >= 0.0:
+        return 1.0
+    if abs(contacts[block, contact.force, lane]) <= 2.0 * contacts[block, contact.d_sliding, lane] * abs(sliding):
+        return 1.0
+    return -sliding / slides
+
+
+@template
+def _shorten(y, change, i, fraction):
+    """Take a fraction of the change of one state."""
+    y[i] -= (1.0 - fraction) * change[i]
+    change[i] *= fraction

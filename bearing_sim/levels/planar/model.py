@@ -11,14 +11,30 @@ from bearing_sim.levels.common.flanges import observe_flanges
 from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import step_powers, write_powers
-from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
+from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers, restrain_rollers
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
 from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
 from bearing_sim.levels.planar import jacobian
 from bearing_sim.levels.planar import state as planar_state
 from bearing_sim.levels.planar.forces import equations
 from bearing_sim.levels.planar.power import planar_powers
-from bearing_sim.levels.planar.state import BLOCK, BORDER, CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, ROLLERS, THETA
+from bearing_sim.levels.planar.state import (
+    BLOCK,
+    BORDER,
+    CAGE_Y,
+    CAGE_Z,
+    OMEGA,
+    PHI,
+    PHI_SPEED,
+    R_SPEED,
+    RING_Y,
+    RING_Z,
+    ROLLER,
+    ROLLERS,
+    SPIN,
+    THETA,
+    R,
+)
 from bearing_sim.model.params import Params
 from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import fused, kernel
@@ -94,6 +110,20 @@ def error_norm(t, y, change, model):
         largest = max(largest, ratio, abs(change[j + 3 * count]) * speed, abs(change[j + 4 * count]) * spin)
         passed += change[j] + change[j + count] + change[j + 3 * count] + change[j + 4 * count]
     return largest if math.isfinite(passed) else passed  # a comparison with NaN would lose it
+
+
+@fused
+def restrain(y, change, model, work):
+    """Shorten the correction of an iteration; see `bearing_sim.levels.common.rollers.restrain_rollers`."""
+    count = model.params.rollers.count
+    states = (
+        ROLLERS + R * count,
+        ROLLERS + PHI * count,
+        ROLLERS + R_SPEED * count,
+        ROLLERS + PHI_SPEED * count,
+        ROLLERS + SPIN * count,
+    )
+    restrain_rollers(ROLLER, CONTACT, states, y, change, model.params, work.rollers, work.contacts)
 
 
 @fused

@@ -14,7 +14,7 @@ from bearing_sim.levels.common.flanges import largest_corner, observe_flanges
 from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import step_powers, write_powers
-from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
+from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers, restrain_rollers
 from bearing_sim.levels.common.slice_balance import balance, roller_tilts
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
 from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
@@ -184,6 +184,20 @@ def error_norm(t, y, change, model):
         passed += change[j] + change[j + PHI * count] + change[j + TILT * count] + change[j + SKEW * count]
         passed += change[j + PHI_SPEED * count] + change[j + SPIN * count]
     return largest if math.isfinite(passed) else passed  # a comparison with NaN would lose it
+
+
+@fused
+def restrain(y, change, model, work):
+    """Shorten the correction of an iteration; see `bearing_sim.levels.common.rollers.restrain_rollers`."""
+    count = model.params.rollers.count
+    states = (
+        ROLLERS + R * count,
+        ROLLERS + PHI * count,
+        ROLLERS + R_SPEED * count,
+        ROLLERS + PHI_SPEED * count,
+        ROLLERS + SPIN * count,
+    )
+    restrain_rollers(ROLLER, SLICED, states, y, change, model.params, work.rollers, work.contacts)
 
 
 @fused
