@@ -42,7 +42,7 @@ def scene_of(bearing, level, speed, load):
     return scene_from_yaml(CATALOGUE.format(bearing, BEARINGS[bearing]), overrides)
 
 
-def work_of(scene, stretches=1):
+def work_of(scene, stretches=12):
     """Return steps a second, iterations a step and rejected steps a second.
 
     Parameters
@@ -86,7 +86,7 @@ def compared(row, old):
 
 @click.command()
 @click.option("--level", "levels", multiple=True, type=click.Choice(["planar", "spatial"]), default=["planar"], show_default=True)
-@click.option("--stretches", default=1, show_default=True, type=click.IntRange(1), help="Of 0.05 to 0.3 s to count over; creeping bearings scatter.")
+@click.option("--stretches", default=12, show_default=True, type=click.IntRange(1), help="Of 0.05 to 0.3 s to count over; creeping bearings scatter.")
 @click.option("--csv", "path", type=click.Path(dir_okay=False), help="Write the counts to a new table.")
 @click.option("--against", type=click.Path(exists=True, dir_okay=False), help="A table of an earlier run to compare with.")
 def main(levels, stretches, path, against):
