@@ -11,7 +11,7 @@ from bearing_sim.levels.planar import model as planar
 from bearing_sim.levels.planar.forces import equations
 from bearing_sim.levels.planar.state import BLOCK, BORDER, LOCAL, ROLLERS, RollerRow
 from bearing_sim.numerics.simd import LANES
-from bearing_sim.physics.contact import CONTACT
+from bearing_sim.physics.contact import ContactRow
 from bearing_sim.scene.loader import scene_from_yaml
 from bearing_sim.studies.validation.independent import INDEPENDENT
 
@@ -194,37 +194,32 @@ def test_an_attempt_that_failed_leaves_nothing_behind_in_lanes_without_a_roller(
     assert (simulation.advance(1e-3)["cage_slip"] == other.advance(1e-3)["cage_slip"]).all()
 
 
-def test_steps_do_not_collapse_where_a_catalogue_bearing_creeps_under_a_heavy_load():
-    """A first guess that moved the ring without the tractions on it took twenty times the steps here, though it saved some on the paper's bearing."""
-    text = """
-        name: creeping
+def work_of_nu_210(speed, load, span):
+    """Return steps and iterations of an NU 210/C3 over a span [s] after as long a settling."""
+    text = f"""
+        name: catalogue bearing
         level: planar
-        bearing: {preset: NU 210/C3}
-        lubricant: {oil: ISO VG 68, supply: oil_bath, temperature: 40 degC}
-        operating: {shaft_speed: 90 rpm, radial_load: 20 kN}
+        bearing: {{preset: NU 210/C3}}
+        lubricant: {{oil: ISO VG 68, supply: oil_bath, temperature: 40 degC}}
+        operating: {{shaft_speed: {speed}, radial_load: {load}}}
     """
     run = Simulation(scene_from_yaml(text))
-    run.advance(0.3)
+    run.advance(span)
     before = run.counters
-    run.advance(0.3)
-    steps, iterations = run.counters.steps - before.steps, run.counters.jacobians - before.jacobians
+    run.advance(span)
+    return run.counters.steps - before.steps, run.counters.jacobians - before.jacobians
+
+
+def test_steps_do_not_collapse_where_a_catalogue_bearing_creeps_under_a_heavy_load():
+    """A first guess that moved the ring without the tractions on it took twenty times the steps here, though it saved some on the paper's bearing."""
+    steps, iterations = work_of_nu_210("90 rpm", "20 kN", 0.3)
     assert steps < 200 and iterations < 12 * steps
 
 
 def test_heavy_loads_at_speed_take_no_more_iterations_than_light_ones():
     """The traction of single rollers bends within a step; an iteration that overshot the bend took seven to ten a step here, alternating."""
-    text = """
-        name: fast and heavy
-        level: planar
-        bearing: {preset: NU 210/C3}
-        lubricant: {oil: ISO VG 68, supply: oil_bath, temperature: 40 degC}
-        operating: {shaft_speed: 6000 rpm, radial_load: 5 kN}
-    """
-    run = Simulation(scene_from_yaml(text))
-    run.advance(0.05)
-    before = run.counters
-    run.advance(0.05)
-    assert run.counters.jacobians - before.jacobians < 4 * (run.counters.steps - before.steps)
+    steps, iterations = work_of_nu_210("6000 rpm", "5 kN", 0.05)
+    assert iterations < 4 * steps
 
 
 def corrected(run, roller, **states):
@@ -246,7 +241,7 @@ def contact_of(run, y, roller, raceway):
     """Return the row of a contact, by name."""
     work = run._work
     equations(0.0, y, run._model(run.inputs, 1.0), work, np.zeros_like(y), False)
-    return CONTACT.__class__(*work.contacts[raceway * work.rollers.shape[0] + roller // LANES, :, roller % LANES])
+    return ContactRow(*work.contacts[raceway * work.rollers.shape[0] + roller // LANES, :, roller % LANES])
 
 
 def test_a_correction_from_a_flat_part_of_the_traction_across_pure_rolling_ends_there():

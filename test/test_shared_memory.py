@@ -61,6 +61,15 @@ def test_a_young_unfinished_port_is_removed_after_the_patience(tmp_path):
     assert time.monotonic() - began > 0.25 and not port.exists()
 
 
+def test_a_port_that_is_begun_while_another_is_waited_for_is_kept(tmp_path):
+    left, begun = file_of(tmp_path / "fastrtps_port12661", b"", age=0.0), tmp_path / "fastrtps_port12663"
+    begin = threading.Timer(0.5, begun.write_bytes, [b""])
+    begin.start()
+    assert [note.split(":")[0] for note in remove_unfinished_ports(tmp_path, patience=1.0)] == [str(left)]
+    begin.join()
+    assert begun.exists()
+
+
 def test_a_time_of_the_file_in_the_future_delays_no_longer_than_the_patience(tmp_path):
     file_of(tmp_path / "fastrtps_port12661", b"", age=-HOUR)
     began = time.monotonic()

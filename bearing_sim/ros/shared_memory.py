@@ -29,10 +29,10 @@ def remove_unfinished_ports(folder: Path = SHARED_MEMORY, patience: float = _PAT
     What to tell the user: a sentence for each port found.
     """
     end = time.monotonic() + patience
-    while (unfinished := [path for path in sorted(folder.glob(_PORTS)) if _is_unfinished(path)]) and time.monotonic() < end:
-        if all(_age(path) > patience for path in unfinished):
-            break
+    unfinished = [path for path in sorted(folder.glob(_PORTS)) if _is_unfinished(path)]
+    while time.monotonic() < end and any(_age(path) <= patience for path in unfinished):
         time.sleep(0.05)
+        unfinished = [path for path in unfinished if _is_unfinished(path)]  # a port that is begun meanwhile is not one that was left
     return [_remove(path) for path in unfinished]
 
 

@@ -204,7 +204,7 @@ def land_eccentricity(ring_y, ring_z, cage_y, cage_z, cage):
 
 
 @template
-def restrain_rollers(row, contact, states, y, change, params, rows, contacts):
+def restrain_rollers(row, contact, at, y, change, params, rows, contacts):
     """Shorten an iteration's correction where it carries a roller across a bend that linear equations do not see.
 
     **Sliding.** Every law of traction is steep at pure rolling and flat far from it.  An iteration that starts in a flat part sees no more than that,
@@ -217,13 +217,15 @@ def restrain_rollers(row, contact, states, y, change, params, rows, contacts):
     Parameters
     ----------
     row, contact : rows of ``rows`` and ``contacts``, see the docstring of the module.
-    states : where the rollers' radii, azimuths, radial speeds, orbital speeds and spins begin in ``y``.
+    at : which of a roller's states are r, phi, r', phi' and w, and where the rollers' states begin.
     y, change : state after the correction, and the correction; changed.
     params : of the bearing.
     rows, contacts : of the state before the correction.
     """
-    radii, angles, radial_speeds, orbits, spins = states
-    for j in range(params.rollers.count):
+    count = params.rollers.count
+    radii, angles, radial_speeds = at[5] + at[0] * count, at[5] + at[1] * count, at[5] + at[2] * count
+    orbits, spins = at[5] + at[3] * count, at[5] + at[4] * count
+    for j in range(count):
         block, lane = j // LANES, j % LANES
         orbit, spin = y[radii + j] * change[orbits + j], params.rollers.radius * change[spins + j]
         outer = contacts.shape[0] // 2 + block

@@ -115,15 +115,8 @@ def error_norm(t, y, change, model):
 @fused
 def restrain(y, change, model, work):
     """Shorten the correction of an iteration; see `bearing_sim.levels.common.rollers.restrain_rollers`."""
-    count = model.params.rollers.count
-    states = (
-        ROLLERS + R * count,
-        ROLLERS + PHI * count,
-        ROLLERS + R_SPEED * count,
-        ROLLERS + PHI_SPEED * count,
-        ROLLERS + SPIN * count,
-    )
-    restrain_rollers(ROLLER, CONTACT, states, y, change, model.params, work.rollers, work.contacts)
+    at = R, PHI, R_SPEED, PHI_SPEED, SPIN, ROLLERS
+    restrain_rollers(ROLLER, CONTACT, at, y, change, model.params, work.rollers, work.contacts)
 
 
 @fused
