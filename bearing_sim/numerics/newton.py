@@ -19,14 +19,14 @@ _CONTRACTION = 0.1  # assumed of an iteration
 
 @template
 def solve_implicit(
-    rhs_and_jacobian, factor, solve, error_norm, restrain,
+    rhs_and_jacobian, factor, solve, correction_norm, restrain,
     t, known, shift, enough, y, rate, change, model, work, counts,
 ):  # fmt: skip
     """Solve y = known + shift f(t, y) by a damped Newton iteration.
 
     Parameters
     ----------
-    rhs_and_jacobian, factor, solve, error_norm, restrain : kernels of the level, see `bearing_sim.numerics.time_stepping`.
+    rhs_and_jacobian, factor, solve, correction_norm, restrain : kernels of the level, see `bearing_sim.numerics.time_stepping`.
     known : what the stage builds on, shape (n,).
     shift : step over the method's leading coefficient [s].
     enough : error that the iteration may leave, over what the tolerances allow in a step.
@@ -58,7 +58,7 @@ def solve_implicit(
         solve(work, change)
         for i in range(y.shape[0]):
             y[i] += change[i]
-        size = error_norm(t, y, change, model)
+        size = correction_norm(t, y, change, model)
         if not math.isfinite(size):
             return NON_FINITE
         if size * _CONTRACTION < enough:

@@ -20,7 +20,7 @@ _ENOUGH = 1 / 60  # of the tolerances: the error that the iteration of a stage m
 
 
 @template
-def sdirk2_attempt(rhs_and_jacobian, predict, factor, solve, error_norm, restrain, t, y, h, model, work, memory, counts):
+def sdirk2_attempt(rhs_and_jacobian, predict, factor, solve, correction_norm, restrain, t, y, h, model, work, memory, counts):
     """Compute one step of ``h`` [s] from (t, y); see `bearing_sim.numerics.time_stepping`.
 
     The error estimate is the difference to the embedded method of order 1, y + h f(Y_1), filtered by the iteration's matrix so that
@@ -42,7 +42,7 @@ def sdirk2_attempt(rhs_and_jacobian, predict, factor, solve, error_norm, restrai
         # a loop and not two texts: the kernels are compiled into it, and both copies would not fit the instruction cache
         predict(known, shift, slope if stage == 0 else error, model, work, result)
         outcome = solve_implicit(
-            rhs_and_jacobian, factor, solve, error_norm, restrain,
+            rhs_and_jacobian, factor, solve, correction_norm, restrain,
             t + (h if stage else shift), known, shift, _ENOUGH, result, rate, change, model, work, counts,
         )  # fmt: skip
         if outcome != OK:

@@ -10,6 +10,7 @@ predict : ``(known, shift, slope, model, work, guess)`` writes a first guess of 
 factor : ``(shift, work)`` factors I - shift J; returns False where it is singular.
 solve : ``(work, x)`` replaces the right side by the solution with the last factorisation.
 error_norm : ``(t, y, change, model)`` returns the largest ratio of any state's change to what the tolerances allow it.
+correction_norm : the same of an iteration's correction, in which a level may weigh states otherwise.
 restrain : ``(y, change, model, work)`` shortens the part of an iteration's correction that has carried ``y`` too far for its equations to be linear,
     in both.
 step_limit : ``(t, y, model)`` returns the longest sensible step [s].

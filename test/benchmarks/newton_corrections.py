@@ -2,13 +2,15 @@
 """How far the first guess of a stage is from its solution, and how well the iteration of the whole system contracts.
 
 python test/benchmarks/newton_corrections.py --level planar --speed "5000 rpm"
+python test/benchmarks/newton_corrections.py my_bearing.yaml --second
 
 Starts from a settled state and takes steps in plain Python, because it looks into the iteration: a stage takes some 20 ms.  With ``--second`` every
-stage takes a second iteration, which shows how much the first one has left.
+stage takes a second iteration, which shows how much the first one has left, of each kind of state in its own tolerance.
 """
 
+import importlib
+import math
 import os
-from itertools import pairwise
 
 import click
 import numpy as np
@@ -16,32 +18,52 @@ import numpy as np
 SETTLING_TURNS = 30.0  # of the cage, from ideal rolling
 
 
-def settled(level, overrides, speed):
-    """Return a settled sample, computed by a process that compiles."""
+def settled(*arguments):
+    """Return a settled sample of `_simulation`, computed by a process that compiles."""
     import concurrent.futures
     import multiprocessing
 
     with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
-        return pool.submit(_settle, level, overrides, speed).result()
+        return pool.submit(_settle, *arguments).result()
 
 
-def _settle(level, overrides, speed):
-    run = _simulation(level, overrides, speed)
+def _settle(*arguments):
+    run = _simulation(*arguments)
     return run.advance(SETTLING_TURNS * 2.0 * np.pi / (0.45 * run.inputs.shaft_speed), samples=2)[-1]
 
 
-def _simulation(level, overrides, speed):
+def _simulation(scene, level, overrides):
     from bearing_sim import Simulation, load_scene
 
-    return Simulation(load_scene("deng2017_table1", [f"level={level}", f"operating.shaft_speed={speed}", *overrides]))
+    return Simulation(load_scene(scene, [f"level={level}", *overrides]))
 
 
-def corrections(run, steps, second):
-    """Advance by about so many steps; return the sizes of the corrections of every stage, in tolerances.
+def kinds(error_norm):
+    """Return functions that give the size of a correction in all tolerances, and in those of positions, play and speeds alone."""
+
+    def alone(**others):
+        def size(t, y, change, model):
+            return error_norm(t, y, change, model._replace(tolerances=model.tolerances._replace(**others)))
+
+        return size
+
+    never = math.inf
+    return {
+        "all": error_norm,
+        "position": alone(play=never, speed=never),
+        "play": alone(position=never, speed=never),
+        "speed": alone(position=never, play=never),
+    }
+
+
+def corrections(run, steps, second, sizes_of):
+    """Advance by about so many steps; return the sizes of the corrections of every stage, in tolerances, by kind.
 
     Parameters
     ----------
     run : simulation, not compiled.
+    steps : how many, at least.
+    sizes_of : see `kinds`.
     second : whether every stage takes a second iteration.
     """
     from bearing_sim.levels.common.model import FIFTH_PITCH, pitch_step
@@ -51,12 +73,12 @@ def corrections(run, steps, second):
         newton._CONTRACTION = 1e3
     solve, stages = sdirk2.solve_implicit, []
 
-    def recording(rhs_and_jacobian, factor, solve_linear, error_norm, *rest):
+    def recording(rhs_and_jacobian, factor, solve_linear, correction_norm, *rest):
         sizes = []
 
         def norm(*arguments):
-            sizes.append(error_norm(*arguments))
-            return sizes[-1]
+            sizes.append({kind: size(*arguments) for kind, size in sizes_of.items()})
+            return correction_norm(*arguments)
 
         outcome = solve(rhs_and_jacobian, factor, solve_linear, norm, *rest)
         stages.append(sizes)
@@ -71,28 +93,31 @@ def corrections(run, steps, second):
 
 
 @click.command()
+@click.argument("scene", default="deng2017_table1")
 @click.option("--level", type=click.Choice(["planar", "spatial"]), default="planar", show_default=True)
-@click.option("--speed", default="5000 rpm", show_default=True, help="Of the shaft.")
+@click.option("--speed", help="Of the shaft [default: the scene's].")
 @click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; can be repeated.")
 @click.option("--steps", default=80, show_default=True, type=click.IntRange(4))
 @click.option("--second", is_flag=True, help="Force a second iteration in every stage.")
-def main(level, speed, overrides, steps, second):
-    start = settled(level, list(overrides), speed)
+def main(scene, level, speed, overrides, steps, second):
+    overrides = [*overrides, *([f"operating.shaft_speed={speed}"] if speed else [])]
+    start = settled(scene, level, overrides)
     os.environ["NUMBA_DISABLE_JIT"] = "1"
-    run = _simulation(level, list(overrides), speed)
+    run = _simulation(scene, level, overrides)
     run.resume(start)
-    stages = corrections(run, steps, second)
-    first = np.array([sizes[0] for sizes in stages])
-    print(f"{level}, {speed}: {len(stages)} stages, {np.mean([len(sizes) for sizes in stages]):.2f} iterations each")
-    print("first correction, tolerances: median {:.3f}, 90 % {:.3f}, largest {:.3f}".format(*np.quantile(first, [0.5, 0.9, 1.0])))
-    for low, high in pairwise([0.0, 0.05, 0.1, 0.2, 0.4, np.inf]):
-        chosen = [sizes for sizes in stages if low <= sizes[0] < high and len(sizes) > 1]
-        if chosen:
-            one, two = np.array([sizes[0] for sizes in chosen]), np.array([sizes[1] for sizes in chosen])
-            print(
-                f"  {low:4.2f} to {high:4.2f}: {len(chosen):4d} stages, second over first: median {np.median(two / one):.4f}, "
-                f"90 % {np.quantile(two / one, 0.9):.4f}; largest second {two.max():.4f}"
+    sizes_of = kinds(importlib.import_module(f"bearing_sim.levels.{level}.model").error_norm)
+    stages = corrections(run, steps, second, sizes_of)
+    print(f"{scene}, {level}: {len(stages)} stages, {np.mean([len(sizes) for sizes in stages]):.2f} iterations each; corrections in tolerances")
+    for kind in sizes_of:
+        first = np.array([sizes[0][kind] for sizes in stages])
+        text = "{:8s}: first correction: median {:.3f}, 90 % {:.3f}, largest {:.3f}".format(kind, *np.quantile(first, [0.5, 0.9, 1.0]))
+        pairs = np.array([(sizes[0][kind], sizes[1][kind]) for sizes in stages if len(sizes) > 1 and sizes[0][kind] > 0.0])
+        if len(pairs):
+            ratios = np.quantile(pairs[:, 1] / pairs[:, 0], [0.5, 0.9])
+            text += "; second over first in {} stages: median {:.4f}, 90 % {:.4f}; largest second {:.4f}".format(
+                len(pairs), *ratios, pairs[:, 1].max()
             )
+        print(text)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import math
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, template
 from bearing_sim.numerics.elementary import cosine_sine
-from bearing_sim.numerics.simd import LANES, floor, load, square_root, store
+from bearing_sim.numerics.simd import LANES, floor, larger, load, spread_run, square_root, store
 from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.raceway import contour_lanes
 
@@ -100,6 +100,45 @@ def place_rollers(row, contact, ring, shaft_speed, inner_radius, params, rows, c
         store(contacts, outer, contact.rate, radial_speed - load(rows, block, row.slope) * orbital_speed)
         store(contacts, outer, contact.rolling, 0.5 * (orbital_speed * (radius + roller_radius) + rolling))
         store(contacts, outer, contact.sliding, surface - radius * orbital_speed)
+
+
+@template
+def carry_normal_forces(row, contact, at, y, ring, evaluated_ring, count, rows, contacts):
+    """Carry penetrations and normal forces from the state at which they were evaluated to ``y``, a correction of an iteration away, to first order.
+
+    With d the changes of the ring's centre, the roller's radius and its azimuth, d delta_i = d_ring . n - dr and d delta_e = dr - R_e' dphi, where n
+    is the direction outwards: that of the contact to a thousandth.
+
+    Parameters
+    ----------
+    row, contact : rows of ``rows`` and ``contacts``, see the docstring of the module; rows of a prediction are overwritten.
+    at : which of a roller's states are r, phi and r', and where the rollers' states begin.
+    ring, evaluated_ring : position y, z [m] and velocity y', z' [m/s] of the inner ring in ``y`` and where forces were evaluated.
+    count : of rollers.
+    """
+    spread_run(y, at[3] + at[0] * count, count, rows, row.known_radius)
+    spread_run(y, at[3] + at[1] * count, count, rows, row.moved)
+    spread_run(y, at[3] + at[2] * count, count, rows, row.known_speed)
+    ring_y, ring_z = ring[0] - evaluated_ring[0], ring[1] - evaluated_ring[1]
+    ring_y_speed, ring_z_speed = ring[2] - evaluated_ring[2], ring[3] - evaluated_ring[3]
+    for block in range(rows.shape[0]):
+        cosine, sine = load(rows, block, row.cosine), load(rows, block, row.sine)
+        outwards = load(rows, block, row.known_radius) - load(rows, block, row.radius)
+        faster = load(rows, block, row.known_speed) - load(rows, block, row.radial_speed)
+        ahead = load(rows, block, row.moved) - load(rows, block, row.angle)
+        deeper = ring_y * cosine + ring_z * sine - outwards
+        _deepen(contact, block, deeper, ring_y_speed * cosine + ring_z_speed * sine - faster, contacts)
+        _deepen(contact, rows.shape[0] + block, outwards - load(rows, block, row.slope) * ahead, faster, contacts)
+
+
+@template
+def _deepen(contact, block, deeper, faster, contacts):
+    """Change penetrations [m] and their rates [m/s] of a block of contacts, and their normal forces to first order."""
+    force = load(contacts, block, contact.load)
+    force += load(contacts, block, contact.stiffness) * deeper + load(contacts, block, contact.damping) * faster
+    store(contacts, block, contact.load, larger(force, 0.0))
+    add(contacts, block, contact.penetration, deeper)
+    add(contacts, block, contact.rate, faster)
 
 
 @template

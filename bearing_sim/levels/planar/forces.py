@@ -237,6 +237,8 @@ def equations(t, y, model, work, rate, with_jacobian):
     inner_radius = params.raceways.inner_radius + inner_growth(shaft_speed, model)
     ring = y[RING_Y], y[RING_Z], y[BORDER + RING_Y], y[BORDER + RING_Z]
     place_rollers(ROLLER, CONTACT, ring, shaft_speed, inner_radius, params, rows, contacts)
+    for k in range(4):
+        work.evaluated_ring[k] = ring[k]
     normal_forces(params, contacts)
     traction(contacts, model.lubrication.inner, model.lubrication.outer)
     if model.lubrication.rolling_resistance.on:

@@ -5,7 +5,17 @@ Parameters and results of every function are those of `bearing_sim.levels.common
 """
 
 from bearing_sim.levels.common.advance import advance_by
-from bearing_sim.levels.planar.model import average_loads, error_norm, factor, observe, restrain, rhs_and_jacobian, solve, step_limit
+from bearing_sim.levels.planar.model import (
+    average_loads,
+    correction_norm,
+    error_norm,
+    factor,
+    observe,
+    restrain,
+    rhs_and_jacobian,
+    solve,
+    step_limit,
+)
 from bearing_sim.levels.planar.predictor import predict
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.sdirk2 import sdirk2_attempt
@@ -13,7 +23,7 @@ from bearing_sim.numerics.sdirk2 import sdirk2_attempt
 
 @fused
 def _attempt(t, y, h, model, work, memory, counts):
-    return sdirk2_attempt(rhs_and_jacobian, predict, factor, solve, error_norm, restrain, t, y, h, model, work, memory, counts)
+    return sdirk2_attempt(rhs_and_jacobian, predict, factor, solve, correction_norm, restrain, t, y, h, model, work, memory, counts)
 
 
 @kernel

@@ -8,10 +8,10 @@ implicit steps: `bearing_sim.levels.planar.jacobian`.
 import math
 
 from bearing_sim.levels.common.flanges import observe_flanges
-from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.model import CALM_POSITIONS, FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import step_powers, write_powers
-from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers, restrain_rollers
+from bearing_sim.levels.common.rollers import carry_normal_forces, land_eccentricity, observe_rollers, restrain_rollers
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
 from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
 from bearing_sim.levels.planar import jacobian
@@ -82,13 +82,25 @@ def solve(work, x):
 
 @fused
 def error_norm(t, y, change, model):
-    """Return the largest ratio of any state's change to its tolerance.
+    """Return the largest ratio of any state's change to its tolerance."""
+    return _largest_ratio(t, y, change, model, 1.0)
+
+
+@fused
+def correction_norm(t, y, change, model):
+    """Return `error_norm` of an iteration's correction, in which positions count by `CALM_POSITIONS`."""
+    return _largest_ratio(t, y, change, model, CALM_POSITIONS)
+
+
+@fused
+def _largest_ratio(t, y, change, model, positions):
+    """Return the largest ratio of any state's change to its tolerance, with a factor ``positions`` for positions.
 
     Positions are the rollers' radii and the ring's centre; play have the rollers in their pockets and the cage.  Spins count by the
     speed of the roller's surface.  Radial speeds and those of both centres follow the positions and are not weighed.
     """
     raceways, rollers = model.params.raceways, model.params.rollers
-    position, play = 1.0 / model.tolerances.position, 1.0 / model.tolerances.play
+    position, play = positions / model.tolerances.position, 1.0 / model.tolerances.play
     speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
     offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
     largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
@@ -127,8 +139,13 @@ def step_limit(t, y, model):
 
 @fused
 def average_loads(h, y, model, work):
-    """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn."""
+    """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn.
+
+    A step leaves the loads of its last iterate but one, and only a micrometre away a load may be another altogether.
+    """
     count, turned = model.params.rollers.count, h * y[OMEGA]
+    ring = y[RING_Y], y[RING_Z], y[BORDER + RING_Y], y[BORDER + RING_Z]
+    carry_normal_forces(ROLLER, CONTACT, (R, PHI, R_SPEED, ROLLERS), y, ring, work.evaluated_ring, count, work.rollers, work.contacts)
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
     average_moments(fraction, work.rollers, ROLLER.present, work.contacts, CONTACT.load, count, work.load_moments)
 

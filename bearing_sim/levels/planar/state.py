@@ -112,6 +112,7 @@ class Work(NamedTuple):
     border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (5, 10)
     factored: Factored  # of I - gamma h J
     support: np.ndarray  # memory of the support, see `bearing_sim.levels.common.support.new_support`
+    evaluated_ring: np.ndarray  # position and velocity of the ring where forces were evaluated last [m, m/s], shape (4,)
     # of roller loads, running means over a cage turn, see `bearing_sim.physics.lamina_life.add_load_moments`, shape (2, MOMENTS)
     load_moments: np.ndarray
 
@@ -131,6 +132,7 @@ def new_work(params):
         np.zeros((BORDER, 2 * BORDER)),
         new_factored(count),
         new_support(params.support, 2 * BORDER + BLOCK * count),
+        np.zeros(4),
         np.zeros((2, MOMENTS)),
     )
 

@@ -28,7 +28,7 @@ import numpy as np
 
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, stop_skew_on_face, total_load
 from bearing_sim.levels.common.model import inner_growth, shaft_speed_at
-from bearing_sim.levels.common.rollers import add, linear_churning, place_in_pockets, place_outwards, place_rollers
+from bearing_sim.levels.common.rollers import add, carry_normal_forces, linear_churning, place_in_pockets, place_outwards, place_rollers
 from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.forces import border_accelerations as planar_accelerations
@@ -42,18 +42,24 @@ from bearing_sim.levels.spatial.state import (
     CAGE_Y,
     CAGE_Z,
     OMEGA,
+    PHI,
+    R_SPEED,
     RING_TILT_Y,
     RING_TILT_Z,
     RING_Y,
     RING_Z,
     ROLLER,
+    ROLLERS,
+    SKEW,
     SLICED,
     THETA,
+    TILT,
+    R,
     collect_rates,
     spread_state,
 )
 from bearing_sim.numerics.compilation import fused, kernel, template
-from bearing_sim.numerics.simd import larger, load, magnitude, spread, store, total, where_positive
+from bearing_sim.numerics.simd import larger, load, magnitude, spread, spread_run, store, total, where_positive
 from bearing_sim.physics.contact import EXPONENT, damped_slice
 from bearing_sim.physics.film import resist_rolling_along
 from bearing_sim.physics.flange import axial_share, flange_friction
@@ -245,10 +251,41 @@ def _place_rollers(y, shaft_speed, inner_radius, params, rows, contacts):
     inner_radius : R_i, grown [m].
     contacts : rows `bearing_sim.levels.spatial.state.SLICED`; takes what goes into the forces.
     """
-    ring = y[RING_Y], y[RING_Z], y[BORDER + RING_Y], y[BORDER + RING_Z]
-    place_rollers(ROLLER, SLICED, ring, shaft_speed, inner_radius, params, rows, contacts)
+    place_rollers(ROLLER, SLICED, _ring(y)[:4], shaft_speed, inner_radius, params, rows, contacts)
     for block in range(rows.shape[0]):
         _lean(block, y, rows, contacts)
+
+
+@template
+def _ring(y):
+    """Return position y, z, velocity y', z' and tilts of the inner ring."""
+    return y[RING_Y], y[RING_Z], y[BORDER + RING_Y], y[BORDER + RING_Z], y[RING_TILT_Y], y[RING_TILT_Z]
+
+
+@fused
+def carry_forces(y, count, work):
+    """Carry penetrations, leans and normal forces along the last correction to ``y``, see `carry_normal_forces`."""
+    rows, contacts, ring, evaluated = work.rollers, work.contacts, _ring(y), work.evaluated_ring
+    carry_normal_forces(ROLLER, SLICED, (R, PHI, R_SPEED, ROLLERS), y, ring, evaluated, count, rows, contacts)
+    spread_run(y, ROLLERS + TILT * count, count, rows, ROLLER.known_tilt)
+    spread_run(y, ROLLERS + SKEW * count, count, rows, ROLLER.known_tilt_speed)
+    ring_y, ring_z = ring[4] - evaluated[4], ring[5] - evaluated[5]
+    for block in range(rows.shape[0]):
+        cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
+        tilting = load(rows, block, ROLLER.known_tilt) - load(rows, block, ROLLER.tilt)
+        skewing = load(rows, block, ROLLER.known_tilt_speed) - load(rows, block, ROLLER.skew)
+        lean_r, lean_t = tilting - (ring_y * cosine + ring_z * sine), skewing - (ring_z * cosine - ring_y * sine)
+        along = load(rows, block, ROLLER.normal_r) * lean_r + load(rows, block, ROLLER.normal_t) * lean_t
+        _lean_further(block, -along, contacts)
+        _lean_further(rows.shape[0] + block, tilting, contacts)
+
+
+@template
+def _lean_further(block, further, contacts):
+    """Change the leans of a block of contacts, and their normal forces to first order."""
+    force = load(contacts, block, SLICED.load) + load(contacts, block, SLICED.stiffness + 1) * further
+    store(contacts, block, SLICED.load, larger(force, 0.0))
+    add(contacts, block, SLICED.lean, further)
 
 
 @fused
@@ -358,6 +395,9 @@ def equations(t, y, model, work, rate, with_jacobian):
         rate[k] = y[BORDER + k]
     cage_cosine, cage_sine = math.cos(y[THETA]), math.sin(y[THETA])
     _place_rollers(y, shaft_speed, inner_radius, params, rows, contacts)
+    ring = _ring(y)
+    for k in range(6):
+        work.evaluated_ring[k] = ring[k]
     points, first_points, count = work.points, work.first_points, params.slices.points
     middle, end = press_points(contacts, points, first_points, params.slices, params.raceways.stiffness, params.ring.contact_damping)
     traction_along(points[:end], middle, count, model.lubrication.inner, model.lubrication.outer)

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.flanges import largest_corner, observe_flanges
-from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.model import CALM_POSITIONS, FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers, restrain_rollers
@@ -20,7 +20,7 @@ from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_
 from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
 from bearing_sim.levels.spatial import jacobian
 from bearing_sim.levels.spatial import state as spatial_state
-from bearing_sim.levels.spatial.forces import equations
+from bearing_sim.levels.spatial.forces import carry_forces, equations
 from bearing_sim.levels.spatial.power import spatial_powers
 from bearing_sim.levels.spatial.slices import average_laminae, lamina_pressures, sum_lamina_powers
 from bearing_sim.levels.spatial.state import (
@@ -150,15 +150,27 @@ def solve(work, x):
 
 @fused
 def error_norm(t, y, change, model):
-    """Return the largest ratio of any state's change to its tolerance.
+    """Return the largest ratio of any state's change to its tolerance."""
+    return _largest_ratio(t, y, change, model, 1.0)
+
+
+@fused
+def correction_norm(t, y, change, model):
+    """Return `error_norm` of an iteration's correction, in which positions count by `CALM_POSITIONS`."""
+    return _largest_ratio(t, y, change, model, CALM_POSITIONS)
+
+
+@fused
+def _largest_ratio(t, y, change, model, positions):
+    """Return the largest ratio of any state's change to its tolerance, with a factor ``positions`` for positions, but not for tilts.
 
     As at level ``planar``; tilts count by what they move the end of a roller, a raceway or a land.  Skew and the cage's tilts have play.
     """
     raceways, rollers, half = model.params.raceways, model.params.rollers, 0.5 * model.params.rollers.length
-    position, play = 1.0 / model.tolerances.position, 1.0 / model.tolerances.play
+    position, play = positions / model.tolerances.position, 1.0 / model.tolerances.play
     speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
     offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
-    tilt, skew = position * half, play * half
+    tilt, skew = half / model.tolerances.position, play * half
     largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
     largest = max(largest, abs(change[OMEGA]) * speed, max(abs(change[RING_TILT_Y]), abs(change[RING_TILT_Z])) * tilt)
     largest = max(largest, max(abs(change[CAGE_TILT_Y]), abs(change[CAGE_TILT_Z])) * play * model.params.tilts.land_position)
@@ -201,8 +213,12 @@ def step_limit(t, y, model):
 
 @fused
 def average_loads(h, y, model, work):
-    """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn."""
+    """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn.
+
+    A step leaves the loads of its last iterate but one, and only a micrometre away a load may be another altogether.
+    """
     count, turned = model.params.rollers.count, h * y[OMEGA]
+    carry_forces(y, count, work)
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
     average_moments(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_moments)
     average_laminae(abs(turned), FIFTH_PITCH * 2.0 * math.pi / count, model.params, work)
