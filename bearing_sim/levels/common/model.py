@@ -11,7 +11,7 @@ from bearing_sim.physics.growth import total_growth
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # golden section: the number that ratios of integers approximate worst
 HALF_PITCH = 1.0 / (2.0 + 1.0 / (3.0 + GOLDEN))  # 0.4393
 FIFTH_PITCH = 1.0 / (4.0 + GOLDEN)  # 0.2165
-CALM_POSITIONS = 0.25  # by which positions count in a correction: a stiff contact leaves a hundredth of it, traction up to a third (assumption)
+POSITION_WEIGHT = 0.25  # of positions in the norm of a correction (assumption): contacts leave less of a correction than tractions do
 
 
 class Drive(NamedTuple):

@@ -9,6 +9,7 @@ roller's, the tangent p is a right angle ahead of it.
 """
 
 import math
+from typing import NamedTuple
 
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, template
@@ -18,6 +19,17 @@ from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.raceway import contour_lanes
 
 _TOUCH = 1e-9  # m; assumption: bodies that barely touch, which carries some 0.1 N
+
+
+class StateRuns(NamedTuple):
+    """Where a level keeps what all levels with rollers of their own have: where the rollers' states begin, and which run of Z states is which."""
+
+    first: int
+    radius: int
+    angle: int
+    radial_speed: int
+    orbital_speed: int
+    spin: int
 
 
 @template
@@ -103,7 +115,7 @@ def place_rollers(row, contact, ring, shaft_speed, inner_radius, params, rows, c
 
 
 @template
-def carry_normal_forces(row, contact, at, y, ring, evaluated_ring, count, rows, contacts):
+def carry_normal_forces(row, contact, runs, y, ring, evaluated_ring, count, rows, contacts):
     """Carry penetrations and normal forces from the state at which they were evaluated to ``y``, a correction of an iteration away, to first order.
 
     With d the changes of the ring's centre, the roller's radius and its azimuth, d delta_i = d_ring . n - dr and d delta_e = dr - R_e' dphi, where n
@@ -112,13 +124,13 @@ def carry_normal_forces(row, contact, at, y, ring, evaluated_ring, count, rows, 
     Parameters
     ----------
     row, contact : rows of ``rows`` and ``contacts``, see the docstring of the module; rows of a prediction are overwritten.
-    at : which of a roller's states are r, phi and r', and where the rollers' states begin.
+    runs : `StateRuns` of the level.
     ring, evaluated_ring : position y, z [m] and velocity y', z' [m/s] of the inner ring in ``y`` and where forces were evaluated.
     count : of rollers.
     """
-    spread_run(y, at[3] + at[0] * count, count, rows, row.known_radius)
-    spread_run(y, at[3] + at[1] * count, count, rows, row.moved)
-    spread_run(y, at[3] + at[2] * count, count, rows, row.known_speed)
+    spread_run(y, runs.first + runs.radius * count, count, rows, row.known_radius)
+    spread_run(y, runs.first + runs.angle * count, count, rows, row.moved)
+    spread_run(y, runs.first + runs.radial_speed * count, count, rows, row.known_speed)
     ring_y, ring_z = ring[0] - evaluated_ring[0], ring[1] - evaluated_ring[1]
     ring_y_speed, ring_z_speed = ring[2] - evaluated_ring[2], ring[3] - evaluated_ring[3]
     for block in range(rows.shape[0]):
@@ -243,7 +255,7 @@ def land_eccentricity(ring_y, ring_z, cage_y, cage_z, cage):
 
 
 @template
-def restrain_rollers(row, contact, at, y, change, params, rows, contacts):
+def restrain_rollers(row, contact, runs, y, change, params, rows, contacts):
     """Shorten an iteration's correction where it carries a roller across a bend that linear equations do not see.
 
     **Sliding.** Every law of traction is steep at pure rolling and flat far from it.  An iteration that starts in a flat part sees no more than that,
@@ -256,14 +268,15 @@ def restrain_rollers(row, contact, at, y, change, params, rows, contacts):
     Parameters
     ----------
     row, contact : rows of ``rows`` and ``contacts``, see the docstring of the module.
-    at : which of a roller's states are r, phi, r', phi' and w, and where the rollers' states begin.
+    runs : `StateRuns` of the level.
     y, change : state after the correction, and the correction; changed.
     params : of the bearing.
     rows, contacts : of the state before the correction.
     """
     count = params.rollers.count
-    radii, angles, radial_speeds = at[5] + at[0] * count, at[5] + at[1] * count, at[5] + at[2] * count
-    orbits, spins = at[5] + at[3] * count, at[5] + at[4] * count
+    radii, angles = runs.first + runs.radius * count, runs.first + runs.angle * count
+    radial_speeds, orbits = runs.first + runs.radial_speed * count, runs.first + runs.orbital_speed * count
+    spins = runs.first + runs.spin * count
     for j in range(count):
         block, lane = j // LANES, j % LANES
         orbit, spin = y[radii + j] * change[orbits + j], params.rollers.radius * change[spins + j]

@@ -29,7 +29,7 @@ import math
 
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, total_load
 from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
-from bearing_sim.levels.common.rollers import add, linear_churning, place_in_pockets, place_outwards, place_rollers
+from bearing_sim.levels.common.rollers import add, carry_normal_forces, linear_churning, place_in_pockets, place_outwards, place_rollers
 from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
 from bearing_sim.levels.planar.jacobian import (
     flange_jacobian,
@@ -48,6 +48,7 @@ from bearing_sim.levels.planar.state import (
     RING_Y,
     RING_Z,
     ROLLER,
+    RUNS,
     THETA,
     collect_rates,
     spread_state,
@@ -147,6 +148,18 @@ def normal_forces(params, contacts):
 
 
 @template
+def _ring(y):
+    """Return position and velocity of the inner ring, as `bearing_sim.levels.common.rollers` takes them."""
+    return y[RING_Y], y[RING_Z], y[BORDER + RING_Y], y[BORDER + RING_Z]
+
+
+@fused
+def carry_forces(y, count, work):
+    """Carry penetrations and normal forces along the last correction to ``y``, see `carry_normal_forces`."""
+    carry_normal_forces(ROLLER, CONTACT, RUNS, y, _ring(y), work.evaluated_ring, count, work.rollers, work.contacts)
+
+
+@template
 def _cage(y):
     """Return position and velocity of the cage's centre and the cage's speed, as `bearing_sim.levels.common.rollers` takes them."""
     return y[CAGE_Y], y[CAGE_Z], y[BORDER + CAGE_Y], y[BORDER + CAGE_Z], y[OMEGA]
@@ -235,7 +248,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     for k in range(BORDER):
         rate[k] = y[BORDER + k]
     inner_radius = params.raceways.inner_radius + inner_growth(shaft_speed, model)
-    ring = y[RING_Y], y[RING_Z], y[BORDER + RING_Y], y[BORDER + RING_Z]
+    ring = _ring(y)
     place_rollers(ROLLER, CONTACT, ring, shaft_speed, inner_radius, params, rows, contacts)
     for k in range(4):
         work.evaluated_ring[k] = ring[k]

@@ -8,15 +8,15 @@ implicit steps: `bearing_sim.levels.planar.jacobian`.
 import math
 
 from bearing_sim.levels.common.flanges import observe_flanges
-from bearing_sim.levels.common.model import CALM_POSITIONS, FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.model import FIFTH_PITCH, POSITION_WEIGHT, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import step_powers, write_powers
-from bearing_sim.levels.common.rollers import carry_normal_forces, land_eccentricity, observe_rollers, restrain_rollers
+from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers, restrain_rollers
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
 from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
 from bearing_sim.levels.planar import jacobian
 from bearing_sim.levels.planar import state as planar_state
-from bearing_sim.levels.planar.forces import equations
+from bearing_sim.levels.planar.forces import carry_forces, equations
 from bearing_sim.levels.planar.power import planar_powers
 from bearing_sim.levels.planar.state import (
     BLOCK,
@@ -24,16 +24,12 @@ from bearing_sim.levels.planar.state import (
     CAGE_Y,
     CAGE_Z,
     OMEGA,
-    PHI,
-    PHI_SPEED,
-    R_SPEED,
     RING_Y,
     RING_Z,
     ROLLER,
     ROLLERS,
-    SPIN,
+    RUNS,
     THETA,
-    R,
 )
 from bearing_sim.model.params import Params
 from bearing_sim.model.sample import COLUMN
@@ -88,19 +84,19 @@ def error_norm(t, y, change, model):
 
 @fused
 def correction_norm(t, y, change, model):
-    """Return `error_norm` of an iteration's correction, in which positions count by `CALM_POSITIONS`."""
-    return _largest_ratio(t, y, change, model, CALM_POSITIONS)
+    """Return `error_norm` of an iteration's correction, in which positions have the weight `POSITION_WEIGHT`."""
+    return _largest_ratio(t, y, change, model, POSITION_WEIGHT)
 
 
 @fused
-def _largest_ratio(t, y, change, model, positions):
-    """Return the largest ratio of any state's change to its tolerance, with a factor ``positions`` for positions.
+def _largest_ratio(t, y, change, model, position_weight):
+    """Return the largest ratio of any state's change to its tolerance, positions with a weight of their own.
 
     Positions are the rollers' radii and the ring's centre; play have the rollers in their pockets and the cage.  Spins count by the
     speed of the roller's surface.  Radial speeds and those of both centres follow the positions and are not weighed.
     """
     raceways, rollers = model.params.raceways, model.params.rollers
-    position, play = positions / model.tolerances.position, 1.0 / model.tolerances.play
+    position, play = position_weight / model.tolerances.position, 1.0 / model.tolerances.play
     speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
     offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
     largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
@@ -127,8 +123,7 @@ def _largest_ratio(t, y, change, model, positions):
 @fused
 def restrain(y, change, model, work):
     """Shorten the correction of an iteration; see `bearing_sim.levels.common.rollers.restrain_rollers`."""
-    at = R, PHI, R_SPEED, PHI_SPEED, SPIN, ROLLERS
-    restrain_rollers(ROLLER, CONTACT, at, y, change, model.params, work.rollers, work.contacts)
+    restrain_rollers(ROLLER, CONTACT, RUNS, y, change, model.params, work.rollers, work.contacts)
 
 
 @fused
@@ -144,8 +139,7 @@ def average_loads(h, y, model, work):
     A step leaves the loads of its last iterate but one, and only a micrometre away a load may be another altogether.
     """
     count, turned = model.params.rollers.count, h * y[OMEGA]
-    ring = y[RING_Y], y[RING_Z], y[BORDER + RING_Y], y[BORDER + RING_Z]
-    carry_normal_forces(ROLLER, CONTACT, (R, PHI, R_SPEED, ROLLERS), y, ring, work.evaluated_ring, count, work.rollers, work.contacts)
+    carry_forces(y, count, work)
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
     average_moments(fraction, work.rollers, ROLLER.present, work.contacts, CONTACT.load, count, work.load_moments)
 

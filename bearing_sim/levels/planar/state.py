@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.common.flanges import PLANE_ROWS
+from bearing_sim.levels.common.rollers import StateRuns
 from bearing_sim.levels.common.support import new_support
 from bearing_sim.numerics.compilation import fused
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
@@ -31,6 +32,7 @@ RING_Y, RING_Z, CAGE_Y, CAGE_Z, THETA = 0, 1, 2, 3, 4
 OMEGA = BORDER + THETA
 ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the five
 R, PHI, R_SPEED, PHI_SPEED, SPIN = 0, 1, 2, 3, 4
+RUNS = StateRuns(ROLLERS, R, PHI, R_SPEED, PHI_SPEED, SPIN)
 
 
 class Factored(NamedTuple):

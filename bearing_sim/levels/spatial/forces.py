@@ -42,19 +42,17 @@ from bearing_sim.levels.spatial.state import (
     CAGE_Y,
     CAGE_Z,
     OMEGA,
-    PHI,
-    R_SPEED,
     RING_TILT_Y,
     RING_TILT_Z,
     RING_Y,
     RING_Z,
     ROLLER,
     ROLLERS,
+    RUNS,
     SKEW,
     SLICED,
     THETA,
     TILT,
-    R,
     collect_rates,
     spread_state,
 )
@@ -266,7 +264,7 @@ def _ring(y):
 def carry_forces(y, count, work):
     """Carry penetrations, leans and normal forces along the last correction to ``y``, see `carry_normal_forces`."""
     rows, contacts, ring, evaluated = work.rollers, work.contacts, _ring(y), work.evaluated_ring
-    carry_normal_forces(ROLLER, SLICED, (R, PHI, R_SPEED, ROLLERS), y, ring, evaluated, count, rows, contacts)
+    carry_normal_forces(ROLLER, SLICED, RUNS, y, ring, evaluated, count, rows, contacts)
     spread_run(y, ROLLERS + TILT * count, count, rows, ROLLER.known_tilt)
     spread_run(y, ROLLERS + SKEW * count, count, rows, ROLLER.known_tilt_speed)
     ring_y, ring_z = ring[4] - evaluated[4], ring[5] - evaluated[5]

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.flanges import largest_corner, observe_flanges
-from bearing_sim.levels.common.model import CALM_POSITIONS, FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.model import FIFTH_PITCH, POSITION_WEIGHT, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers, restrain_rollers
@@ -40,6 +40,7 @@ from bearing_sim.levels.spatial.state import (
     RING_Z,
     ROLLER,
     ROLLERS,
+    RUNS,
     SKEW,
     SLICED,
     SPIN,
@@ -156,18 +157,18 @@ def error_norm(t, y, change, model):
 
 @fused
 def correction_norm(t, y, change, model):
-    """Return `error_norm` of an iteration's correction, in which positions count by `CALM_POSITIONS`."""
-    return _largest_ratio(t, y, change, model, CALM_POSITIONS)
+    """Return `error_norm` of an iteration's correction, in which positions have the weight `POSITION_WEIGHT`."""
+    return _largest_ratio(t, y, change, model, POSITION_WEIGHT)
 
 
 @fused
-def _largest_ratio(t, y, change, model, positions):
-    """Return the largest ratio of any state's change to its tolerance, with a factor ``positions`` for positions, but not for tilts.
+def _largest_ratio(t, y, change, model, position_weight):
+    """Return the largest ratio of any state's change to its tolerance, positions, but not tilts, with a weight of their own.
 
     As at level ``planar``; tilts count by what they move the end of a roller, a raceway or a land.  Skew and the cage's tilts have play.
     """
     raceways, rollers, half = model.params.raceways, model.params.rollers, 0.5 * model.params.rollers.length
-    position, play = positions / model.tolerances.position, 1.0 / model.tolerances.play
+    position, play = position_weight / model.tolerances.position, 1.0 / model.tolerances.play
     speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
     offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
     tilt, skew = half / model.tolerances.position, play * half
@@ -201,8 +202,7 @@ def _largest_ratio(t, y, change, model, positions):
 @fused
 def restrain(y, change, model, work):
     """Shorten the correction of an iteration; see `bearing_sim.levels.common.rollers.restrain_rollers`."""
-    at = R, PHI, R_SPEED, PHI_SPEED, SPIN, ROLLERS
-    restrain_rollers(ROLLER, SLICED, at, y, change, model.params, work.rollers, work.contacts)
+    restrain_rollers(ROLLER, SLICED, RUNS, y, change, model.params, work.rollers, work.contacts)
 
 
 @fused

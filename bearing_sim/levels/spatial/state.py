@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.common.flanges import ROWS as FLANGE_ROWS
+from bearing_sim.levels.common.rollers import StateRuns
 from bearing_sim.levels.common.support import new_support
 from bearing_sim.numerics.compilation import fused
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
@@ -45,6 +46,7 @@ RING_Y, RING_Z, RING_TILT_Y, RING_TILT_Z, CAGE_Y, CAGE_Z, CAGE_TILT_Y, CAGE_TILT
 OMEGA = BORDER + THETA
 ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the nine
 R, PHI, TILT, SKEW, R_SPEED, PHI_SPEED, TILT_SPEED, SKEW_SPEED, SPIN = range(BLOCK)
+RUNS = StateRuns(ROLLERS, R, PHI, R_SPEED, PHI_SPEED, SPIN)
 INNER, OUTER = 0, 1  # raceways in the means of laminae
 _PLAIN_ROWS = 67  # of a roller without flanges
 ROLLER_ROWS = _PLAIN_ROWS + 2 * FLANGE_ROWS
