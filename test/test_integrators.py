@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from one_equation import factor, failing, no_limit, solve, step_taken
 
+from bearing_sim.numerics import tr_bdf2
 from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.rosenbrock2 import rosenbrock2_attempt
-from bearing_sim.numerics.sdirk2 import sdirk2_attempt
+from bearing_sim.numerics.rosenbrock2 import ERROR_ORDER, rosenbrock2_attempt
 from bearing_sim.numerics.time_stepping import (
     COUNT,
     NON_FINITE,
@@ -87,8 +87,10 @@ def rosenbrock2_step(t, y, h, model, work, memory, counts):
 
 
 @kernel
-def sdirk2_step(t, y, h, model, work, memory, counts):
-    return sdirk2_attempt(rate_and_jacobian, guess_known, factor, solve, norm, keep_correction, t, y, h, model, work, memory, counts)
+def tr_bdf2_step(t, y, h, model, work, memory, counts):
+    return tr_bdf2.tr_bdf2_attempt(
+        rate_of, rate_and_jacobian, guess_known, factor, solve, norm, norm, keep_correction, t, y, h, model, work, memory, counts
+    )
 
 
 @kernel
@@ -98,50 +100,64 @@ def failing_step(t, y, h, model, work, memory, counts):
 
 @kernel
 def with_error_by_length(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(error_by_length, norm, no_limit, keep_longest, False, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(
+        error_by_length, ERROR_ORDER, norm, no_limit, keep_longest, False, t, end, y, h, longest, budget, model, work, memory, counts
+    )
 
 
 @kernel
 def by_rosenbrock2(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(rosenbrock2_step, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(
+        rosenbrock2_step, ERROR_ORDER, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts
+    )
 
 
 @kernel
 def by_rosenbrock2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(rosenbrock2_step, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(
+        rosenbrock2_step, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts
+    )
 
 
 @kernel
-def by_sdirk2(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(sdirk2_step, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts)
+def by_tr_bdf2(t, end, y, h, longest, budget, model, work, memory, counts):
+    return advance_in_steps(
+        tr_bdf2_step, tr_bdf2.ERROR_ORDER, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts
+    )
 
 
 @kernel
-def by_sdirk2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(sdirk2_step, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
+def by_tr_bdf2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
+    return advance_in_steps(
+        tr_bdf2_step, tr_bdf2.ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts
+    )
 
 
 @kernel
 def by_failing_kernels(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(failing_step, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(failing_step, ERROR_ORDER, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_failing_kernels_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(failing_step, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(failing_step, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_short_steps_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(solved_if_short, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(
+        solved_if_short, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts
+    )
 
 
 @kernel
 def across_an_impact_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(unsolved_across_an_impact, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(
+        unsolved_across_an_impact, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts
+    )
 
 
-ADAPTIVE, FIXED = [by_rosenbrock2, by_sdirk2], [by_rosenbrock2_fixed, by_sdirk2_fixed]
+ADAPTIVE, FIXED = [by_rosenbrock2, by_tr_bdf2], [by_rosenbrock2_fixed, by_tr_bdf2_fixed]
 
 
 def solution(run, stiffness=2.0, step=1e9, given=1.0, tolerance=1e-9, end=2.0, budget=10**7, start=1.0, nan_from=math.inf, solvable=math.inf):
@@ -151,8 +167,8 @@ def solution(run, stiffness=2.0, step=1e9, given=1.0, tolerance=1e-9, end=2.0, b
     return y[0], status, counts
 
 
-def orders(run, stiffness=2.0, given=1.0):
-    errors = [abs(solution(run, stiffness, 2.0 / steps, given)[0] - math.cos(2.0)) for steps in (64, 128, 256)]
+def orders(run, stiffness=2.0, given=1.0, tolerance=1e-9):
+    errors = [abs(solution(run, stiffness, 2.0 / steps, given, tolerance)[0] - math.cos(2.0)) for steps in (64, 128, 256)]
     return [math.log2(a / b) for a, b in zip(errors, errors[1:])]
 
 
@@ -161,9 +177,52 @@ def test_rosenbrock2_is_of_order_2_whatever_jacobian_it_is_given(given):
     assert orders(by_rosenbrock2_fixed, given=given) == pytest.approx([2.0, 2.0], abs=0.2)
 
 
-@pytest.mark.parametrize("stiffness", [2.0, 50.0])
-def test_sdirk2_is_of_order_2(stiffness):
-    assert orders(by_sdirk2_fixed, stiffness) == pytest.approx([2.0, 2.0], abs=0.25)
+@pytest.mark.parametrize("stiffness", [1.0, 2.0])
+def test_tr_bdf2_is_of_order_3(stiffness):
+    assert orders(by_tr_bdf2_fixed, stiffness, tolerance=1.0) == pytest.approx([3.0, 3.0], abs=0.15)
+
+
+def test_what_tr_bdf2_adds_to_its_stages_is_left_out_where_it_is_many_tolerances():
+    # as after the impact of a body: with nothing added the order is that of the stages
+    assert orders(by_tr_bdf2_fixed, 2.0, tolerance=1e-12) == pytest.approx([2.0, 2.0], abs=0.15)
+
+
+def factor_of_a_step(z):
+    """Return R(z) of y' = lambda y, z = lambda h: the stages of Hosea and Shampine 1996 and the filtered error, written out."""
+    d, w, b = 1.0 - math.sqrt(0.5), math.sqrt(2.0) / 4.0, 0.75
+    inner = (1.0 + d * z) / (1.0 - d * z)
+    end = (1.0 + w * z * (1.0 + inner)) / (1.0 - d * z)
+    third = 1.0 + z * ((1.0 - w) / 3.0 + (3.0 * w + 1.0) / 3.0 * inner + d / 3.0 * end)
+    filtered = 1.0 / (1.0 - d * z)
+    return end + filtered**2 * ((1.0 + b) - b * filtered) * (third - end)
+
+
+@pytest.mark.parametrize("z", [-0.1, -2.0, -30.0])
+def test_tr_bdf2_takes_the_steps_of_its_formulas(z):
+    # y' = -k (y - cos t) - sin t with two starts: the difference of the solutions decays without the right side
+    steps, decay = 5, [solution(by_tr_bdf2_fixed, -z, 1.0, end=5.0, start=start, tolerance=100.0)[0] for start in (3.0, 1.0)]
+    assert (decay[0] - decay[1]) / 2.0 == pytest.approx(factor_of_a_step(z) ** steps, rel=1e-6, abs=1e-12)
+
+
+def test_tr_bdf2_is_stable_on_the_left_half_plane_and_damps_what_is_stiff():
+    along, across = np.r_[0.0, np.geomspace(1e-3, 1e5, 300)], np.r_[0.0, np.geomspace(1e-3, 1e5, 300)]
+    z = -along[:, None] + 1j * across[None, :]
+    assert abs(factor_of_a_step(z)).max() < 1.0 + 1e-12
+    assert abs(factor_of_a_step(1j * 1e4)) < 1e-3 and abs(factor_of_a_step(-1e4)) < 1e-3
+
+
+def test_an_oscillation_keeps_its_amplitude_and_its_time_at_six_steps_a_period():
+    # A ring in resonance with the passing rollers has a life that an error of the period decides: that of Y_2 is 4 % here.
+    factor = factor_of_a_step(1j * 2.0 * math.pi / 6.0)
+    assert abs(factor) == pytest.approx(1.0, abs=3e-3)
+    assert np.angle(factor) == pytest.approx(2.0 * math.pi / 6.0, rel=1e-3)
+
+
+def test_tr_bdf2_evaluates_the_slope_anew_where_none_is_kept():
+    y, counts, memory, model = np.array([3.0]), new_counts(), new_memory(1), np.array([2.0, 1.0, 1.0, math.inf, 0.0])
+    memory.scratch[7:9] = 1e3  # of other inputs
+    by_tr_bdf2_fixed(0.0, 0.1, y, 0.1, 0.1, 10, model, np.zeros(2), memory, counts)
+    assert y[0] == pytest.approx(math.cos(0.1) + 2.0 * math.exp(-0.2), abs=1e-4)
 
 
 def test_rosenbrock2_follows_a_stiff_solution_at_steps_a_million_times_its_time_constant():
@@ -174,22 +233,22 @@ def test_rosenbrock2_follows_a_stiff_solution_at_steps_a_million_times_its_time_
     assert abs(solution(by_rosenbrock2_fixed, 1e9, 0.005)[0] - math.cos(2.0)) < 0.005
 
 
-def test_sdirk2_follows_a_stiff_solution_without_lagging():
-    assert solution(by_sdirk2_fixed, 1e9, 0.02)[0] == pytest.approx(math.cos(2.0), abs=1e-8)
+def test_tr_bdf2_follows_a_stiff_solution_without_lagging():
+    assert solution(by_tr_bdf2_fixed, 1e9, 0.02)[0] == pytest.approx(math.cos(2.0), abs=1e-8)
 
 
-@pytest.mark.parametrize(("run", "error"), [(by_rosenbrock2_fixed, 1e-2), (by_sdirk2_fixed, 1e-5)])
+@pytest.mark.parametrize(("run", "error"), [(by_rosenbrock2_fixed, 1e-2), (by_tr_bdf2_fixed, 1e-5)])
 def test_a_stiff_transient_dies_in_one_long_step(run, error):
     # L-stability: the factor of one step goes to zero with the stiffness
     assert solution(run, 1e12, 1e-3, end=1e-3, start=5.0)[0] == pytest.approx(1.0, abs=error)
 
 
-@pytest.mark.parametrize("run", ADAPTIVE)
-def test_error_stays_within_a_few_tolerances_and_work_grows_with_accuracy(run):
+@pytest.mark.parametrize(("run", "more"), [(by_rosenbrock2, 5), (by_tr_bdf2, 4)])
+def test_error_stays_within_a_few_tolerances_and_work_grows_with_accuracy(run, more):
     loose, _, loose_counts = solution(run, 50.0, tolerance=3e-3)
     tight, _, tight_counts = solution(run, 50.0, tolerance=3e-6)
     assert abs(loose - math.cos(2.0)) < 5e-3 and abs(tight - math.cos(2.0)) < 5e-6
-    assert tight_counts[COUNT.steps] > 5 * loose_counts[COUNT.steps]
+    assert tight_counts[COUNT.steps] > more * loose_counts[COUNT.steps]
 
 
 @pytest.mark.parametrize("first", [1.0, 1e-6])

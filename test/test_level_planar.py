@@ -216,10 +216,10 @@ def test_steps_do_not_collapse_where_a_catalogue_bearing_creeps_under_a_heavy_lo
     assert steps < 200 and iterations < 12 * steps
 
 
-def test_heavy_loads_at_speed_take_no_more_iterations_than_light_ones():
-    """The traction of single rollers bends within a step; an iteration that overshot the bend took seven to ten a step here, alternating."""
-    steps, iterations = work_of_nu_210("6000 rpm", "5 kN", 0.05)
-    assert iterations < 4 * steps
+def test_heavy_loads_at_speed_take_hardly_more_iterations_than_light_ones():
+    """The traction of single rollers bends within a step; an iteration that overshot the bend alternated, and took two to three times as many."""
+    (_, heavy), (_, light) = (work_of_nu_210("6000 rpm", load, 0.05) for load in ("5 kN", "1 kN"))
+    assert heavy < 1.6 * light
 
 
 def corrected(run, roller, **states):

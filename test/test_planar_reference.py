@@ -195,15 +195,15 @@ def test_course_over_2_ms_is_that_of_an_explicit_method_of_order_8_and_comes_nea
 
     expected = scipy_run(rate, run._state.copy(), 2e-3)
     errors = []
-    for tolerances in (1e-2, 1e-3):
+    for tolerances in (1e-2, 1e-4):
         run = simulation(*tolerance_overrides(tolerances))
         run.advance(2e-3)
         errors.append(np.abs(run._state - expected))
     loose, tight = (np.array([error[kinds(18) == kind].max() for kind in range(11)]) for error in errors)
     # ring and cage [m], cage angle, their speeds; then r, phi, r', phi', w of the rollers
-    allowed = [1e-10, 3e-9, 3e-8, 1e-5, 3e-6, 5e-5, 1e-8, 1e-7, 3e-3, 1e-3, 5e-3]
+    allowed = [5e-11, 3e-10, 1e-8, 5e-6, 5e-7, 5e-6, 5e-10, 3e-8, 1e-4, 2e-4, 5e-3]
     assert (tight < allowed).all()
-    assert np.median(loose / tight) > 5
+    assert np.median(loose / tight) > 20
 
 
 @pytest.mark.parametrize("guidance", ["outer_ring", "inner_ring", "roller"])
@@ -211,7 +211,7 @@ def test_course_over_2_ms_is_that_of_an_explicit_method_of_order_8_and_comes_nea
 def test_energy_and_momentum_are_kept(start, guidance):
     reference, duration = Reference(guidance=guidance), 5e-5
     guided = [f"bearing.cage.guidance={guidance}", "bearing.cage.outer_radius=33.35 mm"]
-    run = simulation(*tolerance_overrides(1e-3), *guided)
+    run = simulation(*tolerance_overrides(1e-4), *guided)
     run.advance(5e-3)
     state = run._state
     if start != "as it comes":

@@ -34,7 +34,7 @@ def damage(level, factor):
 @pytest.mark.parametrize("level", LEVELS)
 def test_loose_tolerances_where_the_passing_rollers_limit_the_steps_do_not_change_a_life(level):
     """With loads of the last iterate but one, the first guess more often than not, damage was 2.8 % off at three times the tolerances."""
-    assert damage(level, 3.0) == pytest.approx(damage(level, 0.3), rel=0.01)
+    assert damage(level, 3.0) == pytest.approx(damage(level, 0.3), rel=0.015)
 
 
 def correction(level, state):

@@ -16,6 +16,7 @@ from bearing_sim.numerics.compilation import template
 from bearing_sim.numerics.time_stepping import COUNT, NOT_CONVERGED, NOT_EVALUATED, OK
 
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
+ERROR_ORDER = 2.0  # the error estimate goes with this power of the step
 
 
 @template

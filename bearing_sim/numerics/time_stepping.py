@@ -16,7 +16,7 @@ restrain : ``(y, change, model, work)`` shortens the part of an iteration's corr
 step_limit : ``(t, y, model)`` returns the longest sensible step [s].
 step_taken : ``(h, y, model, work)`` is called after each accepted step.
 attempt : ``(t, y, h, model, work, memory, counts)`` computes a step of ``h`` [s] from (t, y): a method bound to the kernels above, such as
-    `bearing_sim.numerics.sdirk2.sdirk2_attempt`.  It leaves the result in row 1 of ``memory.scratch`` and the error estimate in row 2, and
+    `bearing_sim.numerics.tr_bdf2.tr_bdf2_attempt`.  It leaves the result in row 1 of ``memory.scratch`` and the error estimate in row 2, and
     returns a status.
 
 Compiled code raises nothing: how an advance ended is a value.
@@ -103,7 +103,6 @@ def new_memory(size: int) -> Memory:
 # IV.8); the numbers are an assumption.  The rule aims at a quarter of the tolerances, because a rejected step costs as much as an
 # accepted one, and its growth is damped (_GAIN), because the error of a step with impacts scatters by a factor of ten from one step
 # to the next.
-_ORDER = 2.0  # of the error estimate in the step: that of an embedded method of order 1
 _AIM, _GAIN = 0.24, 0.2
 _LARGEST_GROWTH, _LARGEST_SHRINK, _SHRINK_UNSOLVED = 4.0, 0.2, 0.1
 
@@ -118,13 +117,13 @@ def _fit(limit, maximum_step, end, control):
 
 
 @kernel
-def _accept(error, end, y, result, control):
+def _accept(error, order, end, y, result, control):
     """Take the result of the step, and grow or shrink the next one so that its error comes near the aim."""
     step, allowed = control[CONTROL.step], control[CONTROL.allowed]
     for i in range(y.shape[0]):
         y[i] = result[i]
     control[CONTROL.time] = end if step == end - control[CONTROL.time] else control[CONTROL.time] + step
-    growth = min(_LARGEST_GROWTH, (_AIM / (error + 1e-10)) ** (_GAIN / _ORDER))
+    growth = min(_LARGEST_GROWTH, (_AIM / (error + 1e-10)) ** (_GAIN / order))
     if step < allowed:
         control[CONTROL.next_step] = max(step * growth, control[CONTROL.next_step])
     else:
@@ -132,11 +131,11 @@ def _accept(error, end, y, result, control):
 
 
 @kernel
-def _reject(error, control):
+def _reject(error, order, control):
     """Shorten the step so that its error comes near the aim, or to a tenth where there is no error to go by."""
     step = control[CONTROL.step]
     if math.isfinite(error):
-        control[CONTROL.next_step] = max(step * max(_LARGEST_SHRINK, (_AIM / error) ** (1.0 / _ORDER)), SMALLEST_STEP)
+        control[CONTROL.next_step] = max(step * max(_LARGEST_SHRINK, (_AIM / error) ** (1.0 / order)), SMALLEST_STEP)
     else:
         control[CONTROL.next_step] = step * _SHRINK_UNSOLVED
 
@@ -189,7 +188,7 @@ def _accept_part(y, result, control):
 
 @template
 def advance_in_steps(
-    attempt, error_norm, step_limit, step_taken, fixed, t, end, y, h, maximum_step, budget, model, work, memory, counts,
+    attempt, error_order, error_norm, step_limit, step_taken, fixed, t, end, y, h, maximum_step, budget, model, work, memory, counts,
 ):  # fmt: skip
     """Advance ``y`` in place from ``t`` to ``end``, accepting or rejecting each step by its error, or in equal steps.
 
@@ -201,6 +200,7 @@ def advance_in_steps(
     Parameters
     ----------
     attempt, error_norm, step_limit, step_taken : kernels of the level, see the module's docstring.
+    error_order : power of the step with which the error estimate goes, such as `bearing_sim.numerics.tr_bdf2.ERROR_ORDER`.
     fixed : whether steps are equal.  Both ways share one loop, because most of what there is to compile is the attempt in it.
     t, end : time, and time to reach [s].
     y : newest state, changed in place.
@@ -239,7 +239,7 @@ def advance_in_steps(
             if fixed:
                 _accept_part(y, result, control)
             else:
-                _accept(error, end, y, result, control)
+                _accept(error, error_order, end, y, result, control)
             step_taken(step, y, model, work)
             continue
         if outcome == OK and not finite:
@@ -252,7 +252,7 @@ def advance_in_steps(
                 return outcome, control[CONTROL.next_step]
             control[CONTROL.parts_done], control[CONTROL.parts] = 2.0 * control[CONTROL.parts_done], 2.0 * control[CONTROL.parts]
         else:
-            _reject(error, control)
+            _reject(error, error_order, control)
             if control[CONTROL.next_step] < SMALLEST_STEP:
                 return outcome if outcome != OK else NON_FINITE, control[CONTROL.next_step]
     return OK, control[CONTROL.next_step]

@@ -67,11 +67,11 @@ def corrections(run, steps, second, sizes_of):
     second : whether every stage takes a second iteration.
     """
     from bearing_sim.levels.common.model import FIFTH_PITCH, pitch_step
-    from bearing_sim.numerics import newton, sdirk2
+    from bearing_sim.numerics import newton, tr_bdf2
 
     if second:
         newton._CONTRACTION = 1e3
-    solve, stages = sdirk2.solve_implicit, []
+    solve, stages = tr_bdf2.solve_implicit, []
 
     def recording(rhs_and_jacobian, factor, solve_linear, correction_norm, *rest):
         sizes = []
@@ -84,11 +84,11 @@ def corrections(run, steps, second, sizes_of):
         stages.append(sizes)
         return outcome
 
-    sdirk2.solve_implicit = recording
+    tr_bdf2.solve_implicit = recording
     longest = pitch_step(run.sample["cage_speed"], run._params.rollers.count, FIFTH_PITCH)
     while len(stages) < 2 * steps:
         run.advance(4.0 * longest)
-    sdirk2.solve_implicit = solve
+    tr_bdf2.solve_implicit = solve
     return stages[4:]  # the slope to extrapolate by is known from the second step on
 
 

@@ -7,14 +7,14 @@ from bearing_sim.numerics.time_stepping import COUNT, OK, advance_in_steps
 
 @template
 def advance_by(
-    attempt, error_norm, step_limit, step_taken, observe, fixed,
+    attempt, error_order, error_norm, step_limit, step_taken, observe, fixed,
     t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
 ):  # fmt: skip
     """Advance ``y`` in place by ``duration`` [s] and write evenly spaced samples into ``rows``, the last at the end.
 
     Parameters
     ----------
-    attempt, error_norm, step_limit, step_taken : kernels of the level, see `bearing_sim.numerics.time_stepping`.
+    attempt, error_order, error_norm, step_limit, step_taken : method, and kernels of the level, see `bearing_sim.numerics.time_stepping`.
     observe : kernel of the level, writes a sample, see `bearing_sim.levels.slip.model.observe`.
     fixed : whether steps are equal and nothing controls their error.
     t : time [s].
@@ -38,7 +38,7 @@ def advance_by(
         start, end = t + k * interval, t + (k + 1) * interval
         left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
         status, h = advance_in_steps(
-            attempt, error_norm, step_limit, step_taken, fixed,
+            attempt, error_order, error_norm, step_limit, step_taken, fixed,
             start, end, y, h, maximum_step, left, model, work, memory, counts,
         )  # fmt: skip
         if status != OK:

@@ -16,9 +16,9 @@ from typing import NamedTuple
 from bearing_sim.levels.common.model import shaft_speed_at
 from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import kernel, template
-from bearing_sim.numerics.sdirk2 import GAMMA
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.numerics.time_stepping import INNER_STAGE
+from bearing_sim.numerics.tr_bdf2 import WEIGHT
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.drag import bore_torque, mixture_torque
 
@@ -65,8 +65,9 @@ def _mean_powers(earlier, later, share):
 def step_powers(rhs, state_powers, t, y, model, work, memory):
     """Return the powers of the step that ended at ``t`` in state ``y``, or those of the state itself before the first step.
 
-    The work in a step of sdirk2 is that of both its stages, (1 - gamma) h P(Y_1) + gamma h P(y).  At its end alone stiff forces, those of
-    pockets above all, are too large where a step is long beside their own times.  The right-hand side at ``y`` is in ``work`` afterwards.
+    The work in a step of tr_bdf2 is that of its beginning, of Y_1 and of its end, with the weights w, w and 1 - 2 w.  One step's end is the next
+    one's beginning, so that w P(Y_1) + (1 - w) P(y) has the same mean.  At the end alone stiff forces, those of pockets above all, are too large
+    where a step is long beside their own times.  The right-hand side at ``y`` is in ``work`` afterwards.
 
     Parameters
     ----------
@@ -80,7 +81,7 @@ def step_powers(rhs, state_powers, t, y, model, work, memory):
     rhs(time, stage, model, work, memory.scratch[0])
     within = state_powers(time, stage, shaft_speed_at(time, model.drive), model, work)
     rhs(t, y, model, work, memory.scratch[0])
-    return _mean_powers(within, state_powers(t, y, shaft_speed_at(t, model.drive), model, work), GAMMA)
+    return _mean_powers(within, state_powers(t, y, shaft_speed_at(t, model.drive), model, work), 1.0 - WEIGHT)
 
 
 @kernel

@@ -4,6 +4,8 @@
 Parameters and results of every function are those of `bearing_sim.levels.common.advance.advance_by`.
 """
 
+import math
+
 from bearing_sim.levels.common.advance import advance_by
 from bearing_sim.levels.planar.model import (
     average_loads,
@@ -12,24 +14,26 @@ from bearing_sim.levels.planar.model import (
     factor,
     observe,
     restrain,
+    rhs,
     rhs_and_jacobian,
     solve,
     step_limit,
 )
 from bearing_sim.levels.planar.predictor import predict
 from bearing_sim.numerics.compilation import fused, kernel
-from bearing_sim.numerics.sdirk2 import sdirk2_attempt
+from bearing_sim.numerics.tr_bdf2 import ERROR_ORDER, tr_bdf2_attempt
 
 
 @fused
 def _attempt(t, y, h, model, work, memory, counts):
-    return sdirk2_attempt(rhs_and_jacobian, predict, factor, solve, correction_norm, restrain, t, y, h, model, work, memory, counts)
+    return tr_bdf2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, correction_norm, restrain, t, y, h, model, work, memory, counts)
 
 
 @kernel
 def _advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    memory.derivative_time[0] = math.nan  # inputs may have changed
     return advance_by(
-        _attempt, error_norm, step_limit, average_loads, observe, fixed,
+        _attempt, ERROR_ORDER, error_norm, step_limit, average_loads, observe, fixed,
         t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
     )  # fmt: skip
 

@@ -9,7 +9,7 @@ import math
 from bearing_sim.levels.common.advance import advance_by
 from bearing_sim.levels.slip.model import error_norm, factor, keep_nothing, observe, rhs, rhs_and_step_jacobian, solve, step_limit
 from bearing_sim.numerics.compilation import fused, kernel
-from bearing_sim.numerics.rosenbrock2 import rosenbrock2_attempt
+from bearing_sim.numerics.rosenbrock2 import ERROR_ORDER, rosenbrock2_attempt
 
 
 @fused
@@ -21,7 +21,7 @@ def _attempt(t, y, h, model, work, memory, counts):
 def _advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     memory.derivative_time[0] = math.nan  # inputs may have changed
     return advance_by(
-        _attempt, error_norm, step_limit, keep_nothing, observe, fixed,
+        _attempt, ERROR_ORDER, error_norm, step_limit, keep_nothing, observe, fixed,
         t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
     )  # fmt: skip
 
