@@ -148,12 +148,12 @@ def test_tables_with_and_without_a_correction_are_kept_apart():
 def test_a_corrected_table_slips_and_lives_as_level_planar_does(tmp_path, monkeypatch):
     monkeypatch.setattr(table_builder, "FOLDER", tmp_path)
     monkeypatch.setattr(studied, "correction_path", lambda scene, domain: tmp_path / "correction.npz")
-    monkeypatch.setattr(studied, "FIRST_POINTS", 64)
+    monkeypatch.setattr(studied, "FIRST_POINTS", 128)
     narrow = ("table.maximum_load=1500N", "table.maximum_speed=46000rpm", "level=steady", "table.correction=planar", "table.tolerance=0.1")
     scene = load_scene("deng2017_table1", narrow)
     kelvin = scene.lubricant.temperature
-    found = studied.obtain_correction(scene, (kelvin, kelvin), most=64)
-    assert len(found.conditions) == 64 and found.slip_error < 0.005
+    found = studied.obtain_correction(scene, (kelvin, kelvin), most=128)
+    assert len(found.conditions) == 128 and found.slip_error < 0.005
     table, quality = table_builder.obtain_table(scene, (kelvin, kelvin), correction=lambda: found)
     assert quality.correction_slip_error == found.slip_error
     for rpm, load in ((38_000.0, 700.0), (12_000.0, 300.0)):
