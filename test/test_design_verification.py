@@ -252,12 +252,12 @@ def test_a_raceway_that_planar_gives_three_quarters_of_the_life_asked_for_is_not
     assert (report["level"], report["verify_level"]) == ("slip", "planar"), "the next level is the default"
     first = report["worst"][0]
     assert first["low_from"] < 34.8626 < first["low_to"], "inside the region of level slip"
-    assert life_at_planar(34.8626, 0.098) < 320.0
+    assert life_at_planar(34.8626, 0.098) == pytest.approx(300.0, rel=0.03)
     assert first["verdict"] == NARROWED and not first["verified"]["low_from"] <= 34.8626 <= first["verified"]["low_to"]
-    for share in (0.0, 0.5, 1.0):
+    # at the border level planar has two courses, of 382 and 416 h at any tolerance; which one a run takes depends on how it begins
+    for share, least in ((0.0, 0.94), (0.5, 0.97), (1.0, 0.97)):
         inside = first["verified"]["low_from"] + share * (first["verified"]["low_to"] - first["verified"]["low_from"])
-        # near the border level planar has two courses, of 382 and 416 h at any tolerance; which one a run takes depends on how it begins
-        assert life_at_planar(inside, 0.098) > 0.94 * 400.0
+        assert life_at_planar(inside, 0.098) > least * 400.0
 
 
 def test_a_d_value_at_which_planar_refuses_all_is_withdrawn(elliptical):

@@ -24,9 +24,9 @@ def simulation(level, *overrides):
     return Simulation(load_scene("deng2017_table1", [f"level={level}", "operating.shaft_speed=15000 rpm", *overrides]))
 
 
-def damage(level, factor):
+def damage(level, factor, *overrides):
     """Return the damage of 0.1 s with a factor on all tolerances."""
-    run = simulation(level, *tolerance_overrides(factor))
+    run = simulation(level, *tolerance_overrides(factor), *overrides)
     before = run.advance(0.03)["damage"][-1]
     return run.advance(0.1)["damage"][-1] - before
 
@@ -34,7 +34,14 @@ def damage(level, factor):
 @pytest.mark.parametrize("level", LEVELS)
 def test_loose_tolerances_where_the_passing_rollers_limit_the_steps_do_not_change_a_life(level):
     """With loads of the last iterate but one, the first guess more often than not, damage was 2.8 % off at three times the tolerances."""
-    assert damage(level, 3.0) == pytest.approx(damage(level, 0.3), rel=0.015)
+    assert damage(level, 3.0) == pytest.approx(damage(level, 0.3), rel=0.01)
+
+
+@pytest.mark.parametrize("speed", ["22500 rpm", "25000 rpm"])
+def test_the_life_near_a_resonance_of_the_ring_is_that_of_fine_steps(speed):
+    """With steps of order 2, whose oscillations are 4 % too slow, damage was 15 and 28 % too large."""
+    near = f"operating.shaft_speed={speed}"
+    assert damage("planar", 1.0, near) == pytest.approx(damage("planar", 0.1, near), rel=0.02)
 
 
 def correction(level, state):

@@ -311,8 +311,8 @@ def test_support_with_damping_ends_the_resonance_of_the_ring_on_its_contacts(tmp
     still, held, carried = found
     damage = relative_damage(found)
     assert carried.ring_swing < 0.4 * held.ring_swing and carried.largest_load < 0.75 * held.largest_load
-    assert damage[still.model, still.shaft_speed] == 1.0
-    assert 0.97 < damage[carried.model, carried.shaft_speed] < 1.2 < damage[held.model, held.shaft_speed]
+    assert damage[still.model, still.shaft_speed] == 1.0 < 1.2 < damage[held.model, held.shaft_speed]
+    assert damage[carried.model, carried.shaft_speed] == pytest.approx(1.0, abs=0.03)
     assert still.support_power == held.support_power == 0.0 < carried.support_power and held.outer_swing == 0.0 < carried.outer_swing
     draw(tmp_path / "response.png", "response", found)
     assert (tmp_path / "response.png").stat().st_size > 1000
