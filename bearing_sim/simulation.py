@@ -511,8 +511,9 @@ class Simulation:
         rows = flat(block)
         state = self._state.copy()
         integration = self.scene.integration
-        advance = self._level.advance if integration.fixed_step is None else self._level.advance_fixed
+        advance = self._level.advance
         arguments = (
+            integration.fixed_step is not None,
             self.time,
             float(duration),
             state,

@@ -18,7 +18,7 @@ case "$*" in
 *) chosen="" ;;
 esac
 if [ -n "$chosen" ]; then # on all cores
-    "$venv/bin/python" -m bearing_sim.cli compile --fixed-step # the code of the checkout, which the tests import
+    "$venv/bin/python" -m bearing_sim.cli compile # the code of the checkout, which the tests import
     set -- -m "$chosen" -n auto --dist loadgroup
 fi
 exec "$venv/bin/python" -m pytest "$@"

@@ -1,10 +1,6 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Error control and fixed steps on the bearing: they agree with each other, keep to their budget, end with a reason."""
 
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 
 from bearing_sim import SceneError, Simulation, load_scene
@@ -62,19 +58,6 @@ def test_a_level_without_steps_refuses_a_fixed_one_and_an_automatic_level_has_st
     with pytest.raises(SceneError, match="integration.fixed_step: needs level slip or planar or spatial, which take steps"):
         load_scene("deng2017_table1", ["level=steady", "integration.fixed_step=10 us"])
     assert load_scene("deng2017_table1", ["level=auto", "integration.fixed_step=10 us"]).level == "slip"
-
-
-@pytest.mark.long
-def test_only_what_a_run_uses_is_compiled():
-    code = (
-        "from bearing_sim import Simulation, load_scene; from bearing_sim.levels.level import LEVELS;"
-        "Simulation(load_scene('deng2017_table1', ['integration.fixed_step=10 us'])).advance(1e-4);"
-        "level = LEVELS['slip']; print(bool(level.advance_fixed.signatures), bool(level.advance.signatures))"
-    )
-    found = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=300, cwd=Path(__file__).resolve().parents[1], check=True
-    )
-    assert found.stdout.strip() == "True False"
 
 
 def test_operating_points_are_marched_with_the_default_tolerances_of_a_scene():

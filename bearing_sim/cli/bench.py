@@ -146,10 +146,9 @@ def _print_fleet(report) -> None:
 
 @click.command("compile")
 @click.option("--level", "levels", multiple=True, type=level_type, help="Compile this level; can be repeated [default: all].")
-@click.option("--fixed-step", is_flag=True, help="Also compile what a scene with integration.fixed_step needs.")
 @click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of processes [default: one per core].")
 @click.option("--prune", is_flag=True, help="Afterwards remove the compiled code of other versions of bearing_sim.")
-def compile_levels(levels, fixed_step, workers, prune):
+def compile_levels(levels, workers, prune):
     """Compile levels now instead of at their first run, in parallel on all cores.
 
     Compiled code is cached on disk, per user and version of the model; code that is already in the cache is not compiled again.
@@ -157,7 +156,7 @@ def compile_levels(levels, fixed_step, workers, prune):
     from bearing_sim.levels.level import LEVELS
     from bearing_sim.runtime.precompilation import builds, compile_all, remove_other_versions
 
-    wanted, began = builds(levels or tuple(LEVELS), fixed_step), time.monotonic()
+    wanted, began = builds(levels or tuple(LEVELS)), time.monotonic()
     with progress_bar("compiling", len(wanted)) as show:
         for done, build in enumerate(compile_all(wanted, workers), 1):
             click.echo(f"{build}: compiled ({time.monotonic() - began:.0f} s)", err=True)

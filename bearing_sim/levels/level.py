@@ -29,7 +29,7 @@ class Level(NamedTuple):
     method : name of the integration method, see ``doc/theory/integrators.md``.
     advance : compiled when first called, so that a run compiles what it uses; see `bearing_sim.levels.common.advance.advance_by`.
     leaves_out : what the level does not model, in words.
-    advance_fixed : as ``advance``, without error control, in steps of the maximum step; None at a level without steps.
+    takes_steps : whether it takes steps, which may be fixed; a level that takes none ignores that argument of ``advance``.
     advance_profile : compiled, goes over a whole course of inputs at once; None at a level that marches.
     advance_warm_profile : the same beside a thermal network.
     forget : lets a workspace drop what it remembers of parameters and lubrication; None at a level that remembers nothing.
@@ -42,7 +42,7 @@ class Level(NamedTuple):
     method: str
     advance: Callable
     leaves_out: str
-    advance_fixed: Callable | None = None
+    takes_steps: bool = True
     advance_profile: Callable | None = None
     advance_warm_profile: Callable | None = None
     forget: Callable | None = None
@@ -57,6 +57,7 @@ LEVELS = {
         "lag",
         steady.advance,
         "all that happens within a cage turn, and what slip leaves out",
+        takes_steps=False,
         advance_profile=steady.advance_profile,
         advance_warm_profile=steady.advance_warm_profile,
         forget=steady.forget,
@@ -69,7 +70,6 @@ LEVELS = {
         "rosenbrock2",
         slip_methods.advance,
         "pocket play, radial vibration, cage whirl, tilt and skew",
-        slip_methods.advance_fixed,
     ),
     "planar": Level(
         planar_state.new_work,
@@ -79,7 +79,6 @@ LEVELS = {
         "tr_bdf2",
         planar_methods.advance,
         "tilt and skew",
-        planar_methods.advance_fixed,
     ),
     "spatial": Level(
         spatial_state.new_work,
@@ -89,6 +88,5 @@ LEVELS = {
         "tr_bdf2",
         spatial_methods.advance,
         "the rollers' way along their axes, bending of the rings",
-        spatial_methods.advance_fixed,
     ),
 }

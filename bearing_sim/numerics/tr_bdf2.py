@@ -27,14 +27,14 @@ import math
 
 from bearing_sim.numerics.compilation import template
 from bearing_sim.numerics.newton import solve_implicit
-from bearing_sim.numerics.time_stepping import INNER_STAGE, NOT_EVALUATED, OK
+from bearing_sim.numerics.time_stepping import COUNT, INNER_STAGE, NOT_EVALUATED, OK
 
-GAMMA = 1.0 - 1.0 / math.sqrt(2.0)  # d
+_GAMMA = 1.0 - 1.0 / math.sqrt(2.0)  # d
 WEIGHT = math.sqrt(2.0) / 4.0  # w
-FILTER = 0.75  # b (assumption)
+_FILTER = 0.75  # b (assumption)
 ERROR_ORDER = 3.0  # the error estimate goes with this power of the step
 _WHOLE = 0.5  # of the tolerances: up to here e is added as a whole (assumption)
-_EMBEDDED = ((1.0 - 4.0 * WEIGHT) / 3.0, 1.0 / 3.0, -2.0 * GAMMA / 3.0)
+_EMBEDDED = ((1.0 - 4.0 * WEIGHT) / 3.0, 1.0 / 3.0, -2.0 * _GAMMA / 3.0)
 _ENOUGH = 1 / 60  # of the tolerances: the error that the iteration of a stage may leave (assumption)
 
 
@@ -52,9 +52,10 @@ def tr_bdf2_attempt(
     scratch = memory.scratch
     result, error = scratch[1], scratch[2]
     first, known, rate, change, slope, next_slope = scratch[INNER_STAGE], scratch[4], scratch[5], scratch[6], scratch[7], scratch[8]
-    shift = GAMMA * h
+    shift = _GAMMA * h
     per_shift = 1.0 / shift
     if math.isnan(memory.derivative_time[0]):
+        counts[COUNT.right_hand_sides] += 1
         if not rhs(t, y, model, work, slope):
             return NOT_EVALUATED
     elif abs(memory.derivative_time[0] - t) < 0.01 * h:  # not after a rejected step, whose slope at the beginning still stands
@@ -98,17 +99,16 @@ def _raise_order(solve, error_norm, t, per_shift, y, result, error, change, ahea
     error : e, and F e afterwards.
     change, ahead : scratch, shape (n,).
     """
-    solve(work, error)
-    for i in range(error.shape[0]):
-        ahead[i] = error[i]
-    solve(work, ahead)
-    for i in range(error.shape[0]):
-        change[i] = ahead[i]
-    solve(work, change)
+    filtered = (error, ahead, change)
+    for times in range(3):  # a loop and not three texts, as above
+        if times > 0:
+            for i in range(error.shape[0]):
+                filtered[times][i] = filtered[times - 1][i]
+        solve(work, filtered[times])
     for i in range(error.shape[0]):
         twice, thrice = ahead[i], change[i]
-        change[i] = (1.0 + FILTER) * twice - FILTER * thrice
-        ahead[i] = (1.0 + FILTER) * (twice - error[i]) - FILTER * (thrice - twice)
+        change[i] = (1.0 + _FILTER) * twice - _FILTER * thrice
+        ahead[i] = (1.0 + _FILTER) * (twice - error[i]) - _FILTER * (thrice - twice)
     size = error_norm(t, y, ahead, model)
     part = (_WHOLE / size) ** 2 if size > _WHOLE else 1.0
     for i in range(error.shape[0]):

@@ -23,19 +23,13 @@ _COLLECTIONS = 100_000, 50, 10  # thresholds of the garbage collector; with Pyth
 
 
 class Build(NamedTuple):
-    """Something to compile: a level, with error control or in steps of a fixed size, or the search for thermal equilibrium in its place."""
+    """Something to compile: a level, or the search for thermal equilibrium in its place."""
 
     level: str
-    fixed_step: bool = False
     equilibrium: bool = False
 
     def __str__(self) -> str:
-        return "thermal equilibrium" if self.equilibrium else self.level + (" in fixed steps" if self.fixed_step else "")
-
-    @property
-    def overrides(self) -> list[str]:
-        """Overrides that make any scene run this."""
-        return [f"level={self.level}", *(["integration.fixed_step=10 us"] if self.fixed_step else [])]
+        return "thermal equilibrium" if self.equilibrium else self.level
 
 
 def is_compiled(level: str) -> bool:
@@ -52,25 +46,18 @@ def is_compiled_for(scene: "Scene") -> bool:
     from bearing_sim.levels.steady.model import solve_condition
     from bearing_sim.numerics.compilation import is_cached
 
-    level = LEVELS[scene.level]
-    advance = level.advance if scene.integration.fixed_step is None else level.advance_fixed
     searches = scene.heat.law == "network" and scene.heat.start == "equilibrium"
-    return is_cached(advance) and (not searches or is_cached(solve_condition))
+    return is_cached(LEVELS[scene.level].advance) and (not searches or is_cached(solve_condition))
 
 
-def builds(levels: Sequence[str], fixed_step: bool = False) -> list[Build]:
+def builds(levels: Sequence[str]) -> list[Build]:
     """Return what to compile for some levels, the slowest to compile first so that no core is idle at the end.
 
     Parameters
     ----------
     levels : names.
-    fixed_step : also for steps of a fixed size.
     """
-    from bearing_sim.levels.level import LEVELS
-
-    slowest_first = [level for level in _SLOWEST_FIRST if level in levels]
-    others = [Build(level, True) for level in slowest_first if fixed_step and LEVELS[level].advance_fixed is not None]
-    return [*map(Build, slowest_first), *others]
+    return [Build(level) for level in _SLOWEST_FIRST if level in levels]
 
 
 def compile_all(wanted: Sequence[Build], workers: int | None = None) -> Iterator[Build]:
@@ -96,17 +83,21 @@ def compile_all(wanted: Sequence[Build], workers: int | None = None) -> Iterator
 
 
 def _compile(build: Build) -> None:
-    gc.set_threshold(*_COLLECTIONS)  # of this process, which does nothing else
+    import numba
+
+    # settings of this process, which does nothing else
+    gc.set_threshold(*_COLLECTIONS)
+    numba.config.LLVM_REFPRUNE_PASS = 0  # it prunes counts of references, of which compiled code has none, in an eighth of the time
     from bearing_sim.scene.loader import load_scene
     from bearing_sim.simulation import Simulation, scene_inputs
 
     if build.equilibrium:
         from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 
-        scene = load_scene("deng2017_table1_cold", build.overrides)
+        scene = load_scene("deng2017_table1_cold", [f"level={build.level}"])
         thermal_equilibrium(scene, scene_inputs(scene))
         return
-    simulation = Simulation(load_scene("deng2017_table1", build.overrides))
+    simulation = Simulation(load_scene("deng2017_table1", [f"level={build.level}"]))
     simulation.advance(_SECONDS, simulation.inputs, 1)
 
 

@@ -35,7 +35,7 @@ def level_integrators(level: str) -> dict[str, list[str]]:
     """Return the overrides of a scene for each way to integrate a level, by name: with error control, and in steps of 10 us."""
     method = LEVELS[level].method
     found = {method: []}
-    if LEVELS[level].advance_fixed is not None:
+    if LEVELS[level].takes_steps:
         found[f"{method}, fixed step"] = ["integration.fixed_step=10 us"]
     return found
 

@@ -114,7 +114,7 @@ def sampled_cases(level: str, samples: int, seed: int) -> list[Case]:
         for name in ignored:
             del point[name]
         point["pocket_clearance"] = _logarithmic(1e-6, min(_LARGEST_PLAY * _room(point["rollers"]), _WIDEST_POCKET))(point["pocket_clearance"])
-        point["fixed"] = point["fixed"] and LEVELS[level].advance_fixed is not None
+        point["fixed"] = point["fixed"] and LEVELS[level].takes_steps
         cases.append(Case(f"sample {number}", level, tuple(overrides_of(level, point)), point["course"], point))
     return cases
 

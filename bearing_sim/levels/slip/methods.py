@@ -1,38 +1,27 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Level ``slip`` advanced with error control, or in fixed steps.
 
-Parameters and results of every function are those of `bearing_sim.levels.common.advance.advance_by`.
+Parameters and results are those of `bearing_sim.levels.common.advance.advance_by`.
 """
 
 import math
 
 from bearing_sim.levels.common.advance import advance_by
 from bearing_sim.levels.slip.model import error_norm, factor, keep_nothing, observe, rhs, rhs_and_step_jacobian, solve, step_limit
-from bearing_sim.numerics.compilation import fused, kernel
+from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.rosenbrock2 import ERROR_ORDER, rosenbrock2_attempt
 
 
-@fused
+@template
 def _attempt(t, y, h, model, work, memory, counts):
     return rosenbrock2_attempt(rhs, rhs_and_step_jacobian, factor, solve, t, y, h, model, work, memory, counts)
 
 
 @kernel
-def _advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    """Advance with error control, or ``fixed`` in steps of ``maximum_step`` [s] without it."""
     memory.derivative_time[0] = math.nan  # inputs may have changed
     return advance_by(
         _attempt, ERROR_ORDER, error_norm, step_limit, keep_nothing, observe, fixed,
         t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
     )  # fmt: skip
-
-
-@kernel
-def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
-    """Advance with error control."""
-    return _advance(False, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
-
-
-@kernel
-def advance_fixed(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
-    """Advance in steps of ``maximum_step`` [s] without error control."""
-    return _advance(True, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

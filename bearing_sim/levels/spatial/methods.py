@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Level ``spatial`` advanced with error control, or in fixed steps.
 
-Parameters and results of every function are those of `bearing_sim.levels.common.advance.advance_by`.
+Parameters and results are those of `bearing_sim.levels.common.advance.advance_by`.
 """
 
 import math
@@ -20,31 +20,20 @@ from bearing_sim.levels.spatial.model import (
     step_limit,
 )
 from bearing_sim.levels.spatial.predictor import predict
-from bearing_sim.numerics.compilation import fused, kernel
+from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.tr_bdf2 import ERROR_ORDER, tr_bdf2_attempt
 
 
-@fused
+@template
 def _attempt(t, y, h, model, work, memory, counts):
     return tr_bdf2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, correction_norm, restrain, t, y, h, model, work, memory, counts)
 
 
 @kernel
-def _advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    """Advance with error control, or ``fixed`` in steps of ``maximum_step`` [s] without it."""
     memory.derivative_time[0] = math.nan  # inputs may have changed
     return advance_by(
         _attempt, ERROR_ORDER, error_norm, step_limit, average_loads, observe, fixed,
         t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
     )  # fmt: skip
-
-
-@kernel
-def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
-    """Advance with error control."""
-    return _advance(False, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
-
-
-@kernel
-def advance_fixed(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
-    """Advance in steps of ``maximum_step`` [s] without error control."""
-    return _advance(True, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

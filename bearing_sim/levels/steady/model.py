@@ -192,7 +192,7 @@ def _settled_speed(shaft_speed, model, work):
 
 
 @kernel
-def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance sample by sample; parameters and results as in `bearing_sim.levels.common.advance.advance_by`.
 
     A step is a sample: the inputs change linearly between samples, and so does the speed that the cage follows.

@@ -500,7 +500,7 @@ def march(model, work, memory, answer):
     for _ in range(_WINDOWS):
         angle = y[THETA]
         status, step = advance_slip(
-            time, window, y, step, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
+            False, time, window, y, step, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
         )
         if status != OK and status != STEP_BUDGET:
             return status
@@ -527,7 +527,7 @@ def march(model, work, memory, answer):
         mean = y[OMEGA]
         instant = _AN_INSTANT * window
         again, step = advance_slip(
-            time, instant, y, _FIRST_STEP, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
+            False, time, instant, y, _FIRST_STEP, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
         )
         if again != OK:
             return again
