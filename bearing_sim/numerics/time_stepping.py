@@ -13,7 +13,7 @@ error_norm : ``(t, y, change, model)`` returns the largest ratio of any state's 
 correction_norm : the same of an iteration's correction, in which a level may weigh states otherwise.
 restrain : ``(y, change, model, work)`` shortens the part of an iteration's correction that has carried ``y`` too far for its equations to be linear,
     in both.
-step_limit : ``(t, y, model)`` returns the longest sensible step [s].
+step_limit : ``(t, y, model, work)`` returns the longest sensible step [s].
 step_taken : ``(h, y, model, work)`` is called after each accepted step.
 attempt : ``(t, y, h, model, work, memory, counts)`` computes a step of ``h`` [s] from (t, y): a method bound to the kernels above, such as
     `bearing_sim.numerics.tr_bdf2.tr_bdf2_attempt`.  It leaves the result in row 1 of ``memory.scratch`` and the error estimate in row 2, and
@@ -224,7 +224,7 @@ def advance_in_steps(
         if fixed:
             _fit_part(control)
         else:
-            _fit(step_limit(control[CONTROL.time], y, model), maximum_step, end, control)
+            _fit(step_limit(control[CONTROL.time], y, model, work), maximum_step, end, control)
         now, step = control[CONTROL.time], control[CONTROL.step]
         outcome, error = attempt(now, y, step, model, work, memory, counts), math.inf
         if outcome == OK and fixed:

@@ -14,10 +14,11 @@ from typing import NamedTuple
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, template
 from bearing_sim.numerics.elementary import cosine_sine
-from bearing_sim.numerics.simd import LANES, floor, larger, load, spread_run, square_root, store
+from bearing_sim.numerics.simd import LANES, floor, larger, load, spread, spread_run, square_root, store, total
 from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.raceway import contour_lanes
 
+_SOFTEST = 1e-3  # N/m; far below the stiffness of any contact that touches
 _TOUCH = 1e-9  # m; assumption: bodies that barely touch, which carries some 0.1 N
 
 
@@ -294,6 +295,34 @@ def restrain_rollers(row, contact, runs, y, change, params, rows, contacts):
             _shorten(y, change, angles + j, rolling)
             _shorten(y, change, orbits + j, rolling)
             _shorten(y, change, spins + j, rolling)
+
+
+@template
+def average_stiffness(row, contact, fraction, rows, contacts, stiffness):
+    """Include the stiffness at this instant of the raceways against a displacement of the inner ring in its running mean.
+
+    The two contacts of a roller act in series; an open contact has no stiffness.
+
+    Parameters
+    ----------
+    row, contact : rows of ``rows`` and ``contacts``, see the docstring of the module.
+    fraction : weight of this instant; the first one counts as a whole.
+    rows, contacts : of the rollers.
+    stiffness : yy, yz and zz [N/m], zeros at first; changed in place.
+    """
+    blocks = rows.shape[0]
+    yy, yz, zz = spread(0.0), spread(0.0), spread(0.0)
+    for block in range(blocks):
+        inner, outer = load(contacts, block, contact.stiffness), load(contacts, blocks + block, contact.stiffness)
+        series = load(rows, block, row.present) * inner * outer / (inner + outer + _SOFTEST)
+        cosine, sine = load(rows, block, row.cosine), load(rows, block, row.sine)
+        yy += series * cosine * cosine
+        yz += series * cosine * sine
+        zz += series * sine * sine
+    weight = fraction if stiffness[0] + stiffness[2] > 0.0 else 1.0
+    stiffness[0] += weight * (total(yy) - stiffness[0])
+    stiffness[1] += weight * (total(yz) - stiffness[1])
+    stiffness[2] += weight * (total(zz) - stiffness[2])
 
 
 @template

@@ -8,10 +8,10 @@ implicit steps: `bearing_sim.levels.planar.jacobian`.
 import math
 
 from bearing_sim.levels.common.flanges import observe_flanges
-from bearing_sim.levels.common.model import FIFTH_PITCH, POSITION_WEIGHT, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.model import POSITION_WEIGHT, orbital_speed_tolerance, play_weight, ring_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import step_powers, write_powers
-from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers, restrain_rollers
+from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
 from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
 from bearing_sim.levels.planar import jacobian
@@ -79,24 +79,24 @@ def solve(work, x):
 @fused
 def error_norm(t, y, change, model):
     """Return the largest ratio of any state's change to its tolerance."""
-    return _largest_ratio(t, y, change, model, 1.0)
+    return _largest_ratio(t, y, change, model, 1.0, 1.0)
 
 
 @fused
 def correction_norm(t, y, change, model):
-    """Return `error_norm` of an iteration's correction, in which positions have the weight `POSITION_WEIGHT`."""
-    return _largest_ratio(t, y, change, model, POSITION_WEIGHT)
+    """Return `error_norm` of an iteration's correction, in which positions have the weight `POSITION_WEIGHT`, and play `play_weight`."""
+    return _largest_ratio(t, y, change, model, POSITION_WEIGHT, play_weight(y[OMEGA], model.params.raceways.pitch_radius))
 
 
 @fused
-def _largest_ratio(t, y, change, model, position_weight):
-    """Return the largest ratio of any state's change to its tolerance, positions with a weight of their own.
+def _largest_ratio(t, y, change, model, position_weight, own_play_weight):
+    """Return the largest ratio of any state's change to its tolerance, positions and play with weights of their own.
 
     Positions are the rollers' radii and the ring's centre; play have the rollers in their pockets and the cage.  Spins count by the
     speed of the roller's surface.  Radial speeds and those of both centres follow the positions and are not weighed.
     """
     raceways, rollers = model.params.raceways, model.params.rollers
-    position, play = position_weight / model.tolerances.position, 1.0 / model.tolerances.play
+    position, play = position_weight / model.tolerances.position, own_play_weight / model.tolerances.play
     speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
     offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
     largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
@@ -127,14 +127,14 @@ def restrain(y, change, model, work):
 
 
 @fused
-def step_limit(t, y, model):
-    """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.pitch_step`)."""
-    return pitch_step(y[OMEGA], model.params.rollers.count, FIFTH_PITCH)
+def step_limit(t, y, model, work):
+    """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.ring_step`)."""
+    return ring_step(y[OMEGA], model.params, work.ring_stiffness)
 
 
 @fused
 def average_loads(h, y, model, work):
-    """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn.
+    """Take the loads at the end of a step of length ``h`` [s], and the stiffness that goes with them, into the running means over a cage turn.
 
     A step leaves the loads of its last iterate but one, and only a micrometre away a load may be another altogether.
     """
@@ -142,6 +142,7 @@ def average_loads(h, y, model, work):
     carry_forces(y, count, work)
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
     average_moments(fraction, work.rollers, ROLLER.present, work.contacts, CONTACT.load, count, work.load_moments)
+    average_stiffness(ROLLER, CONTACT, fraction, work.rollers, work.contacts, work.ring_stiffness)
 
 
 @kernel

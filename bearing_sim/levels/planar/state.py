@@ -115,6 +115,7 @@ class Work(NamedTuple):
     factored: Factored  # of I - gamma h J
     support: np.ndarray  # memory of the support, see `bearing_sim.levels.common.support.new_support`
     evaluated_ring: np.ndarray  # position and velocity of the ring where forces were evaluated last [m, m/s], shape (4,)
+    ring_stiffness: np.ndarray  # running means over a cage turn, see `bearing_sim.levels.common.rollers.average_stiffness`, shape (3,)
     # of roller loads, running means over a cage turn, see `bearing_sim.physics.lamina_life.add_load_moments`, shape (2, MOMENTS)
     load_moments: np.ndarray
 
@@ -135,6 +136,7 @@ def new_work(params):
         new_factored(count),
         new_support(params.support, 2 * BORDER + BLOCK * count),
         np.zeros(4),
+        np.zeros(3),
         np.zeros((2, MOMENTS)),
     )
 

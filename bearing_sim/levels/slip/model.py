@@ -75,7 +75,7 @@ def error_norm(t, y, change, model):
 
 
 @template
-def step_limit(t, y, model):
+def step_limit(t, y, model, work):
     """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.pitch_step`)."""
     return pitch_step(y[OMEGA], model.params.rollers.count, HALF_PITCH)
 

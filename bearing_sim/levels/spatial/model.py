@@ -11,10 +11,10 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.flanges import largest_corner, observe_flanges
-from bearing_sim.levels.common.model import FIFTH_PITCH, POSITION_WEIGHT, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.model import POSITION_WEIGHT, QUARTER_PITCH, orbital_speed_tolerance, play_weight, ring_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import step_powers, write_powers
-from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers, restrain_rollers
+from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
 from bearing_sim.levels.common.slice_balance import balance, roller_tilts
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
 from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
@@ -152,23 +152,23 @@ def solve(work, x):
 @fused
 def error_norm(t, y, change, model):
     """Return the largest ratio of any state's change to its tolerance."""
-    return _largest_ratio(t, y, change, model, 1.0)
+    return _largest_ratio(t, y, change, model, 1.0, 1.0)
 
 
 @fused
 def correction_norm(t, y, change, model):
-    """Return `error_norm` of an iteration's correction, in which positions have the weight `POSITION_WEIGHT`."""
-    return _largest_ratio(t, y, change, model, POSITION_WEIGHT)
+    """Return `error_norm` of an iteration's correction, in which positions have the weight `POSITION_WEIGHT`, and play `play_weight`."""
+    return _largest_ratio(t, y, change, model, POSITION_WEIGHT, play_weight(y[OMEGA], model.params.raceways.pitch_radius))
 
 
 @fused
-def _largest_ratio(t, y, change, model, position_weight):
-    """Return the largest ratio of any state's change to its tolerance, positions, but not tilts, with a weight of their own.
+def _largest_ratio(t, y, change, model, position_weight, own_play_weight):
+    """Return the largest ratio of any state's change to its tolerance, positions, but not tilts, and play with weights of their own.
 
     As at level ``planar``; tilts count by what they move the end of a roller, a raceway or a land.  Skew and the cage's tilts have play.
     """
     raceways, rollers, half = model.params.raceways, model.params.rollers, 0.5 * model.params.rollers.length
-    position, play = position_weight / model.tolerances.position, 1.0 / model.tolerances.play
+    position, play = position_weight / model.tolerances.position, own_play_weight / model.tolerances.play
     speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
     offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
     tilt, skew = half / model.tolerances.position, play * half
@@ -206,14 +206,14 @@ def restrain(y, change, model, work):
 
 
 @fused
-def step_limit(t, y, model):
-    """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.pitch_step`)."""
-    return pitch_step(y[OMEGA], model.params.rollers.count, FIFTH_PITCH)
+def step_limit(t, y, model, work):
+    """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.ring_step`)."""
+    return ring_step(y[OMEGA], model.params, work.ring_stiffness)
 
 
 @fused
 def average_loads(h, y, model, work):
-    """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn.
+    """Take the loads at the end of a step of length ``h`` [s], and the stiffness that goes with them, into the running means over a cage turn.
 
     A step leaves the loads of its last iterate but one, and only a micrometre away a load may be another altogether.
     """
@@ -221,7 +221,8 @@ def average_loads(h, y, model, work):
     carry_forces(y, count, work)
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
     average_moments(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_moments)
-    average_laminae(abs(turned), FIFTH_PITCH * 2.0 * math.pi / count, model.params, work)
+    average_stiffness(ROLLER, SLICED, fraction, work.rollers, work.contacts, work.ring_stiffness)
+    average_laminae(abs(turned), QUARTER_PITCH * 2.0 * math.pi / count, model.params, work)
 
 
 @kernel

@@ -194,6 +194,7 @@ class Work(NamedTuple):
     factored: Factored  # of I - gamma h J
     support: np.ndarray  # memory of the support, see `bearing_sim.levels.common.support.new_support`
     evaluated_ring: np.ndarray  # position, velocity and tilts of the ring where forces were evaluated last [m, m/s, rad], shape (6,)
+    ring_stiffness: np.ndarray  # as at level ``planar``, shape (3,)
     load_moments: np.ndarray  # as at level ``planar``, shape (2, MOMENTS)
     lamina_powers: np.ndarray  # by lanes, see `bearing_sim.levels.spatial.slices.average_laminae`, shape (2, laminae, LANES)
     lamina_means: np.ndarray  # sums of them over the lanes where a sample was asked for, shape (2, laminae)
@@ -221,6 +222,7 @@ def new_work(params):
         factored=new_factored(count),
         support=new_support(params.support, 2 * BORDER + BLOCK * count),
         evaluated_ring=np.zeros(6),
+        ring_stiffness=np.zeros(3),
         load_moments=np.zeros((2, MOMENTS)),
         lamina_powers=new_blocks(2, len(params.life.laminae.positions)),
         lamina_turn=np.zeros(1),
