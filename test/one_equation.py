@@ -25,7 +25,7 @@ def solve(work, x):
 
 
 @kernel
-def no_limit(t, y, model):
+def no_limit(t, y, model, work):
     return 1e9
 
 

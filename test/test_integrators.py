@@ -189,7 +189,7 @@ def test_what_tr_bdf2_adds_to_its_stages_is_left_out_where_it_is_many_tolerances
 
 def factor_of_a_step(z):
     """Return R(z) of y' = lambda y, z = lambda h: the stages of Hosea and Shampine 1996 and the filtered error, written out."""
-    d, w, b = 1.0 - math.sqrt(0.5), math.sqrt(2.0) / 4.0, 0.75
+    d, w, b = 1.0 - math.sqrt(0.5), math.sqrt(2.0) / 4.0, 0.85
     inner = (1.0 + d * z) / (1.0 - d * z)
     end = (1.0 + w * z * (1.0 + inner)) / (1.0 - d * z)
     third = 1.0 + z * ((1.0 - w) / 3.0 + (3.0 * w + 1.0) / 3.0 * inner + d / 3.0 * end)

@@ -69,6 +69,14 @@ def template(function):
     return _compiled(function, inline="always")
 
 
+def prune_no_references() -> None:
+    """Let numba compile without its search for superfluous counts of references, for all of the process.
+
+    Compiled code of this package has no such counts, and the search takes an eighth of the time; other users of numba may need it.
+    """
+    numba.config.LLVM_REFPRUNE_PASS = 0
+
+
 def is_cached(function: Callable) -> bool:
     """Return whether a function needs no compiling: some version of it is in the cache of this machine, or numba is switched off."""
     if not hasattr(function, "stats"):

@@ -83,14 +83,13 @@ def compile_all(wanted: Sequence[Build], workers: int | None = None) -> Iterator
 
 
 def _compile(build: Build) -> None:
-    import numba
-
-    # settings of this process, which does nothing else
-    gc.set_threshold(*_COLLECTIONS)
-    numba.config.LLVM_REFPRUNE_PASS = 0  # it prunes counts of references, of which compiled code has none, in an eighth of the time
+    from bearing_sim.numerics.compilation import prune_no_references
     from bearing_sim.scene.loader import load_scene
     from bearing_sim.simulation import Simulation, scene_inputs
 
+    # settings of this process, which does nothing else
+    gc.set_threshold(*_COLLECTIONS)
+    prune_no_references()
     if build.equilibrium:
         from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 

@@ -66,7 +66,7 @@ def corrections(run, steps, second, sizes_of):
     sizes_of : see `kinds`.
     second : whether every stage takes a second iteration.
     """
-    from bearing_sim.levels.common.model import QUARTER_PITCH, pitch_step
+    from bearing_sim.levels.common.model import FIFTH_PITCH, pitch_step
     from bearing_sim.numerics import newton, tr_bdf2
 
     if second:
@@ -85,7 +85,7 @@ def corrections(run, steps, second, sizes_of):
         return outcome
 
     tr_bdf2.solve_implicit = recording
-    longest = pitch_step(run.sample["cage_speed"], run._params.rollers.count, QUARTER_PITCH)
+    longest = pitch_step(run.sample["cage_speed"], run._params.rollers.count, FIFTH_PITCH)
     while len(stages) < 2 * steps:
         run.advance(4.0 * longest)
     tr_bdf2.solve_implicit = solve

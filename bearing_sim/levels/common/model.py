@@ -10,14 +10,14 @@ from bearing_sim.physics.growth import total_growth
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # golden section: the number that ratios of integers approximate worst
 HALF_PITCH = 1.0 / (2.0 + 1.0 / (3.0 + GOLDEN))  # 0.4393
-QUARTER_PITCH = 1.0 / (3.0 + GOLDEN)  # 0.2764
+FIFTH_PITCH = 1.0 / (4.0 + GOLDEN)  # 0.2165
 POSITION_WEIGHT = 0.25  # of positions in the norm of a correction (assumption): contacts leave less of a correction than tractions do
 _PLAY_SPEED = 10.0  # m/s, of the pockets, where play has half its weight in the norm of a correction (assumption)
 # Stiffness that changes with every passing roller excites the ring where it oscillates n/2 times a passing: (n/2)^2, and from which relative
 # difference of squares of frequencies on the longest step becomes shorter.  The differences and the shortest part are assumptions, chosen so that
 # lives near a resonance keep within two per cent (``test/benchmarks/resonance.py``).
-_RESONANCES = ((1.0, 0.6), (2.25, 0.3), (4.0, 0.15))
-_SHORTEST_PART = 0.3  # of a quarter of a pitch, in resonance
+_RESONANCES = ((1.0, 0.5), (2.25, 0.2), (4.0, 0.1))
+_SHORTEST_PART = 0.35  # of `FIFTH_PITCH`, in resonance
 
 
 class Drive(NamedTuple):
@@ -83,11 +83,11 @@ def pitch_step(cage_speed, rollers, fraction):
 
 @template
 def ring_step(cage_speed, params, stiffness):
-    """Return the longest sensible step [s] where the inner ring vibrates: a quarter of a pitch, less near a resonance of the ring.
+    """Return the longest sensible step [s] where the inner ring vibrates: a fifth of a pitch, less near a resonance of the ring.
 
     A step gives an oscillation a slightly wrong period and some damping of its own, and the nearer the ring is to a resonance with the passing
     rollers, the more its amplitude depends on both.  Which oscillations a stiffness that changes periodically excites: A. H. Nayfeh, D. T. Mook,
-    Nonlinear Oscillations (1979), section 5.3.  An oscillation once in two passings (n = 1) is resolved by a quarter of a pitch.
+    Nonlinear Oscillations (1979), chapter 5.  An oscillation once in two passings (n = 1) is resolved by a fifth of a pitch.
 
     Parameters
     ----------
@@ -102,7 +102,9 @@ def ring_step(cage_speed, params, stiffness):
     for square, reach in _RESONANCES:
         nearest = min(nearest, abs(1.0 - (middle + half) / square) / reach, abs(1.0 - (middle - half) / square) / reach)
     part = max(math.sqrt(nearest), _SHORTEST_PART)
-    return pitch_step(cage_speed, params.rollers.count, QUARTER_PITCH * part)
+    steps = 1.0 / FIFTH_PITCH  # in a pitch, and whole ones more, so that they sample all its instants alike
+    steps += math.floor(steps * (1.0 / part - 1.0) + 0.5)
+    return pitch_step(cage_speed, params.rollers.count, 1.0 / steps)
 
 
 @template

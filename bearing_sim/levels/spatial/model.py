@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.flanges import largest_corner, observe_flanges
-from bearing_sim.levels.common.model import POSITION_WEIGHT, QUARTER_PITCH, orbital_speed_tolerance, play_weight, ring_step, shaft_speed_at
+from bearing_sim.levels.common.model import FIFTH_PITCH, POSITION_WEIGHT, orbital_speed_tolerance, play_weight, ring_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
@@ -222,7 +222,7 @@ def average_loads(h, y, model, work):
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
     average_moments(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_moments)
     average_stiffness(ROLLER, SLICED, fraction, work.rollers, work.contacts, work.ring_stiffness)
-    average_laminae(abs(turned), QUARTER_PITCH * 2.0 * math.pi / count, model.params, work)
+    average_laminae(abs(turned), 0.25 * FIFTH_PITCH * 2.0 * math.pi / count, model.params, work)
 
 
 @kernel

@@ -358,14 +358,14 @@ def average_laminae(turned, interval, params, work):
     """Include the laminae's loads of this instant, with stress risers, in their running means to the exponents of both rings (ISO/TS 16281).
 
     The means are those of `bearing_sim.physics.lamina_life.add_lamina_powers`, each the sum over the lanes of ``work.lamina_powers``.  The first
-    instant starts them.  After that the end of each step counts in which the cage passes the next of equal angles: all short steps would cost too
-    much, and with angles that do not depend on the steps, a long step counts more often than a short one.  Laminae are as many as the scene wants
+    instant starts them.  After that the end of a step counts if the cage has turned by ``interval`` since the last one that did, because all short
+    steps would cost too much, and it counts by that angle.  Laminae are as many as the scene wants
     for its life, whatever the number of slices that carry the roller: their loads follow from its penetration and lean.
 
     Parameters
     ----------
     turned : by which the cage turned in this step [rad], not negative.
-    interval : angle between two instants that count [rad]; as with steps, no small multiple of it may be a pitch.
+    interval : least angle between two instants that count [rad].
     params, work : of the level; the right-hand side has been evaluated into ``work``.
     """
     laminae, contacts, powers = params.life.laminae, work.contacts, work.lamina_powers
@@ -374,11 +374,11 @@ def average_laminae(turned, interval, params, work):
     started = spread(0.0)
     for k in range(number):  # the end laminae of a crowned roller may never be loaded
         started += load(powers, INNER, k) + load(powers, OUTER, k)
-    has_started, passed = total(started) > 0.0, interval * math.floor(work.lamina_turn[0] / interval)
-    if has_started and not passed > 0.0:
+    has_started = total(started) > 0.0
+    if has_started and not work.lamina_turn[0] >= interval:
         return
-    weight = 1.0 - math.exp(-passed / (2.0 * math.pi)) if has_started else 1.0
-    work.lamina_turn[0] -= passed
+    weight = 1.0 - math.exp(-work.lamina_turn[0] / (2.0 * math.pi)) if has_started else 1.0
+    work.lamina_turn[0] = 0.0
     for k in range(number):
         store(powers, INNER, k, load(powers, INNER, k) * (1.0 - weight))
         store(powers, OUTER, k, load(powers, OUTER, k) * (1.0 - weight))

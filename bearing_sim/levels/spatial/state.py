@@ -198,7 +198,7 @@ class Work(NamedTuple):
     load_moments: np.ndarray  # as at level ``planar``, shape (2, MOMENTS)
     lamina_powers: np.ndarray  # by lanes, see `bearing_sim.levels.spatial.slices.average_laminae`, shape (2, laminae, LANES)
     lamina_means: np.ndarray  # sums of them over the lanes where a sample was asked for, shape (2, laminae)
-    lamina_turn: np.ndarray  # by which the cage has turned since laminae were last averaged, beyond their interval [rad], shape (1,)
+    lamina_turn: np.ndarray  # by which the cage has turned since laminae were last averaged [rad], shape (1,)
 
 
 def new_work(params):
