@@ -37,11 +37,12 @@ def test_loose_tolerances_where_the_passing_rollers_limit_the_steps_do_not_chang
     assert damage(level, 3.0) == pytest.approx(damage(level, 0.3), rel=0.01)
 
 
-@pytest.mark.parametrize("speed", ["22500 rpm", "25000 rpm"])
-def test_the_life_near_a_resonance_of_the_ring_is_that_of_fine_steps(speed):
-    """With steps of order 2, whose oscillations are 4 % too slow, damage was 15 and 28 % too large."""
-    near = f"operating.shaft_speed={speed}"
-    assert damage("planar", 1.0, near) == pytest.approx(damage("planar", 0.1, near), rel=0.02)
+@pytest.mark.parametrize(("speed", "load"), [(22500, 800), (25000, 800), (13500, 100), (18500, 100), (27500, 100)])
+def test_the_life_near_a_resonance_of_the_ring_is_that_of_fine_steps(speed, load):
+    # with steps of order 2, whose oscillations are 4 % too slow, damage was 15 and 28 % too large at 800 N; with steps as long in resonance as
+    # elsewhere it was 8 to 10 % too small at 100 N and 13,500 or 27,500 rpm, where the ring oscillates twice and once in a passing
+    near = f"operating.shaft_speed={speed} rpm", f"operating.radial_load={load} N"
+    assert damage("planar", 1.0, *near) == pytest.approx(damage("planar", 0.1, *near), rel=0.02)
 
 
 def correction(level, state):

@@ -39,7 +39,7 @@ CACHE_FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "compiled" / f
 
 def _compiled(function, **options):
     # Compiled code allocates nothing: without reference counting (_nrt) a step takes a sixth less time.
-    # No function is called by C code (no_cfunc_wrapper), where each wrapper would take a tenth of the time to compile.
+    # No C code calls any function: without wrappers for it (no_cfunc_wrapper) compiling takes a tenth less time.
     # Fused multiply-add is the only liberty with arithmetic: the rest of fastmath would delete the checks for NaN.
     # Numba reads the cache folder when it decorates: set it for this moment only, so that other users of numba keep theirs.
     theirs = numba.config.CACHE_DIR

@@ -194,8 +194,8 @@ def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
     """Return the settings from that of a scene to the fastest on the kept front of its bearing; empty where nothing is kept for where it operates.
 
     Each is faster than the one before by a quarter at least, and on the front of the settings that the governor can use: at the scene's own level
-    or a lower one that has everything the scene asks for; without a fixed step; and with a corrected table only
-    where it is on disk.  Where the scene's own setting was not measured, those of its level are used that are surely faster: at least as fast as the
+    or a lower one that has everything the scene asks for; without a fixed step; and with a corrected table only where it is on
+    disk.  Where the scene's own setting was not measured, those of its level are used that are surely faster: at least as fast as the
     slowest that is coarser (`bearing_sim.scene.kept_front.is_coarser`).  Levels below all measured ones follow at the end, with errors that are not
     known.
 

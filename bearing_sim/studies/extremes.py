@@ -8,7 +8,7 @@ from pathlib import Path
 
 from bearing_sim.levels.level import LEVELS
 from bearing_sim.numerics.cores import cores
-from bearing_sim.studies.extremes_cases import Case, corner_cases, sampled_cases
+from bearing_sim.studies.extremes_cases import corner_cases, sampled_cases
 from bearing_sim.studies.extremes_long import LONG_RUNS, LongRun, long_run_result
 from bearing_sim.studies.extremes_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Outcome, case_result
 from bearing_sim.studies.extremes_stock import StockOutcome, at_stock, stock_result
@@ -49,7 +49,7 @@ def run_extremes(
     levels = tuple(levels) or tuple(LEVELS)
     cases = [case for level in levels for case in corner_cases(level) + sampled_cases(level, samples, seed)]
     long_runs = [(level, *run) for level in levels for run in LONG_RUNS[level]] if long else []
-    tasks = [task(compiled_for(case), case_result, case) for case in cases]
+    tasks = [task(case.level, case_result, case) for case in cases]
     tasks += [task(run[0], long_run_result, *run) for run in long_runs]
     announce(f"{len(cases)} scenes, {len(long_runs)} long runs")
     results = run_tasks(tasks, Journal(), workers, progress=lambda done, total: progress(done / total))
@@ -60,12 +60,6 @@ def run_extremes(
     again = run_tasks([task(case.level, stock_result, case) for case in limited], Journal(), workers)
     stock_outcomes = [StockOutcome(**{"case": case} | result) for case, result in zip(limited, again)]
     return _report(levels, samples, seed, outcomes, stock_outcomes, long_outcomes), outcomes
-
-
-def compiled_for(case: Case) -> str:
-    """Return which machine code a case needs: that of its level, with error control or with a fixed step."""
-    fixed = any(override.startswith("integration.fixed_step=") for override in case.overrides)
-    return f"{case.level}, fixed step" if fixed else case.level
 
 
 def long_outcome(level: str, speed: float, seconds: float, result: dict) -> LongRun:

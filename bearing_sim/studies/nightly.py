@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.studies.extremes import compiled_for, counted, long_outcome
+from bearing_sim.studies.extremes import counted, long_outcome
 from bearing_sim.studies.extremes_cases import Case, corner_cases, sampled_cases
 from bearing_sim.studies.extremes_long import LONG_RUNS, LongRun, long_run_result
 from bearing_sim.studies.extremes_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Outcome, case_result
@@ -118,7 +118,7 @@ def run_nightly(
         stock = [at_stock(case) for case in sampled[level] + at_corners[level]]
         places[level] = len(tasks)
         tasks += [task(level, stock_result, case) for case in stock]
-        tasks += [task(compiled_for(case), case_result, case) for case in at_corners[level]]
+        tasks += [task(case.level, case_result, case) for case in at_corners[level]]
         tasks += [task(level, long_run_result, level, *run) for run in lasting[level]]
     with Journal(journal) as kept:
         results = run_tasks(tasks, kept, workers, progress=progress)

@@ -13,10 +13,11 @@ HALF_PITCH = 1.0 / (2.0 + 1.0 / (3.0 + GOLDEN))  # 0.4393
 FIFTH_PITCH = 1.0 / (4.0 + GOLDEN)  # 0.2165
 POSITION_WEIGHT = 0.25  # of positions in the norm of a correction (assumption): contacts leave less of a correction than tractions do
 _PLAY_SPEED = 10.0  # m/s, of the pockets, where play has half its weight in the norm of a correction (assumption)
-# Stiffness that changes with every passing roller excites the ring where it oscillates n/2 times a passing: (n/2)^2, and from which relative
-# difference of squares of frequencies on the longest step becomes shorter.  The differences and the shortest part are assumptions, chosen so that
-# lives near a resonance keep within two per cent (``test/benchmarks/resonance.py``).
+# The raceways' stiffness changes with every passing roller, which excites the ring where it oscillates n/2 times in a passing.  Each pair is (n/2)^2
+# and the relative difference of squared frequencies within which the longest step is shorter.  The differences and the shortest part are assumptions,
+# chosen so that lives near a resonance are within two per cent (``test/benchmarks/resonance.py``).
 _RESONANCES = ((1.0, 0.5), (2.25, 0.2), (4.0, 0.1))
+_SLOWEST = 1e-3  # rad/s; what a cage at rest counts as (assumption)
 _SHORTEST_PART = 0.35  # of `FIFTH_PITCH`, in resonance
 
 
@@ -74,11 +75,11 @@ def pitch_step(cage_speed, rollers, fraction):
 
     Parameters
     ----------
-    cage_speed : [rad/s]; a cage at rest counts as 1e-3 rad/s.
+    cage_speed : [rad/s]; a cage at rest counts as `_SLOWEST`.
     rollers : number of rollers, Z.
     fraction : of a pitch, such as `HALF_PITCH`.
     """
-    return fraction * 2.0 * math.pi / (rollers * max(abs(cage_speed), 1e-3))
+    return fraction * 2.0 * math.pi / (rollers * max(abs(cage_speed), _SLOWEST))
 
 
 @template
@@ -95,14 +96,14 @@ def ring_step(cage_speed, params, stiffness):
     params : of the bearing.
     stiffness : of the raceways, see `bearing_sim.levels.common.rollers.average_stiffness`.
     """
-    passing = params.rollers.count * max(abs(cage_speed), 1e-3)
+    passing = params.rollers.count * max(abs(cage_speed), _SLOWEST)
     per = 1.0 / (params.ring.mass * passing * passing)
     middle, half = 0.5 * (stiffness[0] + stiffness[2]) * per, math.hypot(0.5 * (stiffness[0] - stiffness[2]), stiffness[1]) * per
     nearest = 1.0
     for square, reach in _RESONANCES:
         nearest = min(nearest, abs(1.0 - (middle + half) / square) / reach, abs(1.0 - (middle - half) / square) / reach)
     part = max(math.sqrt(nearest), _SHORTEST_PART)
-    steps = 1.0 / FIFTH_PITCH  # in a pitch, and whole ones more, so that they sample all its instants alike
+    steps = 1.0 / FIFTH_PITCH  # in a pitch; whole ones are added, so that they still sample all its instants alike
     steps += math.floor(steps * (1.0 / part - 1.0) + 0.5)
     return pitch_step(cage_speed, params.rollers.count, 1.0 / steps)
 

@@ -57,6 +57,7 @@ from bearing_sim.physics.lamina import ROLLER_ROW
 from bearing_sim.physics.lamina_life import equivalent_lamina_loads
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 
+_LAMINA_INTERVAL = 0.25 * FIFTH_PITCH  # of a pitch: the longest steps all count for laminae, also in resonance (assumption)
 _CAGE_STEP = 1e-3  # rad, over which speeds are differences: a hundredth of what a lobe or a roller pitch takes
 
 
@@ -222,7 +223,7 @@ def average_loads(h, y, model, work):
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
     average_moments(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_moments)
     average_stiffness(ROLLER, SLICED, fraction, work.rollers, work.contacts, work.ring_stiffness)
-    average_laminae(abs(turned), 0.25 * FIFTH_PITCH * 2.0 * math.pi / count, model.params, work)
+    average_laminae(abs(turned), _LAMINA_INTERVAL * 2.0 * math.pi / count, model.params, work)
 
 
 @kernel
