@@ -95,7 +95,7 @@ def test_a_corrected_table_is_chosen_with_the_command_that_builds_it():
     keep(HERE, course(*ALL, STEADY._replace(errors=PLANAR.errors, overrides=("integration.fixed_step=null", "table.correction=planar"))))
     chosen = scene(*AUTO)
     assert chosen.level == "steady" and chosen.table.correction == "planar"
-    assert chosen.level_reason.endswith("; a node needs its table: bearing-sim table deng2017_table1")
+    assert chosen.level_reason.endswith("; a node needs its table: bearing-sim table deng2017_table1, with the same --set, if any")
 
 
 def test_edge_loads_have_an_error_only_where_slices_were_measured():

@@ -131,7 +131,7 @@ def reason_of(setting: KeptSetting, errors: Mapping[str, float], front: KeptFron
     found = ", ".join(_beside(name, most, setting) for name, most in errors.items())
     factor = setting.real_time_factor
     spare = f"{in_digits(100.0 * (1.0 - 1.0 / factor), 2)} % of a core to spare" if factor > 1.0 else "too slow to follow a live bearing"
-    table = f"; a node needs its table: bearing-sim table {shlex.quote(origin)}" if setting.is_corrected else ""
+    table = f"; a node needs its table: bearing-sim table {shlex.quote(origin)}, with the same --set, if any" if setting.is_corrected else ""
     return (
         f"level {setting.level} chosen with {setting.detail}, the fastest setting whose measured errors keep the wants: {found}; measured on this "
         f"bearing and machine ({courses}) at {in_digits(factor, 3)} times real time, {spare}{table}"

@@ -12,10 +12,10 @@ from bearing_sim import Simulation, load_scene
 from bearing_sim.scene.scene import Integration
 
 FACTORS = ((0.01, 0.01, 0.01), (3.0, 3.0, 3.0), (1.0, 1.0, 1.0), (0.3, 0.3, 0.3), (0.1, 0.1, 0.1))  # the first one is the reference
-SETTLING, STRETCH = 0.1, 0.15  # s
+STRETCH = 0.15  # s
 
 
-def damage(overrides, factors):
+def damage(overrides, factors, settling):
     """Return the damage over the stretch and the steps in a second, with default tolerances times factors of position, play and speed."""
     defaults = Integration()
     position, play, speed = factors
@@ -33,7 +33,7 @@ def damage(overrides, factors):
             ],
         )
     )
-    simulation.advance(SETTLING)
+    simulation.advance(settling)
     before, steps = float(simulation.sample["damage"]), simulation.counters.steps
     simulation.advance(STRETCH, samples=5)
     return float(simulation.sample["damage"]) - before, (simulation.counters.steps - steps) / STRETCH
@@ -42,15 +42,16 @@ def damage(overrides, factors):
 @click.command()
 @click.option("--speed", "speeds", multiple=True, default=("25000 rpm",), show_default=True, help="Of the shaft; can be repeated.")
 @click.option("--load", default="100 N", show_default=True)
+@click.option("--settling", default=0.1, show_default=True, help="Before the stretch, in seconds.")
 @click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; can be repeated.")
-def main(speeds, load, overrides):
+def main(speeds, load, settling, overrides):
     """Print the error of the damage at each speed and tolerance."""
     print("factors on tolerances of position, play, speed; damage of the stretch, and its error; steps a second")
     for speed in speeds:
         print(f"{speed}, {load}")
         reference = None
         for factors in FACTORS:
-            found, steps = damage([f"operating.shaft_speed={speed}", f"operating.radial_load={load}", *overrides], factors)
+            found, steps = damage([f"operating.shaft_speed={speed}", f"operating.radial_load={load}", *overrides], factors, settling)
             reference = found if reference is None else reference
             error = 100.0 * (found / reference - 1.0)
             print("{:5g} {:5g} {:5g}".format(*factors), f"{found:10.3e}  {error:+7.1f} %  {steps:8.0f}", flush=True)

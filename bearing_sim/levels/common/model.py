@@ -10,15 +10,16 @@ from bearing_sim.physics.growth import total_growth
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # golden section: the number that ratios of integers approximate worst
 HALF_PITCH = 1.0 / (2.0 + 1.0 / (3.0 + GOLDEN))  # 0.4393
+QUARTER_PITCH = 1.0 / (3.0 + GOLDEN)  # 0.2764
 FIFTH_PITCH = 1.0 / (4.0 + GOLDEN)  # 0.2165
 POSITION_WEIGHT = 0.25  # of positions in the norm of a correction (assumption): contacts leave less of a correction than tractions do
 _PLAY_SPEED = 10.0  # m/s, of the pockets, where play has half its weight in the norm of a correction (assumption)
-# The raceways' stiffness changes with every passing roller, which excites the ring where it oscillates n/2 times in a passing.  Each pair is (n/2)^2
-# and the relative difference of squared frequencies within which the longest step is shorter.  The differences and the shortest part are assumptions,
-# chosen so that lives near a resonance are within two per cent (``test/benchmarks/resonance.py``).
-_RESONANCES = ((1.0, 0.5), (2.25, 0.2), (4.0, 0.1))
 _SLOWEST = 1e-3  # rad/s; what a cage at rest counts as (assumption)
-_SHORTEST_PART = 0.35  # of `FIFTH_PITCH`, in resonance
+# The raceways' stiffness changes with every passing roller, which excites the ring where it oscillates n/2 times in a passing, n = 1 to 5.  Each
+# entry has (n/2)^2, the relative difference of squared frequencies within which the longest step is shorter, and the shortest step as a part of
+# `FIFTH_PITCH`: where the ring takes two passings for an oscillation, it need not be as short.  Assumptions, chosen so that lives near a
+# resonance are within two per cent or three (``test/benchmarks/resonance.py``).
+_RESONANCES = ((0.25, 0.2, 0.7), (1.0, 0.5, 0.35), (2.25, 0.2, 0.35), (4.0, 0.15, 0.35), (6.25, 0.12, 0.35))
 
 
 class Drive(NamedTuple):
@@ -84,11 +85,12 @@ def pitch_step(cage_speed, rollers, fraction):
 
 @template
 def ring_step(cage_speed, params, stiffness):
-    """Return the longest sensible step [s] where the inner ring vibrates: a fifth of a pitch, less near a resonance of the ring.
+    """Return the longest sensible step [s] where the inner ring vibrates: less near a resonance of the ring.
 
     A step gives an oscillation a slightly wrong period and some damping of its own, and the nearer the ring is to a resonance with the passing
     rollers, the more its amplitude depends on both.  Which oscillations a stiffness that changes periodically excites: A. H. Nayfeh, D. T. Mook,
-    Nonlinear Oscillations (1979), chapter 5.  An oscillation once in two passings (n = 1) is resolved by a fifth of a pitch.
+    Nonlinear Oscillations (1979), chapter 5.  Where the ring is faster than the passing rollers and near no resonance, it follows them, and a
+    quarter of a pitch is enough; elsewhere it takes a fifth, or less.
 
     Parameters
     ----------
@@ -99,10 +101,13 @@ def ring_step(cage_speed, params, stiffness):
     passing = params.rollers.count * max(abs(cage_speed), _SLOWEST)
     per = 1.0 / (params.ring.mass * passing * passing)
     middle, half = 0.5 * (stiffness[0] + stiffness[2]) * per, math.hypot(0.5 * (stiffness[0] - stiffness[2]), stiffness[1]) * per
-    nearest = 1.0
-    for square, reach in _RESONANCES:
-        nearest = min(nearest, abs(1.0 - (middle + half) / square) / reach, abs(1.0 - (middle - half) / square) / reach)
-    part = max(math.sqrt(nearest), _SHORTEST_PART)
+    part = 1.0
+    for square, reach, shortest in _RESONANCES:
+        distance = min(abs(1.0 - (middle + half) / square), abs(1.0 - (middle - half) / square)) / reach
+        if distance < 1.0:
+            part = min(part, max(math.sqrt(distance), shortest))
+    if part == 1.0 and middle - half > 1.0:
+        return pitch_step(cage_speed, params.rollers.count, QUARTER_PITCH)
     steps = 1.0 / FIFTH_PITCH  # in a pitch; whole ones are added, so that they still sample all its instants alike
     steps += math.floor(steps * (1.0 / part - 1.0) + 0.5)
     return pitch_step(cage_speed, params.rollers.count, 1.0 / steps)
