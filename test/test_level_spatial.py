@@ -283,6 +283,15 @@ def test_a_held_ring_is_inclined_from_the_start_even_where_no_balance_is_found(m
     assert run.sample["ring_tilt_z"] == pytest.approx(1e-3)
 
 
+@pytest.mark.parametrize(("speed", "tilts"), [(45000, True), (30000, False)])
+def test_a_trace_of_misalignment_shows_whether_a_cage_tilts_by_itself(speed, tilts):
+    """Hundreds of times the misalignment where it does, where the lands end it; less than ten times where it does not."""
+    run = simulation(f"operating.shaft_speed={speed} rpm", "operating.misalignment=0.01 mrad")
+    run.advance(0.2)
+    tilt = np.abs(run.advance(0.1, samples=200)["cage_tilt_y"]).max()
+    assert (5e-3 < tilt < 0.02) if tilts else (1e-6 < tilt < 1e-4)
+
+
 @pytest.mark.parametrize("speed", [5000, 15000, 45000])
 def test_laminae_count_for_life_as_the_loads_of_whole_rollers_do_though_not_at_every_short_step(speed):
     """Aligned rollers without crown carry the same along their length, so that both means are the same but for the instants that count."""

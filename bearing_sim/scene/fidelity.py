@@ -131,5 +131,6 @@ def hint(scene) -> str | None:
     of_scenes = [effect for effect in EFFECTS if not effect.field.startswith("wants.")]
     missing = ", ".join(effect.field for effect in of_scenes if scene.level in effect.levels and lower not in effect.levels)
     softer = "" if scene.bearing.roller.profile.law == "none" else ", without the compliance that the profile adds to contacts,"
-    faster = f"while its cage does not tilt by itself, level {lower} computes the same motion and loads{softer} several times faster"
-    return f"level {scene.level}: nothing in the scene needs it ({missing}); {faster}"
+    faster = f"level {lower} computes the same motion and loads{softer} several times faster"
+    upright = ", unless the cage tilts by itself, which operating.misalignment=0.01mrad would show" if scene.level == "spatial" else ""
+    return f"level {scene.level}: nothing in the scene needs it ({missing}); {faster}{upright}"
