@@ -281,10 +281,9 @@ def kept_course(found: Trade) -> KeptCourse:
 
 def _tasks(scene: Scene, course: Course, repeats: int) -> Iterator[Task]:
     """Yield the tasks of a scene in all windows of a course."""
-    kind = f"{scene.level}{'' if scene.integration.fixed_step is None else ', fixed step'}"
     temperatures = _temperatures(course) if scene.level == "steady" else ()
     for window in course.windows:
-        yield task(kind, measure, scene, window, temperatures, repeats, program_hash(*_MORE_SOURCES))
+        yield task(scene.level, measure, scene, window, temperatures, repeats, program_hash(*_MORE_SOURCES))
 
 
 def measure(scene: Scene, window: Window, temperatures: tuple[float, ...], repeats: int, program: str) -> dict:

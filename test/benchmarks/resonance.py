@@ -9,6 +9,7 @@ Each row multiplies the default tolerances of positions, of play and of speeds.
 import click
 
 from bearing_sim import Simulation, load_scene
+from bearing_sim.cli.options import set_option
 from bearing_sim.scene.scene import Integration
 
 FACTORS = ((0.01, 0.01, 0.01), (3.0, 3.0, 3.0), (1.0, 1.0, 1.0), (0.3, 0.3, 0.3), (0.1, 0.1, 0.1))  # the first one is the reference
@@ -16,7 +17,10 @@ STRETCH = 0.15  # s
 
 
 def damage(overrides, factors, settling):
-    """Return the damage over the stretch and the steps in a second, with default tolerances times factors of position, play and speed."""
+    """Return the damage over the stretch and the steps in a second, with default tolerances times factors of position, play and speed.
+
+    The stretch begins after ``settling`` [s] from the start.
+    """
     defaults = Integration()
     position, play, speed = factors
     absolute = defaults.absolute_tolerance
@@ -43,7 +47,7 @@ def damage(overrides, factors, settling):
 @click.option("--speed", "speeds", multiple=True, default=("25000 rpm",), show_default=True, help="Of the shaft; can be repeated.")
 @click.option("--load", default="100 N", show_default=True)
 @click.option("--settling", default=0.1, show_default=True, help="Before the stretch, in seconds.")
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; can be repeated.")
+@set_option
 def main(speeds, load, settling, overrides):
     """Print the error of the damage at each speed and tolerance."""
     print("factors on tolerances of position, play, speed; damage of the stretch, and its error; steps a second")
