@@ -79,6 +79,8 @@ class Reference:
     ring_mass: float = 0.55
     cage_mass: float = 0.05
     contact_damping: float = 0.104
+    damping_time: float = 2.5e-6
+    damping_depth: float = 1e-7
     pocket_friction: float = 0.05
     pocket_clearance: float = 0.1e-3
     pocket_film_force: float = 67.0
@@ -131,10 +133,11 @@ class Reference:
         return radius, slope
 
     def normal_contact(self, penetration, rate):
-        """Force with Hunt-Crossley damping, never pulling; its elastic part; and the energy of that."""
+        """Force with damping by the load and by the stiffness, never pulling; its elastic part; and the energy of that."""
         elastic = self.stiffness * power_of_positive(penetration, 10 / 9)
         energy = 9 / 19 * self.stiffness * power_of_positive(penetration, 19 / 9)
-        return elastic * larger(1 + self.contact_damping * rate, 0.0), elastic, energy
+        by_stiffness = 10 / 9 * self.damping_time / (larger(penetration, 0.0) + self.damping_depth)
+        return elastic * larger(1 + (self.contact_damping + by_stiffness) * rate, 0.0), elastic, energy
 
     def traction(self, load, rolling, sliding, curvature_radius):
         """The force mu Q, odd in the sliding speed (Deng 2017, ref. 17); load and rolling speed kept off zero, where the powers run away."""

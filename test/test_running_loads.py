@@ -37,6 +37,18 @@ def test_loose_tolerances_where_the_passing_rollers_limit_the_steps_do_not_chang
     assert damage(level, 3.0) == pytest.approx(damage(level, 0.3), rel=0.01)
 
 
+@pytest.mark.parametrize("level", LEVELS)
+def test_means_of_loads_are_those_of_equal_steps_however_error_control_varies_them(level):
+    """By the loads at the ends of steps alone, damage was 0.7 to 1.9 % too small: steps shorten where loads rise and lengthen where they fall."""
+    near = "operating.shaft_speed=45000 rpm", "operating.radial_load=800 N"
+    fine, equal = (simulation(level, *near, *more) for more in (tolerance_overrides(0.03), ["integration.fixed_step=5 us"]))
+    for run in (fine, equal):
+        run.advance(0.1)
+    fine, equal = (run.advance(0.03, samples=30) for run in (fine, equal))
+    for name in ("inner_equivalent_load", "outer_equivalent_load", "inner_lamina_load", "outer_lamina_load"):
+        assert fine[name].mean() == pytest.approx(equal[name].mean(), rel=5e-4)
+
+
 @pytest.mark.parametrize(("speed", "load"), [(22500, 800), (25000, 800), (13500, 100), (18500, 100), (27500, 100)])
 def test_the_life_near_a_resonance_of_the_ring_is_that_of_fine_steps(speed, load):
     # with steps of order 2, whose oscillations are 4 % too slow, damage was 15 and 28 % too large at 800 N; with steps as long in resonance as
@@ -71,12 +83,12 @@ def test_loads_carried_along_a_correction_are_those_at_its_end_to_second_order(l
         return work.contacts[:, contact.load].copy()
 
     before, change, errors, moved = loads(run._state), correction(level, run._state), [], []
+    pressed = np.minimum(before, loads(run._state + change)) > 50.0
+    assert pressed.sum() > 4
     for part in (1.0, 0.5):
         after = loads(run._state + part * change)
         loads(run._state)
         model_of_level.average_loads(1e-9, run._state + part * change, model, work)
-        pressed = np.minimum(before, after) > 50.0
-        assert pressed.sum() > 4
         errors.append(np.abs(work.contacts[:, contact.load] - after)[pressed].max())
         moved.append(np.abs(before - after)[pressed].max())
     assert errors[0] < 0.05 * moved[0] and errors[1] < 0.35 * errors[0]

@@ -104,7 +104,7 @@ def damping_ratio():
     """Viscous damping ratio of a roller between two raceways that carry 500 N each."""
     stiffness = PARAMS.raceways.stiffness
     penetration = (500.0 / stiffness) ** 0.9
-    spring, damper = 2 * 10 / 9 * 500.0 / penetration, 2 * PARAMS.ring.contact_damping * 500.0
+    spring, damper = 2 * 10 / 9 * 500.0 / penetration, 2 * PARAMS.raceways.damping.hysteresis * 500.0
     return damper / (2 * math.sqrt(spring * PARAMS.rollers.mass))
 
 

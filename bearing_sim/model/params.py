@@ -9,7 +9,7 @@ import numpy as np
 
 from bearing_sim.model.oil import oil_at, pressure_index, shear_strength
 from bearing_sim.model.running_clearance import mounted, running_play, uniform
-from bearing_sim.physics.contact import iso_contact_stiffness, line_contact_stiffness
+from bearing_sim.physics.contact import ContactDamping, iso_contact_stiffness, line_contact_stiffness
 from bearing_sim.physics.drag import LARGEST_FRACTION, Bath, bath_drag, swept_fraction
 from bearing_sim.physics.film import RollingResistance, replenishment_rate, resistance_constants
 from bearing_sim.physics.flange import NO_FACE, Flanges, corner_stiffness, film_constant, flange_face
@@ -49,6 +49,7 @@ class Raceways(NamedTuple):
     contour: np.ndarray  # R_e(phi), periodic cubic table, shape (n, 4)
     contour_dip: float  # lowest radius of the contour less R_low, at most 0 [m]
     stiffness: float  # K of Q = K delta^(10/9) [N/m^(10/9)]
+    damping: ContactDamping
     inner_curvature_radius: float  # effective radius of the inner contact [m]
     outer_curvature_radius: float  # effective radius of the outer contact [m]
     reduced_modulus: float  # E' = 2 / sum((1 - nu^2)/E) [Pa]
@@ -112,7 +113,6 @@ class Ring(NamedTuple):
     """The inner ring and what moves with it."""
 
     mass: float  # [kg]
-    contact_damping: float  # a of Q (1 + a d(delta)/dt) [s/m]
 
 
 SLICED_EQUALLY, STRAIGHT, LOGARITHMIC, STRAIGHT_ARC = range(4)  # how contacts in motion are evaluated: equal slices, or a quadrature by profile
@@ -251,6 +251,7 @@ def pack(scene: Scene) -> Params:
             contour=contour,
             contour_dip=min(0.0, float(contour[:, 3].min()) - low_radius),
             stiffness=contact_stiffness(bearing),
+            damping=ContactDamping(bearing.contact.damping, bearing.contact.damping_time, bearing.contact.damping_depth),
             inner_curvature_radius=1 / (1 / roller_radius + 1 / inner_radius),
             outer_curvature_radius=1 / (1 / roller_radius - 1 / low_radius),
             reduced_modulus=2 / compliance,
@@ -278,7 +279,7 @@ def pack(scene: Scene) -> Params:
             outer_width=cage.width - (land_width if cage.guidance == "outer_ring" else 0.0),
             inner_width=cage.width - (land_width if cage.guidance == "inner_ring" else 0.0),
         ),
-        ring=Ring(bearing.inner_raceway.ring_mass + (0.0 if scene.support.shaft_bends else scene.support.shaft.mass), bearing.contact.damping),
+        ring=Ring(bearing.inner_raceway.ring_mass + (0.0 if scene.support.shaft_bends else scene.support.shaft.mass)),
         life=_life(scene),
         mounted=mounted(bearing, scene.mounting),
         slices=_slices(bearing),

@@ -83,49 +83,60 @@ def line_penetration(force, stiffness):
     return (force / stiffness) ** 0.9
 
 
+class ContactDamping(NamedTuple):
+    """Damping of normal contacts, see `damped_line_contact`."""
+
+    hysteresis: float  # a of Hunt and Crossley [s/m]
+    time: float  # tau, by which the damping is the stiffness far below the depth [s]
+    depth: float  # h, where the second part has faded to half of that [m]
+
+
+@template
+def damping_factor(depth, damping):
+    """Return d, the damping of a normal contact over its elastic force [s/m], and its derivative by the depth [s/m^2].
+
+    Parameters
+    ----------
+    depth : penetration, not below 0 [m].
+    damping : `ContactDamping`.
+    """
+    inverse = 1.0 / (depth + damping.depth)
+    fading = EXPONENT * damping.time * inverse
+    return damping.hysteresis + fading, -fading * inverse
+
+
 @template
 def damped_line_contact(penetration, rate, stiffness, damping):
-    """Return Q = K delta^(10/9) (1 + a delta'), never below 0, and its derivatives.
+    """Return Q = K delta^(10/9) (1 + d delta'), never below 0, and its derivatives; d = a + (10/9) tau/(delta + h).
 
-    Damping that vanishes with the penetration: K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440.  Deng 2017 states no
-    damping; the value of a is an *assumption* (default: the viscous ratio of a roller at 500 N is 0.05).
+    The first part of d is damping that vanishes with the load: K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440.  The second part is
+    proportional to the stiffness, c = tau dQ/d(delta), as E. Kraemer (Dynamics of Rotors and Foundations, 1993) gives it for rolling bearings, and
+    fades where the penetration is less than h.  Deng 2017 states no damping; values are assumptions, see the theory of contacts.
 
     Parameters
     ----------
     penetration : delta [m] (lanes).
     rate : d(delta)/dt [m/s] (lanes).
     stiffness : K [N/m^(10/9)].
-    damping : a [s/m].
+    damping : `ContactDamping`.
 
     Returns
     -------
     load [N], d_penetration [N/m], d_rate [N s/m]
     """
+    depth = larger(penetration, 0.0)
     root = stiffness * ninth_root(larger(penetration, TINY))
-    elastic = root * larger(penetration, 0.0)
-    factor = 1.0 + damping * rate
+    elastic = root * depth
+    per_rate, slope = damping_factor(depth, damping)
+    factor = 1.0 + per_rate * rate
     pressed = where_positive(factor, where_positive(penetration, 1.0, 0.0), 0.0)
-    return elastic * larger(factor, 0.0), pressed * EXPONENT * root * factor, pressed * elastic * damping
+    return elastic * larger(factor, 0.0), pressed * root * (EXPONENT * factor + depth * slope * rate), pressed * elastic * per_rate
 
 
 @template
-def damped_slice(penetration, rate, stiffness, damping):
-    """Return what the law of `damped_line_contact` needs for one slice, in the form whose sums over slices cost least (lanes).
-
-    Parameters
-    ----------
-    penetration, rate : delta_k of the slice [m] and its time derivative [m/s].
-    stiffness : K/N [N/m^(10/9)].
-    damping : a [s/m].
-
-    Returns
-    -------
-    load Q [N], K/N delta^(1/9) [N/m], the factor 1 + a delta', and 1 where the slice presses, else 0
-    """
-    root = stiffness * ninth_root(larger(penetration, TINY))
-    factor = 1.0 + damping * rate
-    pressed = where_positive(factor, where_positive(penetration, 1.0, 0.0), 0.0)
-    return pressed * root * penetration * factor, root, factor, pressed
+def elastic_line_contact(penetration, stiffness):
+    """Return K delta^(10/9) [N] (lanes), the conservative part of `damped_line_contact`."""
+    return stiffness * ninth_root(larger(penetration, TINY)) * larger(penetration, 0.0)
 
 
 @template

@@ -12,6 +12,7 @@ import math
 from typing import NamedTuple
 
 from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.physics.contact import EXPONENT, damping_factor
 
 _WEDGE = 10.0  # rad/s; assumption: the film's half-circle changes sides smoothly where the wedge speed changes sign
 _SLIDING = 0.1  # m/s; assumption: boundary friction is proportional to the sliding speed well below this
@@ -166,8 +167,8 @@ def _in_plane(n_n, t_n, n_t, t_t, n_y, n_z):
 def land_contact(land, params):
     """Return the contact force of cage and land, its derivatives, and how they approach.
 
-    Q = K delta^(10/9) (1 + a delta'), delta = e - (c - h_0), as between rollers and raceways (`bearing_sim.physics.contact`): films thinner than
-    h_0 = ``cage.land_film`` touch.  *Assumption*: line contact with the raceways' K and a stands for that of two lands.
+    Q = K delta^(10/9) (1 + d delta'), delta = e - (c - h_0), as between rollers and raceways (`bearing_sim.physics.contact`): films thinner than
+    h_0 = ``cage.land_film`` touch.  *Assumption*: line contact with the raceways' K and damping stands for that of two lands.
 
     Parameters
     ----------
@@ -185,10 +186,11 @@ def land_contact(land, params):
         return 0.0, 0.0, 0.0, eccentricity, 0.0
     rate = (land.y * land.y_speed + land.z * land.z_speed) / eccentricity
     root = params.raceways.stiffness * depth ** (1.0 / 9.0)
-    damping = 1.0 + params.ring.contact_damping * rate
-    if damping <= 0.0:
+    per_rate, slope = damping_factor(depth, params.raceways.damping)
+    factor = 1.0 + per_rate * rate
+    if factor <= 0.0:
         return 0.0, 0.0, 0.0, eccentricity, rate
-    return root * depth * damping, 10.0 / 9.0 * root * damping, root * depth * params.ring.contact_damping, eccentricity, rate
+    return root * depth * factor, root * (EXPONENT * factor + depth * slope * rate), root * depth * per_rate, eccentricity, rate
 
 
 @template

@@ -118,10 +118,15 @@ class Roller:
 
 @record
 class Contact:
-    """Normal contacts: the spring constant, and dissipation after Hunt and Crossley: Q (1 + a d(delta)/dt), never pulling."""
+    """Normal contacts: the spring constant, and damping that never pulls: Q (1 + (a + 10/9 tau/(delta + h)) d(delta)/dt).
+
+    See `bearing_sim.physics.contact.damped_line_contact`.
+    """
 
     spring: Literal["palmgren", "iso"] = "palmgren"  # A_1 of the material, or c_L of ISO/TS 16281, which is for steel
     damping: quantity("", "a [s/m]; 0.104 is a viscous ratio of 0.05 for a 7 mm roller at 500 N", 0.0, 100.0) = 0.104
+    damping_time: quantity("s", "tau, damping over stiffness; Kraemer: 2.5 to 25 us", 0.0, 1e-3, "us") = 2.5e-6
+    damping_depth: quantity("m", "h, penetration at which half of that is left", 1e-9, 1e-4, "um") = 1e-7
 
 
 @record

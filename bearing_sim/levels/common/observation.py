@@ -89,16 +89,20 @@ def _write_lives(lives, hours, row):
 
 
 @fused
-def average_moments(fraction, rows, present_row, contacts, load_row, count, moments):
-    """Include the loads of this instant in the running means over all rollers of `bearing_sim.physics.lamina_life.add_load_moments`.
+def average_moments(fraction, rows, present_row, contacts, load_row, count, moments, last_moments):
+    """Include the loads of a step in the running means over all rollers of `bearing_sim.physics.lamina_life.add_load_moments`.
+
+    A step counts by the mean of the powers at its start and at its end.  By those at its end alone the means would be too low: error control
+    takes short steps where loads rise and lengthens them where they fall.
 
     Parameters
     ----------
-    fraction : weight of this instant.
+    fraction : weight of the step.
     rows, present_row : rows of the rollers, and which of them says whether a lane holds one.
     contacts, load_row : rows of the contacts, those with the inner raceway first, and which of them is the normal force [N].
     count : number of rollers.
     moments : changed in place, shape (2, MOMENTS).
+    last_moments : powers at the start of the step, replaced by those at its end, likewise.
     """
     blocks = rows.shape[0]
     inner_0, inner_1, inner_2, inner_3 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
@@ -115,15 +119,21 @@ def average_moments(fraction, rows, present_row, contacts, load_row, count, mome
         outer_1 += outside * q_e
         outer_2 += outside * (q_e * q_e)
         outer_3 += outside * (q_e * q_e) * q_e
-    share = fraction / count
-    _fade(moments[0], fraction, share, inner_0, inner_1, inner_2, inner_3)
-    _fade(moments[1], fraction, share, outer_0, outer_1, outer_2, outer_3)
+    share = 1.0 / count
+    _fade(moments[0], last_moments[0], fraction, share, inner_0, inner_1, inner_2, inner_3)
+    _fade(moments[1], last_moments[1], fraction, share, outer_0, outer_1, outer_2, outer_3)
 
 
 @kernel
-def _fade(means, fraction, share, power_0, power_1, power_2, power_3):
-    """Take sums over the lanes of four powers into their running means; ``share`` is the fraction over the number of rollers."""
-    means[0] += share * total(power_0) - fraction * means[0]
-    means[1] += share * total(power_1) - fraction * means[1]
-    means[2] += share * total(power_2) - fraction * means[2]
-    means[3] += share * total(power_3) - fraction * means[3]
+def _fade(means, last, fraction, share, power_0, power_1, power_2, power_3):
+    """Take sums over the lanes of four powers, times ``share``, into their running means; ``last`` holds them at the start of the step."""
+    _fade_one(means, last, 0, fraction, share * total(power_0))
+    _fade_one(means, last, 1, fraction, share * total(power_1))
+    _fade_one(means, last, 2, fraction, share * total(power_2))
+    _fade_one(means, last, 3, fraction, share * total(power_3))
+
+
+@kernel
+def _fade_one(means, last, k, fraction, now):
+    means[k] += fraction * (0.5 * (last[k] + now) - means[k])
+    last[k] = now

@@ -43,7 +43,7 @@ def rolling_state(at, params, work, shaft_speed, load_y, load_z):
     cage_speed = rolling[slip_state.OMEGA]
     balance.growth[0] = total_growth(shaft_speed, cold_growth(params.mounted))  # growth by heat, unknown here, comes with the first step
     pitch_loads(0.0, cage_speed, load_y, load_z, OilFactors(1.0, 1.0), params, balance)  # for the moments, which no oil changes
-    work.load_moments[:] = balance.load_moments
+    work.load_moments[:] = work.last_moments[:] = balance.load_moments
     balance_loads(0.0, cage_speed, load_y, load_z, params, balance)
     state, rollers = _new_state(at, params)
     state[at.RING_Y], state[at.RING_Z] = balance.ring
@@ -109,7 +109,7 @@ def _dynamic_state_at(at, params, work, sample):
     state[at.THETA], state[at.OMEGA] = sample["cage_angle"], sample["cage_speed"]
     rollers[at.R], rollers[at.PHI] = sample["roller_radius"], _roller_angles(sample)
     rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], _spins(params, sample)
-    work.load_moments[:] = single_load_moments(sample["inner_equivalent_load"], sample["outer_equivalent_load"])
+    work.load_moments[:] = work.last_moments[:] = single_load_moments(sample["inner_equivalent_load"], sample["outer_equivalent_load"])
     if sample["level"] in _VIBRATING:
         resume_support(params, state, sample)
     else:

@@ -138,7 +138,7 @@ def _lands(land, model, own, rate, with_jacobian):
 @fused
 def normal_forces(params, contacts):
     """Write the normal forces of all contacts and their derivatives."""
-    stiffness, damping = params.raceways.stiffness, params.ring.contact_damping
+    stiffness, damping = params.raceways.stiffness, params.raceways.damping
     for block in range(contacts.shape[0]):
         penetration, rate = load(contacts, block, CONTACT.penetration), load(contacts, block, CONTACT.rate)
         force, d_penetration, d_rate = damped_line_contact(penetration, rate, stiffness, damping)
@@ -173,7 +173,7 @@ def _pocket_forces(y, params, rows):
     for block in range(rows.shape[0]):
         offset, rate = place_in_pockets(ROLLER, block, _cage(y), cage_cosine, cage_sine, rows)
         force, d_offset, d_rate = wall_force(
-            offset, rate, cage.pocket_clearance, cage.pocket_stiffness, cage.pocket_damping, params.raceways.stiffness, params.ring.contact_damping
+            offset, rate, cage.pocket_clearance, cage.pocket_stiffness, cage.pocket_damping, params.raceways.stiffness, params.raceways.damping
         )
         friction, d_spin = pocket_friction_lanes(load(rows, block, ROLLER.spin), cage.pocket_friction)
         store(rows, block, ROLLER.pocket_force, -force)
@@ -307,7 +307,7 @@ def guide_forces(y, params, rows):
     for block in range(rows.shape[0]):
         offset, rate = place_outwards(ROLLER, block, _cage(y), cage.guidance, rows)
         force, d_offset, d_rate = wall_force(
-            offset, rate, cage.guide_clearance, 0.0, cage.pocket_damping, params.raceways.stiffness, params.ring.contact_damping
+            offset, rate, cage.guide_clearance, 0.0, cage.pocket_damping, params.raceways.stiffness, params.raceways.damping
         )
         store(rows, block, ROLLER.guide_force, -force)
         store(rows, block, ROLLER.guide_stiffness, d_offset)

@@ -118,6 +118,7 @@ class Work(NamedTuple):
     ring_stiffness: np.ndarray  # running means over a cage turn, see `bearing_sim.levels.common.rollers.average_stiffness`, shape (3,)
     # of roller loads, running means over a cage turn, see `bearing_sim.physics.lamina_life.add_load_moments`, shape (2, MOMENTS)
     load_moments: np.ndarray
+    last_moments: np.ndarray  # those powers at the end of the last step, shape (2, MOMENTS)
 
 
 def new_work(params):
@@ -137,6 +138,7 @@ def new_work(params):
         new_support(params.support, 2 * BORDER + BLOCK * count),
         np.zeros(4),
         np.zeros(3),
+        np.zeros((2, MOMENTS)),
         np.zeros((2, MOMENTS)),
     )
 

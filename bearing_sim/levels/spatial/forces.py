@@ -58,7 +58,7 @@ from bearing_sim.levels.spatial.state import (
 )
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.simd import larger, load, magnitude, spread, spread_run, store, total, where_positive
-from bearing_sim.physics.contact import EXPONENT, damped_slice
+from bearing_sim.physics.contact import damped_line_contact
 from bearing_sim.physics.film import resist_rolling_along
 from bearing_sim.physics.flange import axial_share, flange_friction
 from bearing_sim.physics.pocket import pocket_friction_lanes
@@ -197,10 +197,9 @@ def hold_slices(offset, rate, skew, skew_rate, clearance, stiffness, params):
             x = positions[k]
             position = offset + skew * x
             side, excess = where_positive(position, 1.0, -1.0), magnitude(position) - clearance
-            wall, root, factor, pressed = damped_slice(excess, (rate + skew_rate * x) * side, part, params.ring.contact_damping)
+            wall, stiffer, damped = damped_line_contact(excess, (rate + skew_rate * x) * side, part, params.raceways.damping)
             more = side * (wall - film * larger(excess, 0.0))
-            stiffer = EXPONENT * pressed * root * factor - where_positive(excess, film, 0.0)
-            damped = params.ring.contact_damping * pressed * root * excess
+            stiffer -= where_positive(excess, film, 0.0)
             force += more
             moment += more * x
             k_0 += stiffer
@@ -397,7 +396,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     for k in range(6):
         work.evaluated_ring[k] = ring[k]
     points, first_points, count = work.points, work.first_points, params.slices.points
-    middle, end = press_points(contacts, points, first_points, params.slices, params.raceways.stiffness, params.ring.contact_damping)
+    middle, end = press_points(contacts, points, first_points, params.slices, params.raceways.stiffness, params.raceways.damping)
     traction_along(points[:end], middle, count, model.lubrication.inner, model.lubrication.outer)
     sum_tractions(contacts, points, first_points, count)
     if resistance:

@@ -214,14 +214,14 @@ def step_limit(t, y, model, work):
 
 @fused
 def average_loads(h, y, model, work):
-    """Take the loads at the end of a step of length ``h`` [s], and the stiffness that goes with them, into the running means over a cage turn.
+    """Take the loads of a step of length ``h`` [s], and the stiffness at its end, into the running means over a cage turn.
 
     A step leaves the loads of its last iterate but one, and only a micrometre away a load may be another altogether.
     """
     count, turned = model.params.rollers.count, h * y[OMEGA]
     carry_forces(y, count, work)
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
-    average_moments(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_moments)
+    average_moments(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_moments, work.last_moments)
     average_stiffness(ROLLER, SLICED, fraction, work.rollers, work.contacts, work.ring_stiffness)
     average_laminae(abs(turned), _LAMINA_INTERVAL * 2.0 * math.pi / count, model.params, work)
 

@@ -15,7 +15,7 @@ from bearing_sim.levels.spatial.slices import damped_power
 from bearing_sim.levels.spatial.state import BORDER, CAGE_TILT_Y, CAGE_TILT_Z, CAGE_Y, CAGE_Z, OMEGA, ROLLER, SLICED
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import larger, load, magnitude, spread, total, where_positive
-from bearing_sim.physics.contact import damped_slice
+from bearing_sim.physics.contact import elastic_line_contact
 
 
 @kernel
@@ -28,7 +28,7 @@ def _contact_powers(first, y, params, work):
         traction = load(contacts, at, SLICED.force)
         slid = traction * load(contacts, at, SLICED.sliding) + load(contacts, at, SLICED.skewing) * load(contacts, at, SLICED.sliding_lean)
         resistance = load(contacts, at, SLICED.resistance)
-        lost = damped_power(at, contacts, work.points, work.first_points, count, params.raceways.stiffness, params.ring.contact_damping)
+        lost = damped_power(at, contacts, work.points, work.first_points, count, params.raceways.stiffness, params.raceways.damping)
         sliding += total(present * slid)
         rolling += total(present * 2.0 * resistance * load(contacts, at, SLICED.rolling))
         damped += total(present * lost)
@@ -45,8 +45,8 @@ def _kept_d_walls(offset, rate, skew, skew_rate, clearance, stiffness, params):
     for k in range(count):
         position, speed = offset + skew * positions[k], rate + skew_rate * positions[k]
         side, excess = where_positive(position, 1.0, -1.0), magnitude(position) - clearance
-        _, root, _, _ = damped_slice(excess, 0.0 * excess, params.raceways.stiffness / count, 0.0)
-        spring = stiffness / count * (magnitude(position) - larger(excess, 0.0)) + root * larger(excess, 0.0)
+        wall = elastic_line_contact(excess, params.raceways.stiffness / count)
+        spring = stiffness / count * (magnitude(position) - larger(excess, 0.0)) + wall
         film += params.cage.pocket_damping / count * speed * speed
         kept += side * spring * speed
     return film, kept

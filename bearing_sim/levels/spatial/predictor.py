@@ -151,8 +151,8 @@ def predict(known, shift, slope, model, work, guess):
             if highest(load(rows, block, ROLLER.moved)) < enough:
                 continue
             _place(block, guess, shift, inner_radius, params, rows, contacts)
-            press_normally(block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
-            press_normally(blocks + block, contacts, params.slices, work.points, params.raceways.stiffness, params.ring.contact_damping)
+            press_normally(block, contacts, params.slices, work.points, params.raceways.stiffness, params.raceways.damping)
+            press_normally(blocks + block, contacts, params.slices, work.points, params.raceways.stiffness, params.raceways.damping)
         if params.flanges.load > 0.0:
             press_axially(params, rows, contacts)
         for block in range(blocks):

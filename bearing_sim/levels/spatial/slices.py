@@ -21,7 +21,7 @@ from bearing_sim.model.params import LOGARITHMIC, SLICED_EQUALLY, STRAIGHT
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.elementary import exponential, logarithm, ninth_root
 from bearing_sim.numerics.simd import highest, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
-from bearing_sim.physics.contact import CONTACT, EXPONENT, TINY, damped_slice, hertz_pressure
+from bearing_sim.physics.contact import CONTACT, TINY, damped_line_contact, damping_factor, elastic_line_contact, hertz_pressure
 
 _NEWTON_STEPS = 2  # towards the ends of the part that bears: what is left is at most 4 % of it
 _LEVEL = 1e-15  # m; a depth that changes by less over half a roller has no end
@@ -171,7 +171,7 @@ def _press_points(block, contacts, points, first, count, stiffness, damping, wit
     contacts : rows `SLICED`; penetration, lean, rates and speeds go in.
     points, first : as of `place_points`.
     count : of points.
-    stiffness, damping : of the whole contact, K [N/m^(10/9)] and a [s/m].
+    stiffness, damping : of the whole contact, K [N/m^(10/9)] and `bearing_sim.physics.contact.ContactDamping`.
     with_traction : constant, whether anything is written into ``points``.
     """
     penetration, rate = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.rate)
@@ -184,9 +184,8 @@ def _press_points(block, contacts, points, first, count, stiffness, damping, wit
     for k in range(first, first + count):
         x, fraction = load(points, k, POSITION), load(points, k, FRACTION)
         depth = penetration + lean * x - load(points, k, DROP)
-        whole, root, factor, pressed = damped_slice(depth, rate + lean_rate * x, stiffness, damping)
-        share = pressed * root * fraction
-        q, stiff, damped = whole * fraction, share * factor, share * depth
+        whole, stiff, damped = damped_line_contact(depth, rate + lean_rate * x, stiffness, damping)
+        q, stiff, damped = whole * fraction, stiff * fraction, damped * fraction
         q_x, stiff_x, damped_x = q * x, stiff * x, damped * x
         q_0 += q
         q_1 += q_x
@@ -200,12 +199,12 @@ def _press_points(block, contacts, points, first, count, stiffness, damping, wit
             store(points, k, CONTACT.load, whole)
             store(points, k, CONTACT.rolling, rolling)
             store(points, k, CONTACT.sliding, sliding + sliding_lean * x)
-            store(points, k, D_DEPTH, EXPONENT * stiff)
-            store(points, k, D_RATE, damping * damped)
+            store(points, k, D_DEPTH, stiff)
+            store(points, k, D_RATE, damped)
     store(contacts, block, SLICED.load, q_0)
     store(contacts, block, SLICED.tilting, q_1)
-    _store_sums(block, contacts, SLICED.stiffness, EXPONENT, k_0, k_1, k_2)
-    _store_sums(block, contacts, SLICED.damping, damping, d_0, d_1, d_2)
+    _store_sums(block, contacts, SLICED.stiffness, 1.0, k_0, k_1, k_2)
+    _store_sums(block, contacts, SLICED.damping, 1.0, d_0, d_1, d_2)
 
 
 @kernel
@@ -215,7 +214,7 @@ def press_normally(block, contacts, slices, points, stiffness, damping):
     Parameters
     ----------
     contacts, slices, points : as of `place_points`; every block of contacts has its points, whether it bears or not.
-    stiffness, damping : of the whole contact, K [N/m^(10/9)] and a [s/m].
+    stiffness, damping : of the whole contact, K [N/m^(10/9)] and `bearing_sim.physics.contact.ContactDamping`.
     """
     if not touches(block, contacts, slices.half_length):
         _clear(block, contacts, SLICED.of_force)
@@ -234,7 +233,7 @@ def press_points(contacts, points, first_points, slices, stiffness, damping):
     contacts, slices : as of `place_points`; rates and speeds go in, too.
     points : those of contacts that may bear follow each other, those with the inner raceway first.
     first_points : takes the first point of each block of contacts, -1 where it bears nothing, int64, shape (blocks,).
-    stiffness, damping : of the whole contact, K [N/m^(10/9)] and a [s/m].
+    stiffness, damping : of the whole contact, K [N/m^(10/9)] and `bearing_sim.physics.contact.ContactDamping`.
 
     Returns
     -------
@@ -348,19 +347,20 @@ def damped_power(block, contacts, points, first_points, count, stiffness, dampin
         x = load(points, k, POSITION)
         depth = load(contacts, block, SLICED.penetration) + load(contacts, block, SLICED.lean) * x - load(points, k, DROP)
         rate = load(contacts, block, SLICED.rate) + load(contacts, block, SLICED.lean_rate) * x
-        whole, root, _, _ = damped_slice(depth, rate, stiffness, damping)
-        lost += load(points, k, FRACTION) * ((whole - root * larger(depth, 0.0)) * rate)
+        whole, _, _ = damped_line_contact(depth, rate, stiffness, damping)
+        lost += load(points, k, FRACTION) * ((whole - elastic_line_contact(depth, stiffness)) * rate)
     return lost
 
 
 @fused
 def average_laminae(turned, interval, params, work):
-    """Include the laminae's loads of this instant, with stress risers, in their running means to the exponents of both rings (ISO/TS 16281).
+    """Include the laminae's loads, with stress risers, in their running means to the exponents of both rings (ISO/TS 16281).
 
     The means are those of `bearing_sim.physics.lamina_life.add_lamina_powers`, each the sum over the lanes of ``work.lamina_powers``.  The first
     instant starts them.  After that the end of a step counts if the cage has turned by ``interval`` since the last one that did, because all short
-    steps would cost too much, and it counts by that angle.  Laminae are as many as the scene wants
-    for its life, whatever the number of slices that carry the roller: their loads follow from its penetration and lean.
+    steps would cost too much.  That angle counts by the mean of the powers at both its ends, see `average_moments` in
+    `bearing_sim.levels.common.observation`.  Laminae are as many as the scene wants for its life, whatever the number of slices that carry the
+    roller: their loads follow from its penetration and lean.
 
     Parameters
     ----------
@@ -368,8 +368,8 @@ def average_laminae(turned, interval, params, work):
     interval : least angle between two instants that count [rad].
     params, work : of the level; the right-hand side has been evaluated into ``work``.
     """
-    laminae, contacts, powers = params.life.laminae, work.contacts, work.lamina_powers
-    number, blocks, reach = laminae.crown.shape[0], work.rollers.shape[0], laminae.positions[laminae.crown.shape[0] - 1]
+    powers, now, last = work.lamina_powers, work.lamina_now, work.lamina_last
+    number = powers.shape[1]
     work.lamina_turn[0] += turned
     started = spread(0.0)
     for k in range(number):  # the end laminae of a crowned roller may never be loaded
@@ -378,11 +378,25 @@ def average_laminae(turned, interval, params, work):
     if has_started and not work.lamina_turn[0] >= interval:
         return
     weight = 1.0 - math.exp(-work.lamina_turn[0] / (2.0 * math.pi)) if has_started else 1.0
+    before = 0.5 if has_started else 0.0
     work.lamina_turn[0] = 0.0
+    _write_lamina_powers(params, work)
+    for ring in (INNER, OUTER):
+        for k in range(number):
+            mean, present = load(powers, ring, k), load(now, ring, k)
+            store(powers, ring, k, mean + weight * (before * load(last, ring, k) + (1.0 - before) * present - mean))
+            store(last, ring, k, present)
+
+
+@fused
+def _write_lamina_powers(params, work):
+    """Write the powers of the laminae's loads at this instant into ``work.lamina_now``, means over the rollers as sums over the lanes."""
+    laminae, contacts, powers = params.life.laminae, work.contacts, work.lamina_now
+    number, blocks, reach = laminae.crown.shape[0], work.rollers.shape[0], laminae.positions[laminae.crown.shape[0] - 1]
     for k in range(number):
-        store(powers, INNER, k, load(powers, INNER, k) * (1.0 - weight))
-        store(powers, OUTER, k, load(powers, OUTER, k) * (1.0 - weight))
-    part, damping, share = params.raceways.stiffness / number, params.ring.contact_damping, weight / params.rollers.count
+        store(powers, INNER, k, spread(0.0))
+        store(powers, OUTER, k, spread(0.0))
+    part, damping, share = params.raceways.stiffness / number, params.raceways.damping, 1.0 / params.rollers.count
     for block in range(blocks):
         present = load(work.rollers, block, ROLLER.present) * share
         if touches(block, contacts, reach):
@@ -416,14 +430,16 @@ def _lamina_depth(block, k, contacts, laminae, damping):
     x = laminae.positions[k]
     depth = load(contacts, block, SLICED.penetration) + load(contacts, block, SLICED.lean) * x - (laminae.crown[k] + laminae.highest)
     rate = load(contacts, block, SLICED.rate) + load(contacts, block, SLICED.lean_rate) * x
-    return larger(depth, 0.0), larger(1.0 + damping * rate, 0.0)
+    depth = larger(depth, 0.0)
+    per_rate, _ = damping_factor(depth, damping)
+    return depth, larger(1.0 + per_rate * rate, 0.0)
 
 
 @kernel
 def _largest_laminae(first, params, work):
     """Return the largest load of any lamina on a raceway whose first block is ``first``, and of any end lamina [N]."""
     laminae, contacts = params.life.laminae, work.contacts
-    number, damping = laminae.crown.shape[0], params.ring.contact_damping
+    number, damping = laminae.crown.shape[0], params.raceways.damping
     part, anywhere, at_ends = params.raceways.stiffness / number, spread(0.0), spread(0.0)
     for block in range(work.rollers.shape[0]):
         present = load(work.rollers, block, ROLLER.present)

@@ -196,7 +196,10 @@ class Work(NamedTuple):
     evaluated_ring: np.ndarray  # position, velocity and tilts of the ring where forces were evaluated last [m, m/s, rad], shape (6,)
     ring_stiffness: np.ndarray  # as at level ``planar``, shape (3,)
     load_moments: np.ndarray  # as at level ``planar``, shape (2, MOMENTS)
+    last_moments: np.ndarray  # likewise
     lamina_powers: np.ndarray  # by lanes, see `bearing_sim.levels.spatial.slices.average_laminae`, shape (2, laminae, LANES)
+    lamina_now: np.ndarray  # powers at one instant, likewise
+    lamina_last: np.ndarray  # powers at the last instant that counted, likewise
     lamina_means: np.ndarray  # sums of them over the lanes where a sample was asked for, shape (2, laminae)
     lamina_turn: np.ndarray  # by which the cage has turned since laminae were last averaged [rad], shape (1,)
 
@@ -224,7 +227,10 @@ def new_work(params):
         evaluated_ring=np.zeros(6),
         ring_stiffness=np.zeros(3),
         load_moments=np.zeros((2, MOMENTS)),
+        last_moments=np.zeros((2, MOMENTS)),
         lamina_powers=new_blocks(2, len(params.life.laminae.positions)),
+        lamina_now=new_blocks(2, len(params.life.laminae.positions)),
+        lamina_last=new_blocks(2, len(params.life.laminae.positions)),
         lamina_turn=np.zeros(1),
         lamina_means=np.zeros((2, len(params.life.laminae.positions))),
     )
