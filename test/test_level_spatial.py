@@ -55,6 +55,7 @@ GROWTH = "bearing.dimensions_at=cold"
 )
 def test_an_aligned_bearing_without_crown_runs_as_at_level_planar(at_both, overrides):
     flat, full = simulation(FIXED, *at_both, level="planar"), simulation(FIXED, *at_both, *overrides)
+    full._state[[6, 7]] = 0.0  # the trace of tilt with which a cage begins
     flat.advance(1e-3), full.advance(1e-3)
     planar, rollers = flat.state[10:].reshape(5, Z), by_roller(full.state)
     for row, expected in zip((0, 1, 4, 5, 8), planar):

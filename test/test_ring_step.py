@@ -50,10 +50,10 @@ def test_the_mean_stiffness_of_the_raceways_is_that_of_springs_in_series_along_t
     assert work.ring_stiffness[0] == pytest.approx((1.0 - np.exp(-1.0)) * expected[0, 0], rel=1e-6), "a mean over a cage turn"
 
 
-REACHES = {0.25: (0.2, 0.7), 1.0: (0.5, 0.35), 2.25: (0.2, 0.35), 4.0: (0.15, 0.35), 6.25: (0.12, 0.35)}
+REACHES = {0.25: (0.2, 0.7), 1.0: (0.4, 0.5), 2.25: (0.15, 0.5), 4.0: (0.12, 0.5), 6.25: (0.12, 0.45), 9.0: (0.25, 0.4)}
 
 
-@pytest.mark.parametrize("ratio", [0.0, 0.25, 0.28, 0.36, 0.7, 1.0, 1.2, 1.51, 2.25, 3.2, 4.0, 4.4, 5.2, 6.3, 6.7, 9.0])
+@pytest.mark.parametrize("ratio", [0.0, 0.25, 0.28, 0.36, 0.7, 1.0, 1.2, 1.51, 2.25, 3.2, 4.0, 4.3, 5.2, 6.3, 6.7, 9.0, 12.0])
 def test_steps_are_shorter_by_whole_steps_a_pitch_where_the_ring_is_slow_or_near_a_resonance(ratio):
     """With the ring's squared frequency as a ratio to that of passing; written out from doc/theory/integrators.md."""
     params, cage_speed = simulation("planar")._params, 700.0
@@ -66,5 +66,5 @@ def test_steps_are_shorter_by_whole_steps_a_pitch_where_the_ring_is_slow_or_near
     assert 2.0 * np.pi / (passing * step) == pytest.approx(expected, rel=1e-12)
     tilted = np.array([0.5 * (stiff + soft), 0.5 * (stiff - soft), 0.5 * (stiff + soft)])  # the same, turned by 45 degrees
     assert ring_step(cage_speed, params, tilted) == pytest.approx(step, rel=1e-9)
-    assert (expected == 3.0 + golden) == (ratio in (1.51, 3.2, 5.2, 9.0)), "far above any resonance, a quarter of a pitch"
+    assert (expected == 3.0 + golden) == (ratio in (1.51, 3.2, 5.2, 12.0)), "far above any resonance, a quarter of a pitch"
     assert (expected == fifths) == (ratio in (0.0, 0.36)), "where the ring is slower than the passing rollers, a fifth"

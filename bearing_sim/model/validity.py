@@ -1338,7 +1338,7 @@ UNWATCHED = (
     ),
     ("friction of roller ends on flanges", "coefficients, 0.02 on a film and 0.12 to 0.15 without; SKF weighs them for whole bearings"),
     ("guidance of a skewed roller by flanges", "assumption of a roller in the middle of its end clearance, which is itself known to a factor of two"),
-    ("contact damping of Hunt and Crossley", "no published range; slip and life depend on it only in a resonance of the ring, and where rollers hop"),
+    ("contact damping by load and by stiffness", "values, not laws with a range; slip and life depend on it where the ring or a roller vibrates"),
     ("heating of the film's inlet", "W. R. D. Wilson and S. Sheu (1983) give no range that we could read; the factor 0.1 is an assumption"),
     ("pocket friction and boundary friction of the lands", "coefficients, not laws with a range: 0.02 to 0.1 and 0.05 to 0.15 in use"),
     ("vortex and turbulent torque factors of the cage's faces", "assumptions of 20 to 30 % without a known range; cage_gap limits the geometry"),

@@ -37,7 +37,7 @@ from bearing_sim.studies.trade_course import cage_rate
 from bearing_sim.sweep.settling import Outcome, advance_until_settled
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
-FIRST_POINTS, MOST_POINTS = 256, 512
+FIRST_POINTS, MOST_POINTS = 256, 1024
 SLIP_GOAL, LIFE_GOAL = 5e-4, 0.01  # errors at points left out, root mean square, below which no more points are added
 _BATCH = 8  # points of a task
 _CANDIDATES = 4096

@@ -15,11 +15,11 @@ FIFTH_PITCH = 1.0 / (4.0 + GOLDEN)  # 0.2165
 POSITION_WEIGHT = 0.25  # of positions in the norm of a correction (assumption): contacts leave less of a correction than tractions do
 _PLAY_SPEED = 10.0  # m/s, of the pockets, where play has half its weight in the norm of a correction (assumption)
 _SLOWEST = 1e-3  # rad/s; what a cage at rest counts as (assumption)
-# The raceways' stiffness changes with every passing roller, which excites the ring where it oscillates n/2 times in a passing, n = 1 to 5.  Each
+# The raceways' stiffness changes with every passing roller, which excites the ring where it oscillates n/2 times in a passing, n = 1 to 6.  Each
 # entry has (n/2)^2, the relative difference of squared frequencies within which the longest step is shorter, and the shortest step as a part of
 # `FIFTH_PITCH`: where the ring takes two passings for an oscillation, it need not be as short.  Assumptions, chosen so that lives near a
-# resonance are within two per cent or three (``test/benchmarks/resonance.py``).
-_RESONANCES = ((0.25, 0.2, 0.7), (1.0, 0.5, 0.35), (2.25, 0.2, 0.35), (4.0, 0.15, 0.35), (6.25, 0.12, 0.35))
+# resonance are within two per cent (``test/benchmarks/resonance.py``).
+_RESONANCES = ((0.25, 0.2, 0.7), (1.0, 0.4, 0.5), (2.25, 0.15, 0.5), (4.0, 0.12, 0.5), (6.25, 0.12, 0.45), (9.0, 0.25, 0.4))
 
 
 class Drive(NamedTuple):

@@ -26,6 +26,7 @@ from bearing_sim.scene.fidelity import NUMBERS, WHIRLING
 
 _VIBRATING = tuple(NUMBERS[level] for level in WHIRLING)
 _FIRST_ECCENTRICITY = 0.3  # of the guide clearance; assumption: a cage exactly in the centre would have no direction to whirl from
+FIRST_CAGE_TILT = 1e-6  # rad; at the lands some 5 nm: far less than a film, far more than round-off
 
 
 def rolling_state(at, params, work, shaft_speed, load_y, load_z):
@@ -90,7 +91,8 @@ def spatial_state_at(params, work, sample) -> np.ndarray:
     at = spatial
     state, rollers = _dynamic_state_at(at, params, work, sample)
     state[at.RING_TILT_Y], state[at.RING_TILT_Z] = sample["ring_tilt_y"], sample["ring_tilt_z"]
-    state[at.CAGE_TILT_Y], state[at.CAGE_TILT_Z] = sample["cage_tilt_y"], sample["cage_tilt_z"]
+    tilted = sample["cage_tilt_y"] != 0.0 or sample["cage_tilt_z"] != 0.0
+    state[at.CAGE_TILT_Y], state[at.CAGE_TILT_Z] = (sample["cage_tilt_y"], sample["cage_tilt_z"]) if tilted else (FIRST_CAGE_TILT, 0.0)
     rollers[at.TILT], rollers[at.SKEW] = sample["roller_tilt"], sample["roller_skew"]
     return state
 

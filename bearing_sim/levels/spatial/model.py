@@ -16,7 +16,7 @@ from bearing_sim.levels.common.observation import average_moments, observe_cours
 from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
 from bearing_sim.levels.common.slice_balance import balance, roller_tilts
-from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
+from bearing_sim.levels.common.state_transfer import FIRST_CAGE_TILT, first_cage_centre, rolling_state
 from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
 from bearing_sim.levels.spatial import jacobian
 from bearing_sim.levels.spatial import state as spatial_state
@@ -109,14 +109,15 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     """Return ideal rolling; see `bearing_sim.levels.common.state_transfer.rolling_state`, also for the parameters.
 
     If crown, moment or misalignment load rollers unequally along their length, the balance is that by slices, and rollers move as it does with
-    the cage; otherwise it is the start of level ``planar``, to the last digit.
+    the cage; otherwise it is the start of level ``planar``, to the last digit.  The cage is tilted by a
+    trace: one that tilts by itself would else stand upright until round-off has grown, long after slip and life seem to rest.
     """
     state, growth = rolling_state(spatial_state, params, work, shaft_speed, load_y, load_z)
     if _is_unequal_along_rollers(params):
         _balance_by_slices(params, state[OMEGA], (load_y, load_z), growth, state)
     turning = params.cage.guidance.turning
     state[CAGE_Y], state[CAGE_Z] = first_cage_centre(params, state[RING_Y], state[RING_Z])
-    state[CAGE_TILT_Y], state[CAGE_TILT_Z] = turning * state[RING_TILT_Y], turning * state[RING_TILT_Z]
+    state[CAGE_TILT_Y], state[CAGE_TILT_Z] = turning * state[RING_TILT_Y] + FIRST_CAGE_TILT, turning * state[RING_TILT_Z]
     place_support(params, state, (state[RING_Y], state[RING_Z]), (load_y, load_z))
     return state
 
