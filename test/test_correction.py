@@ -2,6 +2,7 @@
 """The correction of tables of level steady by points of level planar."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -115,6 +116,32 @@ def test_a_correction_comes_back_from_disk_and_a_damaged_file_counts_as_none(mad
     assert np.array_equal(read_correction(path).applied(conditions, steady), made.applied(conditions, steady))
     path.write_bytes(path.read_bytes()[:-100])
     assert read_correction(path) is None and read_correction(tmp_path / "absent") is None
+
+
+@pytest.mark.parametrize(
+    ("errors", "points"),
+    [
+        ([(1e-4, 5e-3)], 256),
+        ([(9e-4, 0.05), (4e-4, 0.009)], 512),
+        ([(9e-4, 0.05), (1e-4, 0.03), (1e-4, 0.02)], 1024),  # life is still missed, and became better
+        ([(9e-4, 0.05), (1e-4, 0.045)], 512),  # it hardly did
+        ([(9e-4, 0.05), (9e-4, 0.02)], 512),  # slip did not
+        ([(9e-4, 0.05), (1e-4, 0.2)], 512),
+    ],
+)
+def test_more_points_are_measured_as_long_as_they_help(errors, points, monkeypatch, tmp_path):
+    scene, found = load_scene("deng2017_table1", ["level=steady"]), iter(errors)
+    measured = []
+
+    def fitted(domain, conditions, rows, seconds):
+        measured.append(len(conditions))
+        return SimpleNamespace(**dict(zip(("slip_error", "life_error"), next(found))))
+
+    monkeypatch.setattr(studied, "run_tasks", lambda tasks, *_, **__: [{"planar": [], "steady": []}] * len(tasks))
+    monkeypatch.setattr(studied, "_fitted", fitted)
+    monkeypatch.setattr(studied, "_doubtful", lambda _, count, seed: np.zeros((count, 4)))
+    studied._measured(scene, correction_domain(scene), tmp_path / "points.journal", 1, lambda done, total: None, studied.MOST_POINTS)
+    assert measured[-1] == points and next(found, None) is None
 
 
 def test_without_a_table_a_scene_that_asks_for_a_correction_says_how_one_is_built(tmp_path, monkeypatch):

@@ -35,7 +35,7 @@ from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.heat import NoHeat
 from bearing_sim.scene.scene import Scene
 
-VERSION = 2  # of the files
+VERSION = 3  # of the files, and of how points are chosen
 LIFE_EXPONENT = 4.0
 """A life falls with this power of the equivalent loads: 4.5 times 8/9 (`bearing_sim.physics.rating_life.rating_life_revolutions`)."""
 STATES_APART = 0.01 * BY_NAME["table_states"].high

@@ -132,5 +132,5 @@ def hint(scene) -> str | None:
     missing = ", ".join(effect.field for effect in of_scenes if scene.level in effect.levels and lower not in effect.levels)
     softer = "" if scene.bearing.roller.profile.law == "none" else ", without the compliance that the profile adds to contacts,"
     faster = f"level {lower} computes the same motion and loads{softer} several times faster"
-    upright = ", unless the cage tilts by itself, which operating.misalignment=0.01mrad would show" if scene.level == "spatial" else ""
+    upright = ", unless the cage tilts by itself" if scene.level == "spatial" else ""
     return f"level {scene.level}: nothing in the scene needs it ({missing}); {faster}{upright}"

@@ -37,9 +37,10 @@ from bearing_sim.studies.trade_course import cage_rate
 from bearing_sim.sweep.settling import Outcome, advance_until_settled
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
-FIRST_POINTS, MOST_POINTS = 256, 1024
+FIRST_POINTS, ENOUGH_POINTS, MOST_POINTS = 256, 512, 1024
 SLIP_GOAL, LIFE_GOAL = 5e-4, 0.01  # errors at points left out, root mean square, below which no more points are added
 _BATCH = 8  # points of a task
+_PAYS = 0.8  # of the error before, to which twice as many points must bring it, or no more than `ENOUGH_POINTS` are measured (assumption)
 _CANDIDATES = 4096
 _PURSUED = 10.0  # times the goals; larger errors, such as at a jump from one state to another, do not draw more points
 _SHORTEST, _LONGEST = 24.0, 120.0  # turns of an ideal cage; cages that skid under little load wander and never rest, their means count
@@ -145,7 +146,7 @@ def obtain_correction(
 def _measured(scene, domain, path: Path, workers, progress, most) -> Correction:
     began, plain = time.perf_counter(), measured_scene(scene, "slip")
     spread = conditions_at(qmc.Sobol(d=4, scramble=True, seed=np.random.default_rng(1)).random(min(FIRST_POINTS, most)), domain)
-    conditions, rows = np.zeros((0, 4)), []
+    conditions, rows, before = np.zeros((0, 4)), [], None
     with Journal(path) as journal:
         while True:
             batches = [tuple(map(tuple, spread[first : first + _BATCH].tolist())) for first in range(0, len(spread), _BATCH)]
@@ -154,9 +155,20 @@ def _measured(scene, domain, path: Path, workers, progress, most) -> Correction:
             rows += [result if "planar" in result else _no_answers(len(batch)) for result, batch in zip(results, batches)]
             conditions = np.concatenate([conditions, spread])
             found = _fitted(domain, conditions, rows, time.perf_counter() - began)
-            if len(conditions) >= most or (found.slip_error <= SLIP_GOAL and found.life_error <= LIFE_GOAL):
+            if len(conditions) >= most or (len(conditions) >= ENOUGH_POINTS and not _pays(before, found)) or not _missed(found):
                 return found
+            before = found
             spread = _doubtful(found, min(len(conditions), most - len(conditions)), len(conditions))
+
+
+def _missed(found: Correction) -> list[str]:
+    """Return which errors of a correction are above their goals."""
+    return [name for name, goal in (("slip_error", SLIP_GOAL), ("life_error", LIFE_GOAL)) if getattr(found, name) > goal]
+
+
+def _pays(before: Correction | None, found: Correction) -> bool:
+    """Return whether the last points have lowered every error that is above its goal; at a jump between two states none does."""
+    return before is None or all(getattr(found, name) <= _PAYS * getattr(before, name) for name in _missed(found))
 
 
 def _no_answers(count: int) -> dict:
