@@ -252,7 +252,7 @@ def test_a_raceway_that_planar_gives_three_quarters_of_the_life_asked_for_is_not
     assert (report["level"], report["verify_level"]) == ("slip", "planar"), "the next level is the default"
     first = report["worst"][0]
     assert first["low_from"] < 34.8626 < first["low_to"], "inside the region of level slip"
-    assert life_at_planar(34.8626, 0.098) == pytest.approx(300.0, rel=0.03)
+    assert life_at_planar(34.8626, 0.098) == pytest.approx(314.0, rel=0.03)
     assert first["verdict"] == NARROWED and not first["verified"]["low_from"] <= 34.8626 <= first["verified"]["low_to"]
     # at the border level planar has two courses, of 382 and 416 h at any tolerance; which one a run takes depends on how it begins
     for share, least in ((0.0, 0.94), (0.5, 0.97), (1.0, 0.97)):
