@@ -2,7 +2,7 @@
 """How often rollers lift off from the outer raceway at level ``planar``, and for how long they touch it: by samples at equal short steps.
 
 python test/benchmarks/hopping_rollers.py gearbox.yaml
-python test/benchmarks/hopping_rollers.py gearbox.yaml --set bearing.contact.damping=20
+python test/benchmarks/hopping_rollers.py gearbox.yaml --set "bearing.contact.damping_time=0 us"
 """
 
 import click
