@@ -87,8 +87,8 @@ class ContactDamping(NamedTuple):
     """Damping of normal contacts, see `damped_line_contact`."""
 
     hysteresis: float  # a of Hunt and Crossley [s/m]
-    time: float  # tau, by which the damping is the stiffness far below the depth [s]
-    depth: float  # h, where the second part has faded to half of that [m]
+    time: float  # tau: deep contacts are damped by tau times their stiffness [s]
+    depth: float  # h, penetration at which half of that is left [m]
 
 
 @template
@@ -135,7 +135,7 @@ def damped_line_contact(penetration, rate, stiffness, damping):
 
 @template
 def elastic_line_contact(penetration, stiffness):
-    """Return K delta^(10/9) [N] (lanes), the conservative part of `damped_line_contact`."""
+    """Return K delta^(10/9) [N] (lanes), the conservative part of `damped_line_contact`; `elastic_force` is its form for numbers."""
     return stiffness * ninth_root(larger(penetration, TINY)) * larger(penetration, 0.0)
 
 

@@ -261,8 +261,11 @@ CORNERS = {
         "steady",
     ),
     "shaft of 100 t": (["support.shaft.mass=1e5"], "steady"),
-    "no damping at all": (["bearing.contact.damping=0", f"{_CAGE}.pocket_film_damping=0", f"{_CAGE}.land_squeeze=false"], "steady"),
-    "hundredfold damping": (["bearing.contact.damping=10", f"{_CAGE}.pocket_film_damping=500"], "steady"),
+    "no damping at all": (
+        ["bearing.contact.damping=0", "bearing.contact.damping_time=0 us", f"{_CAGE}.pocket_film_damping=0", f"{_CAGE}.land_squeeze=false"],
+        "steady",
+    ),
+    "hundredfold damping": (["bearing.contact.damping=10", "bearing.contact.damping_time=250 us", f"{_CAGE}.pocket_film_damping=500"], "steady"),
     "rubber": (["bearing.material.youngs_modulus=1 GPa"], "steady"),
     "rigid": (["bearing.material.youngs_modulus=1000 GPa"], "steady"),
     "not a number of load": ([f"{_LOAD}=.nan"], "steady"),

@@ -26,7 +26,7 @@ from bearing_sim.scene.fidelity import NUMBERS, WHIRLING
 
 _VIBRATING = tuple(NUMBERS[level] for level in WHIRLING)
 _FIRST_ECCENTRICITY = 0.3  # of the guide clearance; assumption: a cage exactly in the centre would have no direction to whirl from
-FIRST_CAGE_TILT = 1e-6  # rad; at the lands some 5 nm: far less than a film, far more than round-off
+FIRST_CAGE_TILT = 1e-6  # rad (assumption); at the lands some 5 nm: far less than a film, far more than round-off
 
 
 def rolling_state(at, params, work, shaft_speed, load_y, load_z):

@@ -109,8 +109,10 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     """Return ideal rolling; see `bearing_sim.levels.common.state_transfer.rolling_state`, also for the parameters.
 
     If crown, moment or misalignment load rollers unequally along their length, the balance is that by slices, and rollers move as it does with
-    the cage; otherwise it is the start of level ``planar``, to the last digit.  The cage is tilted by a
-    trace: one that tilts by itself would else stand upright until round-off has grown, long after slip and life seem to rest.
+    the cage; otherwise it is the start of level ``planar``, to the last digit.
+
+    The cage is tilted by a trace: one that tilts by itself would else stand upright until round-off has grown, long after slip and life seem to
+    rest.
     """
     state, growth = rolling_state(spatial_state, params, work, shaft_speed, load_y, load_z)
     if _is_unequal_along_rollers(params):

@@ -203,8 +203,8 @@ def _press_points(block, contacts, points, first, count, stiffness, damping, wit
             store(points, k, D_RATE, damped)
     store(contacts, block, SLICED.load, q_0)
     store(contacts, block, SLICED.tilting, q_1)
-    _store_sums(block, contacts, SLICED.stiffness, 1.0, k_0, k_1, k_2)
-    _store_sums(block, contacts, SLICED.damping, 1.0, d_0, d_1, d_2)
+    _store_sums(block, contacts, SLICED.stiffness, k_0, k_1, k_2)
+    _store_sums(block, contacts, SLICED.damping, d_0, d_1, d_2)
 
 
 @kernel
@@ -287,7 +287,7 @@ def sum_tractions(contacts, points, first_points, count):
         store(contacts, block, SLICED.skewing, t_1)
         _store_changes(block, contacts, SLICED.of_force, k_0, k_1, d_0, d_1)
         _store_changes(block, contacts, SLICED.of_skewing, k_1, k_2, d_1, d_2)
-        _store_sums(block, contacts, SLICED.d_sliding, 1.0, s_0, s_1, s_2)
+        _store_sums(block, contacts, SLICED.d_sliding, s_0, s_1, s_2)
         store(contacts, block, SLICED.d_rolling, u_0)
         store(contacts, block, SLICED.d_rolling + 1, u_1)
 
@@ -325,10 +325,10 @@ def sum_resistance(contacts, points, first_points, count):
 
 
 @template
-def _store_sums(block, contacts, row, scale, plain, first, second):
-    store(contacts, block, row, scale * plain)
-    store(contacts, block, row + 1, scale * first)
-    store(contacts, block, row + 2, scale * second)
+def _store_sums(block, contacts, row, plain, first, second):
+    store(contacts, block, row, plain)
+    store(contacts, block, row + 1, first)
+    store(contacts, block, row + 2, second)
 
 
 @template
@@ -378,13 +378,13 @@ def average_laminae(turned, interval, params, work):
     if has_started and not work.lamina_turn[0] >= interval:
         return
     weight = 1.0 - math.exp(-work.lamina_turn[0] / (2.0 * math.pi)) if has_started else 1.0
-    before = 0.5 if has_started else 0.0
+    before = last if has_started else now
     work.lamina_turn[0] = 0.0
     _write_lamina_powers(params, work)
     for ring in (INNER, OUTER):
         for k in range(number):
             mean, present = load(powers, ring, k), load(now, ring, k)
-            store(powers, ring, k, mean + weight * (before * load(last, ring, k) + (1.0 - before) * present - mean))
+            store(powers, ring, k, mean + weight * (0.5 * (load(before, ring, k) + present) - mean))
             store(last, ring, k, present)
 
 

@@ -16,6 +16,7 @@ _RADII = (34.8600, 34.8625, 34.8650, 34.8675)  # mm, R_low
 INDEPENDENT = (
     "integration.fixed_step=10 us",  # loose rollers hit hard and ring at 70 kHz: longer steps are 10 % off where slip is largest
     "bearing.contact.damping=0.3",
+    "bearing.contact.damping_time=0 us",
     "support.shaft.mass=0.25",
     "bearing.outer_raceway.contour_slope=false",
     "bearing.cage.land_film=4.5 um",
