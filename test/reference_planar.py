@@ -151,8 +151,12 @@ class Reference:
         s = magnitude(sliding) / rolling
         return load * np.where(np.real(sliding) >= 0, 1, -1) * ((a + b * s) * np.exp(-c * s) - a)
 
-    def resistance(self, load, rolling, curvature_radius):
-        """Goksem and Hargreaves 1978 with the rigid regime of Biboulet and Houpert 2010 and SKF's replenishment; fades out below a load of 1 N."""
+    def resistance(self, load, rolling, curvature_radius, part=1.0, gap=0.0):
+        """Goksem and Hargreaves 1978 with the rigid regime of Biboulet and Houpert 2010 and SKF's replenishment; fades out below a load of 1 N.
+
+        Beside the ``part`` of the roller that bears, a film as thick as that in the middle and the ``gap`` resists as between rigid bodies; together
+        no more than a contact that bears on all of its length.
+        """
         stiffness = self.modulus * curvature_radius
         slow = np.sqrt(rolling**2 + 0.05**2)
         u, g, w = self.viscosity * slow / stiffness, self.pressure_viscosity * self.modulus, larger(load, 1e-3) / (stiffness * self.length)
@@ -161,7 +165,13 @@ class Reference:
         gamma, kinematic = self.roller_radius / self.pitch_radius, 1e6 * self.viscosity * 0.03 / self.density
         turns = slow * 60 / np.pi / (self.pitch_radius * (1 - gamma**2))  # of the shaft a minute
         starved = np.exp(-3e-8 * kinematic * turns * (73.4 + 50.027) * np.sqrt(5.1 / (2 * (73.4 - 50.027))))
-        force = stiffness * self.length * (elastic**-10 + rigid**-10) ** -0.1 * starved / heated * rolling / slow
+        law = (elastic**-10 + rigid**-10) ** -0.1
+        shorter = part * ((elastic * part**-0.0126) ** -10 + (rigid * part**-0.5) ** -10) ** -0.1
+        martin = 4.9 * u / w * curvature_radius
+        film = larger(3.06 * u**0.69 * g**0.56 * w**-0.10 * curvature_radius, martin)
+        beside = (1 - part) * 1.42 * np.sqrt(9.8) * u * np.sqrt(curvature_radius / (film + gap)) / law
+        law = law * (1 - larger(1 - (shorter / law + beside), 0.0))
+        force = stiffness * self.length * law * starved / heated * rolling / slow
         return (1.0 if self.rolling_resistance else 0.0) * force * load / (load + 1.0)
 
     def pocket(self, offset, rate, clearance, film_force):

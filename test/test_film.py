@@ -69,7 +69,7 @@ def resisting(rolling, load, replenishment=0.0, heated=True):
     contacts = np.zeros((2, len(CONTACT), LANES))
     contacts[:, CONTACT.rolling], contacts[:, CONTACT.load] = rolling, load
     constants = (resistance_constants(MINERAL, MODULUS, radius, LENGTH, replenishment, heated) for radius in RADII)
-    resist_rolling(contacts, RollingResistance(1, *constants))
+    resist_rolling(contacts, RollingResistance(1, *constants), False)
     return contacts[0, :, 0]
 
 
@@ -187,3 +187,57 @@ def test_fall_of_viscosity_with_temperature_is_a_derivative():
     oil = load_scene("deng2017_table1").lubricant.oil
     viscosities = [oil_at(oil, 393.15 + side).viscosity for side in (-1, 1)]
     assert oil_at(oil, 393.15).temperature_viscosity == pytest.approx(math.log(viscosities[0] / viscosities[1]) / 2, rel=1e-3)
+
+
+def test_load_and_resistance_of_a_rigid_film_are_those_of_reynolds_equation():
+    # in units of the film h in the middle: x = sqrt(2 R h) t, pressure 12 eta u sqrt(2 R h)/h^2 P, with (H^3 P')' = H' up to where film and slope end
+    t = np.linspace(-40.0, 2.0, 400_001)
+    gap, step = 1 + t**2, t[1] - t[0]
+
+    def pressure(end):
+        slope = np.where(t <= end, (gap - (1 + end**2)) / gap**3, 0.0)
+        return np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * step)])
+
+    low, high = 0.1, 1.5
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if pressure(middle)[-1] > 0.0 else (low, middle)
+    p = pressure(low)
+    carried = 12 * 2 * np.sum(p) * step  # times eta u R/h
+    assert carried == pytest.approx(4.9, rel=3e-3)
+    # dissipation h^3 p'^2/(12 eta) = 2 F_R u
+    slope = np.where(t <= low, (gap - (1 + low**2)) / gap**3, 0.0)
+    resisted = 12 / 2 * np.sqrt(2.0) * np.sum(gap**3 * slope**2) * step  # times eta u sqrt(R/h)
+    assert resisted == pytest.approx(1.42 * math.sqrt(2 * 4.9), rel=0.02)
+
+
+def part_resists(rolling, load, part, gap):
+    """Rows of an inner contact that bears on a part of its length."""
+    contacts = np.zeros((2, len(CONTACT), LANES))
+    contacts[:, CONTACT.rolling], contacts[:, CONTACT.load], contacts[:, CONTACT.part], contacts[:, CONTACT.gap] = rolling, load, part, gap
+    resist_rolling(contacts, RollingResistance(1, *(resistance_constants(MINERAL, MODULUS, radius, LENGTH, 7e-3) for radius in RADII)), True)
+    return contacts[0, :, 0]
+
+
+@pytest.mark.parametrize("rolling", [0.3, 3.0, 16.0])
+@pytest.mark.parametrize("load", [2.0, 60.0, 1000.0])
+def test_the_film_beside_the_part_that_bears_resists_between_nothing_and_a_whole_contact(rolling, load):
+    whole = resisting(rolling, load, 7e-3)[CONTACT.resistance]
+    assert part_resists(rolling, load, 1.0, 0.0)[CONTACT.resistance] == pytest.approx(whole, rel=1e-12)
+    assert part_resists(rolling, load, 0.5, 0.0)[CONTACT.resistance] == pytest.approx(whole, rel=0.3)
+    far = part_resists(rolling, load, 0.5, 1e6)[CONTACT.resistance]  # a thousand kilometres away no film resists
+    alone = resisting(rolling, load / 0.5, 7e-3)[CONTACT.resistance] * 0.5
+    assert far == pytest.approx(alone * (1 + 0.5 / load) / (1 + 1 / load), rel=1e-3)
+    gaps = [part_resists(rolling, load, 0.5, gap)[CONTACT.resistance] for gap in (0.0, 1e-6, 3e-6, 1e-5, 1.0)]
+    assert all(b <= a for a, b in zip(gaps, gaps[1:])) and gaps[0] <= whole * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("rolling", [1.0, 16.0])
+@pytest.mark.parametrize(("load", "part", "gap"), [(2.0, 0.2, 3e-6), (60.0, 0.4, 3e-6), (300.0, 0.6, 2e-6)])
+def test_slopes_of_a_partly_loaded_contact_are_finite_differences(rolling, load, part, gap):
+    step = 1e-4
+    by_speed = part_resists(rolling * (1 + step), load, part, gap) - part_resists(rolling * (1 - step), load, part, gap)
+    by_load = part_resists(rolling, load * (1 + step), part, gap) - part_resists(rolling, load * (1 - step), part, gap)
+    found = part_resists(rolling, load, part, gap)
+    assert found[CONTACT.resistance_d_rolling] == pytest.approx(by_speed[CONTACT.resistance] / (2 * step * rolling), rel=1e-4)
+    assert found[CONTACT.resistance_d_load] == pytest.approx(by_load[CONTACT.resistance] / (2 * step * load), rel=1e-4)

@@ -16,10 +16,11 @@ from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.elementary import cosine_sine, exponential, logarithm, ninth_root
 from bearing_sim.numerics.linear_algebra import ARROW, factor_shifted, new_arrow, solve_factored
 from bearing_sim.numerics.simd import LANES, floor, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
-from bearing_sim.physics.contact import CONTACT, line_contact_stiffness, line_penetration
+from bearing_sim.physics.contact import CONTACT, line_contact_stiffness
 from bearing_sim.physics.drag import churning_force, cylinder_torque, end_face_torque
 from bearing_sim.physics.land import land_torque
 from bearing_sim.physics.load_balance import LOAD, balance_ring, squeezed_roller
+from bearing_sim.physics.profile import STRAIGHT_PROFILE, profile_depth
 from bearing_sim.physics.raceway import TABLE_INTERVALS, contour_at, tabulated
 from bearing_sim.physics.rating_life import rating_life_revolutions
 from bearing_sim.physics.traction import traction
@@ -74,8 +75,8 @@ def test_laws_on_lanes_are_those_of_numbers():
 
 @given(st.floats(1e-9, 1e-3))
 def test_penetration_is_that_of_palmgrens_force(penetration):
-    assert line_penetration(STIFFNESS * penetration ** (10 / 9), STIFFNESS) == pytest.approx(penetration, rel=1e-9)
-    assert line_penetration(-1.0, STIFFNESS) == 0.0
+    assert profile_depth(STIFFNESS * penetration ** (10 / 9), STIFFNESS, STRAIGHT_PROFILE) == pytest.approx(penetration, rel=1e-9)
+    assert profile_depth(-1.0, STIFFNESS, STRAIGHT_PROFILE) == 0.0
 
 
 @given(st.floats(0.0, 2 * math.pi, exclude_max=True), st.integers(1, 6), st.floats(-3, 3))
@@ -154,7 +155,7 @@ def test_traction_slopes_are_finite_differences():
 @settings(max_examples=300)
 def test_squeezed_roller_is_in_balance(approach, centrifugal, error):
     free = (centrifugal / STIFFNESS) ** 0.9
-    outer, inner_load, slope = squeezed_roller(approach, centrifugal, free * (1.0 + error), STIFFNESS)
+    outer, inner_load, slope = squeezed_roller(approach, centrifugal, free * (1.0 + error), STIFFNESS, STRAIGHT_PROFILE)
     if approach <= free * (1.0 - 1e-9):
         assert inner_load == 0.0 and outer == pytest.approx(free, rel=1.1e-4)
         return
@@ -171,7 +172,7 @@ def test_an_inner_contact_begins_without_a_jump_although_the_free_penetration_is
     centrifugal = 1200.0
     free = (centrifugal / STIFFNESS) ** 0.9
     approaches = free * (1.0 + np.linspace(-3e-4, 3e-4, 1201))
-    inner = np.array([squeezed_roller(approach, centrifugal, free * (1.0 + error), STIFFNESS)[1] for approach in approaches])
+    inner = np.array([squeezed_roller(approach, centrifugal, free * (1.0 + error), STIFFNESS, STRAIGHT_PROFILE)[1] for approach in approaches])
     assert (np.diff(inner) >= 0.0).all() and inner[-1] > 0.1
     assert np.diff(inner).max() < 0.002 * inner[-1]
 
@@ -185,7 +186,7 @@ def test_ring_balance_is_found_at_any_load_clearance_and_speed(load, angle, clea
     loads[LOAD.squeeze], loads[LOAD.centrifugal] = -clearance, centrifugal
     loads[LOAD.free] = (centrifugal / STIFFNESS) ** 0.9
     ring = np.zeros(2)
-    assert balance_ring(load * math.cos(angle), load * math.sin(angle), STIFFNESS, loads, ring)
+    assert balance_ring(load * math.cos(angle), load * math.sin(angle), STIFFNESS, STRAIGHT_PROFILE, loads, ring)
     spring = 1e3 * ring  # what holds a ring that no roller touches
     tolerance = 1e-4 * (load + 1)
     assert loads[LOAD.inner] @ loads[LOAD.cosine] + spring[0] == pytest.approx(load * math.cos(angle), abs=tolerance)

@@ -224,7 +224,8 @@ def test_levels_steady_and_slip_agree_below_a_radian_per_second_too(slow):
 @pytest.mark.parametrize("level", ["steady", "slip", "planar"])
 def test_the_largest_load_is_that_of_the_roller_under_the_load_at_every_level(slow, level):
     """With clearance and 500 N one roller at a time carries nearly everything when it stands under the load; a single instant shows half."""
-    scene = load_scene(slow, [f"level={level}", f"{SPEED}=100 rpm", f"{LOAD}=500 N"])
+    straight = "bearing.roller.crown=none"  # softer contacts of rollers with a profile pass 3 % on to their neighbours
+    scene = load_scene(slow, [f"level={level}", f"{SPEED}=100 rpm", f"{LOAD}=500 N", straight])
     row = point_row(scene)
     # Between two rollers 2 x Q cos(pitch/2) = F; under the load Q = F. Rattling bodies of level planar add their impacts.
     assert 0.985 * 500.0 <= row["inner_load_maximum"] <= (1.001 if level != "planar" else 1.3) * 500.0
@@ -241,12 +242,13 @@ def invoke(*words, code=0):
 
 
 def test_run_goes_on_until_the_bearing_has_settled_and_tells_how_long_that_took(slow):
-    report = json.loads(invoke(slow, "--json").stdout)
+    straight = "bearing.roller.crown=none"
+    report = json.loads(invoke(slow, "--set", straight, "--json").stdout)
     assert report["settled"] is True and report["unsettled_reason"] == ""
     assert 1.0 < report["settling_seconds"] < report["sim_seconds"]
-    assert report["cage_slip"] == pytest.approx(0.01 * point_row(load_scene(slow))["cage_slip"], abs=1e-3), "as a point of a sweep"
+    assert report["cage_slip"] == pytest.approx(0.01 * point_row(load_scene(slow, [straight]))["cage_slip"], abs=1e-3), "as a point of a sweep"
     assert report["inner_load_maximum"] == pytest.approx(500.0, rel=0.01), "one roller carries the load when it stands under it"
-    assert "yes, after 2." in invoke(slow).stdout
+    assert "yes, after 2." in invoke(slow, "--set", straight).stdout
 
 
 def test_run_that_has_not_settled_says_what_it_was_doing_and_ends_with_code_4(slow):

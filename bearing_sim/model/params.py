@@ -15,6 +15,7 @@ from bearing_sim.physics.film import RollingResistance, replenishment_rate, resi
 from bearing_sim.physics.flange import NO_FACE, Flanges, corner_stiffness, film_constant, flange_face
 from bearing_sim.physics.growth import Growth, Mounted, Temperatures, growth_at
 from bearing_sim.physics.lamina_life import Laminae, new_laminae
+from bearing_sim.physics.profile import Profile, new_profile
 from bearing_sim.physics.raceway import tabulated
 from bearing_sim.physics.rating_life import METHODS, cleanliness, reliability_factor, ring_ratings
 from bearing_sim.physics.squeeze_film import SqueezeFilm, new_squeeze_film
@@ -53,6 +54,7 @@ class Raceways(NamedTuple):
     inner_curvature_radius: float  # effective radius of the inner contact [m]
     outer_curvature_radius: float  # effective radius of the outer contact [m]
     reduced_modulus: float  # E' = 2 / sum((1 - nu^2)/E) [Pa]
+    profile: Profile  # of the rollers, at the levels where they stay aligned
 
 
 class Guidance(NamedTuple):
@@ -255,6 +257,7 @@ def pack(scene: Scene) -> Params:
             inner_curvature_radius=1 / (1 / roller_radius + 1 / inner_radius),
             outer_curvature_radius=1 / (1 / roller_radius - 1 / low_radius),
             reduced_modulus=2 / compliance,
+            profile=_profile(bearing.roller.profile, bearing.roller.diameter, bearing.roller.length),
         ),
         cage=CageBody(
             inertia=cage.polar_inertia if cage.polar_inertia is not None else cage.mass * bearing.pitch_radius**2,
@@ -294,6 +297,12 @@ def pack(scene: Scene) -> Params:
         envelope=Envelope(bearing.bore_diameter, bearing.outside_diameter, bearing.boundary_width, bearing.seal_moment),
         flanges=_flanges(scene),
     )
+
+
+@functools.lru_cache(maxsize=64)
+def _profile(crown, diameter: float, length: float) -> Profile:
+    """Return what a profile does to aligned rollers; a sweep asks for the same one at every point."""
+    return new_profile(lambda slices: crown_drops(crown, diameter, length, slices))
 
 
 def _flanges(scene: Scene) -> Flanges:

@@ -4,7 +4,7 @@
 import math
 from typing import NamedTuple
 
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import template
 from bearing_sim.numerics.elementary import ninth_root
 from bearing_sim.numerics.simd import larger, where_positive
 
@@ -39,6 +39,11 @@ class ContactRow(NamedTuple):
     resistance: int = 18  # F_R, against the motion of each surface through the contact [N]
     resistance_d_rolling: int = 19  # its slopes [N s/m]
     resistance_d_load: int = 20
+    whole_load: int = 21  # from here on of rollers with a profile, see `bearing_sim.physics.profile.concentrate`: Q [N]
+    length: int = 22  # psi, fraction of the length that bears, for tractions
+    d_length: int = 23  # its derivative by Q [1/N]
+    part: int = 24  # a, fraction of the length that bears at all
+    gap: int = 25  # g beside it [m]
 
 
 CONTACT = ContactRow()
@@ -73,14 +78,6 @@ def iso_contact_stiffness(length):
     length : effective contact length [m].
     """
     return 35948.0 * (length * 1e3) ** (8.0 / 9.0) * 2e3**EXPONENT
-
-
-@kernel
-def line_penetration(force, stiffness):
-    """Return the penetration (Q/K)^0.9 [m] that carries a normal force Q [N]: the inverse of Palmgren's law."""
-    if force <= 0.0:
-        return 0.0
-    return (force / stiffness) ** 0.9
 
 
 class ContactDamping(NamedTuple):

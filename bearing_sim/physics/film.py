@@ -13,7 +13,7 @@ import numpy as np
 
 from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.elementary import exponential, logarithm
-from bearing_sim.numerics.simd import larger, load, square_root, store
+from bearing_sim.numerics.simd import larger, load, smaller, square_root, store, where_positive
 from bearing_sim.physics.contact import CONTACT, LOAD_FLOOR, ROLLING_SPEED_FLOOR
 
 
@@ -37,6 +37,7 @@ _HEAT_FACTOR, _HEAT_EXPONENT, _SHEAR_FACTOR, _SHEAR_EXPONENT = 0.1, 0.64, 14.8, 
 _ELASTIC, _ELASTIC_SPEED, _ELASTIC_LOAD = 4.318, 0.658, 0.0126
 _RIGID = 1.42
 _SHARPNESS = 10.0  # of the passage between both regimes
+_MARTIN = 4.9  # Q h/(eta_0 u R L_c) of rigid cylinders that roll in an oil of one viscosity
 _INLET_HEAT, _INLET_HEAT_EXPONENT = 0.411483, 0.707071
 _STARVED_SHAPE = 5.1  # K_Z
 _LOADED_FROM = 1.0  # N; assumption: a contact that carries less has no film to roll through
@@ -134,6 +135,8 @@ class ResistanceConstants(NamedTuple):
     rigid: float  # ln F_I likewise
     heating: float  # ln of what multiplies u^(2 x 0.707071) in the thermal factor; -inf without heating
     replenishment: float  # k of exp(-k u) [s/m]; 0 where the inlet is always full
+    film: float  # ln h [m] in the middle without its powers of u and Q, see `DOWSON_TOYODA`
+    rigid_film: float  # likewise of rigid bodies, 4.9 eta_0 u R L_c/Q (Martin 1916)
 
 
 def resistance_constants(oil, reduced_modulus, curvature_radius, length, replenishment, heated=True):
@@ -172,6 +175,8 @@ def resistance_constants(oil, reduced_modulus, curvature_radius, length, repleni
         rigid=math.log(_RIGID) + scale + 0.5 * (math.log(2.0) + speed + load),
         heating=heat if heated else -math.inf,
         replenishment=replenishment,
+        film=film_constants(DOWSON_TOYODA, oil, curvature_radius, reduced_modulus, length).thickness,
+        rigid_film=math.log(_MARTIN * oil.viscosity * curvature_radius * length),
     )
 
 
@@ -194,45 +199,88 @@ def replenishment_rate(constant, kinematic_viscosity, pitch_diameter, diameter_r
     return constant * 1e6 * kinematic_viscosity * speed_by_rolling * 1e3 * (bore_diameter + outside_diameter) * root
 
 
-@kernel
-def _resist_rolling(contacts, first, end, constants):
-    for block in range(first, end):
-        rolling, force = load(contacts, block, CONTACT.rolling), larger(load(contacts, block, CONTACT.load), 0.0)
-        square = rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR
-        log_speed, log_load = 0.5 * logarithm(square), logarithm(larger(force, LOAD_FLOOR))
-        rigid = constants.rigid + 0.5 * (log_speed + log_load)
-        # with r = (F_I/F_E)^10, F = F_I (1 + r)^(-1/10), and its exponents are those of F_E in the proportion r/(1 + r)
-        ratio = exponential(_SHARPNESS * (rigid - constants.elastic - _ELASTIC_SPEED * log_speed - _ELASTIC_LOAD * log_load))
-        elastic = ratio / (1.0 + ratio)
-        heat = exponential(constants.heating + 2.0 * _INLET_HEAT_EXPONENT * log_speed)
-        cooler, starved = 1.0 / (1.0 + heat), constants.replenishment * square_root(square)
-        whole = exponential(rigid - logarithm(1.0 + ratio) / _SHARPNESS - log_speed - starved) * cooler
-        loaded = 1.0 / (force + _LOADED_FROM)
-        strength = whole * (force * loaded)
-        by_speed = 0.5 + (_ELASTIC_SPEED - 0.5) * elastic - 2.0 * _INLET_HEAT_EXPONENT * heat * cooler - starved - 1.0
-        by_load = 0.5 + (_ELASTIC_LOAD - 0.5) * elastic
-        store(contacts, block, CONTACT.resistance, strength * rolling)
-        store(contacts, block, CONTACT.resistance_d_load, whole * rolling * loaded * (by_load + _LOADED_FROM * loaded))
-        store(contacts, block, CONTACT.resistance_d_rolling, strength * (1.0 + by_speed * rolling * rolling / square))
+@template
+def _partly_loaded(part, gap, log_speed, log_load, ratio, log_less, constants):
+    """Return the resistance of a contact that bears on a part of its length, over that of one that bears on all of it, and its exponents.
+
+    The part that bears resists as a shorter contact, a F_R(Q/a).  Beside it the film resists as between rigid bodies, with 4.45 eta_0 u (R/h)^(1/2)
+    per length, which is F_I at the load 4.9 eta_0 u R/h that such a film carries (Martin 1916).  Its thickness h there is that in the middle, the
+    larger one of Dowson and Toyoda's and Martin's, and the gap.  F_R grows with less than the first power of the load, so that of all contacts with
+    one load the one that bears evenly resists most (Jensen's inequality).
+
+    Parameters
+    ----------
+    part, gap : a, and g [m], see `bearing_sim.physics.profile`.
+    log_speed, log_load : ln u [m/s], ln Q [N].
+    ratio, log_less : r = (F_I/F_E)^10 of a contact that bears on all of its length, and ln(1 + r)/10.
+    constants : `ResistanceConstants`.
+
+    Returns
+    -------
+    fraction, d_speed, d_load : and d ln(fraction) by ln u and by ln Q with part and gap held.
+    """
+    speed, load, log_part = 0.5 - _ELASTIC_SPEED, 0.5 - _ELASTIC_LOAD, logarithm(part)
+    shorter = ratio * exponential(-_SHARPNESS * load * log_part)  # r at the load Q/a
+    rigid_film = exponential(constants.rigid_film + log_speed - log_load)
+    elastic_film = exponential(constants.film + DOWSON_TOYODA.speed * log_speed + DOWSON_TOYODA.load * log_load)
+    film, stiff = larger(elastic_film, rigid_film), where_positive(elastic_film - rigid_film, 1.0, 0.0)
+    inverse = 1.0 / (film + gap)
+    bearing = exponential(0.5 * log_part + log_less - logarithm(1.0 + shorter) / _SHARPNESS)
+    beside = (1.0 - part) * exponential(log_less) * square_root(rigid_film * inverse)
+    both = bearing + beside
+    share, inside = 0.5 * film * inverse, where_positive(1.0 - both, 1.0 / both, 0.0)
+    elastic, turning = ratio / (1.0 + ratio), ratio / (1.0 + ratio) - shorter / (1.0 + shorter)
+    beside_speed = elastic * speed + 0.5 - share * (1.0 + stiff * (DOWSON_TOYODA.speed - 1.0))
+    beside_load = elastic * load - 0.5 + share * (1.0 - stiff * (1.0 + DOWSON_TOYODA.load))
+    d_speed = inside * (beside * beside_speed + bearing * turning * speed)
+    d_load = inside * (beside * beside_load + bearing * turning * load)
+    return smaller(both, 1.0), d_speed, d_load
 
 
-@kernel
-def resist_rolling(contacts, resistance):
-    """Write the resistance to rolling F_R of all contacts, half of them with each raceway; see `resist_rolling_along`."""
-    resist_rolling_along(contacts, contacts.shape[0] // 2, resistance)
-
-
-@kernel
-def resist_rolling_along(contacts, middle, resistance):
+@template
+def resist_rolling_by_rows(row, contacts, middle, crowned, resistance):
     """Write the resistance to rolling F_R of all contacts and its derivatives.
 
     As Q/(Q + 1 N) it fades out where a contact carries next to nothing, and it is smooth through u = 0.
 
     Parameters
     ----------
-    contacts : array with rows `CONTACT`; load and rolling go in.
+    row : rows of ``contacts``: load and rolling go in, resistance, resistance_d_rolling and resistance_d_load come out; constant to the compiler.
+    contacts : array with these rows, those with the inner raceway first.
     middle : block where the contacts with the outer raceway begin.
+    crowned : whether contacts may bear on a part of their length; then the rows part and gap go in, too, whose
+        changes are left out of derivatives.
     resistance : `RollingResistance`.
     """
-    _resist_rolling(contacts, 0, middle, resistance.inner)
-    _resist_rolling(contacts, middle, contacts.shape[0], resistance.outer)
+    for block in range(contacts.shape[0]):
+        constants = resistance.inner if block < middle else resistance.outer
+        rolling, force = load(contacts, block, row.rolling), larger(load(contacts, block, row.load), 0.0)
+        square = rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR
+        log_speed, log_load = 0.5 * logarithm(square), logarithm(larger(force, LOAD_FLOOR))
+        rigid = constants.rigid + 0.5 * (log_speed + log_load)
+        # with r = (F_I/F_E)^10, F = F_I (1 + r)^(-1/10), and its exponents are those of F_E in the proportion r/(1 + r)
+        ratio = exponential(_SHARPNESS * (rigid - constants.elastic - _ELASTIC_SPEED * log_speed - _ELASTIC_LOAD * log_load))
+        elastic, log_less = ratio / (1.0 + ratio), logarithm(1.0 + ratio) / _SHARPNESS
+        heat = exponential(constants.heating + 2.0 * _INLET_HEAT_EXPONENT * log_speed)
+        cooler, starved = 1.0 / (1.0 + heat), constants.replenishment * square_root(square)
+        whole = exponential(rigid - log_less - log_speed - starved) * cooler
+        by_load = 0.5 + (_ELASTIC_LOAD - 0.5) * elastic
+        by_speed = 0.5 + (_ELASTIC_SPEED - 0.5) * elastic - 2.0 * _INLET_HEAT_EXPONENT * heat * cooler - starved - 1.0
+        if crowned:
+            part, gap = load(contacts, block, row.part), load(contacts, block, row.gap)
+            fraction, d_speed, d_load = _partly_loaded(part, gap, log_speed, log_load, ratio, log_less, constants)
+            whole, by_speed, by_load = whole * fraction, by_speed + d_speed, by_load + d_load
+        loaded = 1.0 / (force + _LOADED_FROM)
+        strength = whole * (force * loaded)
+        store(contacts, block, row.resistance, strength * rolling)
+        store(contacts, block, row.resistance_d_load, whole * rolling * loaded * (by_load + _LOADED_FROM * loaded))
+        store(contacts, block, row.resistance_d_rolling, strength * (1.0 + by_speed * rolling * rolling / square))
+
+
+@kernel
+def resist_rolling(contacts, resistance, crowned):
+    """Write the resistance to rolling F_R of all contacts, rows `CONTACT`, half of them with each raceway; see `resist_rolling_by_rows`."""
+    if crowned:
+        resist_rolling_by_rows(CONTACT, contacts, contacts.shape[0] // 2, True, resistance)
+    else:
+        resist_rolling_by_rows(CONTACT, contacts, contacts.shape[0] // 2, False, resistance)

@@ -2,8 +2,8 @@
 """Quasi-static radial balance: which roller carries what, and where the inner ring is.
 
 For each roller Q_e(delta_e) = Q_i(delta_i) + F_c with delta_i + delta_e = approach, a monotone scalar equation of Palmgren contacts
-(`bearing_sim.physics.contact`); for the ring sum Q_i (cos phi, sin phi) = (F_y, F_z) (Deng 2017, eq. 16 at rest).  The potential of both is
-convex, so that Newton's method with a bounded, backtracked step always converges.
+(`bearing_sim.physics.contact`), softer where rollers have a profile (`bearing_sim.physics.profile`); for the ring sum Q_i (cos phi, sin phi)
+= (F_y, F_z) (Deng 2017, eq. 16 at rest).  The potential of both is convex, so that Newton's method with a bounded, backtracked step always converges.
 """
 
 import math
@@ -14,6 +14,7 @@ import numpy as np
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import ninth_root
 from bearing_sim.physics.contact import EXPONENT
+from bearing_sim.physics.profile import profile_force
 
 # A ring that no roller holds (clearance, no load) has no position: this spring, a millionth of a contact's, gives it one.
 _CENTRING_STIFFNESS = 1e3  # N/m; assumption
@@ -21,6 +22,7 @@ _FIRST_LONGEST_STEP = 2e-5  # m, a few contact penetrations; doubled with each g
 _ITERATIONS = 400  # a ring in a wide play rolls from roller to roller before it has found its position
 _RELATIVE_RESIDUAL = 1e-7
 _FREE_ERROR = 1e-3  # relative, an upper bound of that of a free penetration; within it the force decides whether an inner contact carries
+_LEAST_DESCENT = 0.1  # of an inner penetration in one step, where the roller has a profile
 _LEAST_INNER = 1e-12  # of the approach: where Newton's method starts at least, because it comes to the root from above after its first step
 
 
@@ -51,7 +53,7 @@ class LoadRow(NamedTuple):
 
     cosine: int = 0  # of the roller's azimuth
     sine: int = 1
-    squeeze: int = 2  # R_i + D_w - R_e [m]: the approach with the ring in the centre
+    squeeze: int = 2  # R_i + D_w - R_e, less what the profile drops where it is highest [m]: the approach with the ring in the centre
     contour_slope: int = 3  # dR_e/dphi [m/rad]
     centrifugal: int = 4  # F_c [N]
     free: int = 5  # outer penetration under F_c alone [m]
@@ -65,15 +67,16 @@ LOAD = LoadRow()
 
 
 @fused
-def squeezed_roller(approach, centrifugal, free, stiffness):
+def squeezed_roller(approach, centrifugal, free, stiffness, profile):
     """Balance one roller between the raceways: Q_e = Q_i + F_c, delta_i + delta_e = approach.
 
     Parameters
     ----------
-    approach : R_i + D_w - R_e + ring displacement towards the roller [m]; negative with clearance.
+    approach : R_i + D_w - R_e + ring displacement towards the roller, less what its profile drops where it is highest [m]; negative with clearance.
     centrifugal : F_c [N], not negative.
     free : outer penetration under F_c alone [m], to 1e-4: an inner contact begins exactly where the outer one carries F_c at this approach.
     stiffness : K [N/m^(10/9)].
+    profile : `bearing_sim.physics.profile.Profile`.
 
     Returns
     -------
@@ -81,13 +84,15 @@ def squeezed_roller(approach, centrifugal, free, stiffness):
     """
     if approach <= (1.0 - _FREE_ERROR) * free:
         return free, 0.0, 0.0
-    if approach <= (1.0 + _FREE_ERROR) * free and stiffness * approach**EXPONENT <= centrifugal:
+    if approach <= (1.0 + _FREE_ERROR) * free and profile_force(approach, stiffness, profile)[0] <= centrifugal:
         return free, 0.0, 0.0
     position = min(free / approach, 1.0) * (_OUTER_FRACTIONS.shape[0] - 1)
     index = min(int(position), _OUTER_FRACTIONS.shape[0] - 2)
     outer = approach * (_OUTER_FRACTIONS[index] + (position - index) * (_OUTER_FRACTIONS[index + 1] - _OUTER_FRACTIONS[index]))
     inner, inner_root, outer_root, step = max(approach - outer, _LEAST_INNER * approach), 0.0, 0.0, 0.0
     outer = approach - inner
+    if profile.crowned:
+        return _squeezed_crowned_roller(approach, inner, centrifugal, stiffness, profile)
     for _ in range(20):
         if inner <= 0.0:
             return approach, 0.0, 0.0
@@ -102,15 +107,31 @@ def squeezed_roller(approach, centrifugal, free, stiffness):
     return outer - step, inner_load, EXPONENT * inner_root * outer_root / (outer_root + inner_root)
 
 
+@kernel
+def _squeezed_crowned_roller(approach, inner, centrifugal, stiffness, profile):
+    """Return what `squeezed_roller` does for a roller with a profile; ``inner`` is the first guess of the inner penetration [m]."""
+    inner_load, inner_slope, outer_slope, step = 0.0, 0.0, 0.0, 0.0
+    for _ in range(40):
+        if inner <= 0.0:
+            return approach, 0.0, 0.0
+        outer_load, outer_slope = profile_force(approach - inner, stiffness, profile)
+        inner_load, inner_slope = profile_force(inner, stiffness, profile)
+        step = (outer_load - inner_load - centrifugal) / (outer_slope + inner_slope)
+        if abs(step) <= 1e-5 * inner:
+            break
+        inner = max(inner + step, _LEAST_DESCENT * inner)
+    return approach - inner - step, inner_load + inner_slope * step, inner_slope * outer_slope / (outer_slope + inner_slope)
+
+
 @fused
-def _ring_forces(y, z, load_y, load_z, stiffness, loads):
+def _ring_forces(y, z, load_y, load_z, stiffness, profile, loads):
     """Balance all rollers at a ring position; return the ring's residual force and its stiffness matrix."""
     force_y, force_z = load_y - _CENTRING_STIFFNESS * y, load_z - _CENTRING_STIFFNESS * z
     k_yy, k_yz, k_zz = _CENTRING_STIFFNESS, 0.0, _CENTRING_STIFFNESS
     for j in range(loads.shape[1]):
         cosine, sine = loads[LOAD.cosine, j], loads[LOAD.sine, j]
         approach = loads[LOAD.squeeze, j] + y * cosine + z * sine
-        outer, inner_load, slope = squeezed_roller(approach, loads[LOAD.centrifugal, j], loads[LOAD.free, j], stiffness)
+        outer, inner_load, slope = squeezed_roller(approach, loads[LOAD.centrifugal, j], loads[LOAD.free, j], stiffness, profile)
         loads[LOAD.outer_penetration, j] = outer
         loads[LOAD.inner, j] = inner_load
         loads[LOAD.outer, j] = inner_load + loads[LOAD.centrifugal, j]
@@ -125,13 +146,14 @@ def _ring_forces(y, z, load_y, load_z, stiffness, loads):
 
 
 @kernel
-def balance_ring(load_y, load_z, stiffness, loads, ring):
+def balance_ring(load_y, load_z, stiffness, profile, loads, ring):
     """Find the ring position at which the roller loads carry the radial load.
 
     Parameters
     ----------
     load_y, load_z : radial load on the inner ring [N].
     stiffness : K [N/m^(10/9)].
+    profile : `bearing_sim.physics.profile.Profile` of the rollers.
     loads : array with rows `LOAD`; cosine, sine, squeeze, centrifugal and free go in; outer_penetration, inner and outer
         come out.
     ring : ring centre (y, z) [m], start and result, shape (2,).
@@ -141,7 +163,7 @@ def balance_ring(load_y, load_z, stiffness, loads, ring):
     converged : bool
     """
     y, z = ring[0], ring[1]
-    force_y, force_z, k_yy, k_yz, k_zz = _ring_forces(y, z, load_y, load_z, stiffness, loads)
+    force_y, force_z, k_yy, k_yz, k_zz = _ring_forces(y, z, load_y, load_z, stiffness, profile, loads)
     tolerance = _RELATIVE_RESIDUAL * (math.hypot(load_y, load_z) + 1.0)
     longest = _FIRST_LONGEST_STEP
     for _ in range(_ITERATIONS):
@@ -156,7 +178,7 @@ def balance_ring(load_y, load_z, stiffness, loads, ring):
         scale = 1.0 if length <= longest else longest / length
         for _ in range(30):
             next_y, next_z = y + scale * step_y, z + scale * step_z
-            next_force_y, next_force_z, next_yy, next_yz, next_zz = _ring_forces(next_y, next_z, load_y, load_z, stiffness, loads)
+            next_force_y, next_force_z, next_yy, next_yz, next_zz = _ring_forces(next_y, next_z, load_y, load_z, stiffness, profile, loads)
             # Descent in the convex potential: the remaining force must not push back by more than half of what it pushed forward.
             if next_force_y * step_y + next_force_z * step_z >= -0.5 * (force_y * step_y + force_z * step_z):
                 longest *= 2.0

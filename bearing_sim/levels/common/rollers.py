@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What levels ``planar`` and ``spatial`` compute for every roller in the same way; ``LANES`` rollers at a time (a block).
+"""What levels compute for every roller in the same way; ``LANES`` rollers at a time (a block).
 
 A level passes the records of its rows, so that one text serves both: ``row`` are the rows of its rollers array (``ROLLER``), ``contact``
 those of its contacts array (`CONTACT`, or ``SLICED`` at level ``spatial``).  They are constants to the compiler.
@@ -16,7 +16,10 @@ from bearing_sim.numerics.compilation import fused, template
 from bearing_sim.numerics.elementary import cosine_sine
 from bearing_sim.numerics.simd import LANES, floor, larger, load, spread, spread_run, square_root, store, total
 from bearing_sim.physics.drag import roller_drag
+from bearing_sim.physics.film import resist_rolling
+from bearing_sim.physics.profile import concentrate, spread_tractions
 from bearing_sim.physics.raceway import contour_lanes
+from bearing_sim.physics.traction import traction
 
 _SOFTEST = 1e-3  # N/m; far below the stiffness of any contact that touches
 _TOUCH = 1e-9  # m; assumption: bodies that barely touch, which carries some 0.1 N
@@ -152,6 +155,26 @@ def _deepen(contact, block, deeper, faster, contacts):
     store(contacts, block, contact.load, larger(force, 0.0))
     add(contacts, block, contact.penetration, deeper)
     add(contacts, block, contact.rate, faster)
+
+
+@fused
+def drag(raceways, lubrication, contacts):
+    """Write tractions and resistances to rolling of aligned rollers and their derivatives; rows `bearing_sim.physics.contact.CONTACT`.
+
+    Parameters
+    ----------
+    raceways : `bearing_sim.model.params.Raceways`.
+    lubrication : `bearing_sim.model.params.Lubrication`.
+    contacts : load, rolling and sliding go in, and the penetration where rollers have a profile.
+    """
+    crowned = raceways.profile.crowned
+    if crowned:
+        concentrate(raceways.stiffness, raceways.profile, contacts)
+    traction(contacts, lubrication.inner, lubrication.outer)
+    if crowned:
+        spread_tractions(contacts)
+    if lubrication.rolling_resistance.on:
+        resist_rolling(contacts, lubrication.rolling_resistance, crowned)
 
 
 @template

@@ -29,7 +29,7 @@ import math
 
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, total_load
 from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
-from bearing_sim.levels.common.rollers import add, carry_normal_forces, linear_churning, place_in_pockets, place_outwards, place_rollers
+from bearing_sim.levels.common.rollers import add, carry_normal_forces, drag, linear_churning, place_in_pockets, place_outwards, place_rollers
 from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
 from bearing_sim.levels.planar.jacobian import (
     flange_jacobian,
@@ -58,11 +58,10 @@ from bearing_sim.numerics.elementary import cosine_sine
 from bearing_sim.numerics.simd import load, magnitude, spread, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, damped_line_contact
 from bearing_sim.physics.drag import mixture_torque
-from bearing_sim.physics.film import resist_rolling
 from bearing_sim.physics.flange import axial_share, flange_friction
 from bearing_sim.physics.land import Land, land_contact, land_film, land_friction
 from bearing_sim.physics.pocket import pocket_friction_lanes, wall_force
-from bearing_sim.physics.traction import traction
+from bearing_sim.physics.profile import damped_profile_contact
 
 
 @fused
@@ -138,7 +137,15 @@ def _lands(land, model, own, rate, with_jacobian):
 @fused
 def normal_forces(params, contacts):
     """Write the normal forces of all contacts and their derivatives."""
-    stiffness, damping = params.raceways.stiffness, params.raceways.damping
+    stiffness, damping, profile = params.raceways.stiffness, params.raceways.damping, params.raceways.profile
+    if profile.crowned:
+        for block in range(contacts.shape[0]):
+            penetration, rate = load(contacts, block, CONTACT.penetration), load(contacts, block, CONTACT.rate)
+            force, d_penetration, d_rate = damped_profile_contact(penetration, rate, stiffness, damping, profile)
+            store(contacts, block, CONTACT.load, force)
+            store(contacts, block, CONTACT.stiffness, d_penetration)
+            store(contacts, block, CONTACT.damping, d_rate)
+        return
     for block in range(contacts.shape[0]):
         penetration, rate = load(contacts, block, CONTACT.penetration), load(contacts, block, CONTACT.rate)
         force, d_penetration, d_rate = damped_line_contact(penetration, rate, stiffness, damping)
@@ -253,9 +260,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     for k in range(4):
         work.evaluated_ring[k] = ring[k]
     normal_forces(params, contacts)
-    traction(contacts, model.lubrication.inner, model.lubrication.outer)
-    if model.lubrication.rolling_resistance.on:
-        resist_rolling(contacts, model.lubrication.rolling_resistance)
+    drag(params.raceways, model.lubrication, contacts)
     _pocket_forces(y, params, rows)
     _accelerate(y, churning, model, rows, contacts, rate)
     pockets_guide = not params.cage.guidance.lands

@@ -22,16 +22,18 @@ from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT, elastic_force
 from bearing_sim.physics.land import land_contact, land_film, land_friction
+from bearing_sim.physics.profile import profile_force
 
 
 @kernel
 def _raceway_damping(params, work):
     """Return the power lost by damping between rollers and raceways [W]."""
-    contacts, stiffness, lost = work.contacts, params.raceways.stiffness, 0.0
+    contacts, stiffness, profile, lost = work.contacts, params.raceways.stiffness, params.raceways.profile, 0.0
     for raceway in range(2):
         for j in range(params.rollers.count):
             block, lane = raceway * work.rollers.shape[0] + j // LANES, j % LANES
-            damped = contacts[block, CONTACT.load, lane] - elastic_force(contacts[block, CONTACT.penetration, lane], stiffness)
+            elastic, _ = profile_force(contacts[block, CONTACT.penetration, lane] - profile.highest, stiffness, profile)
+            damped = contacts[block, CONTACT.load, lane] - elastic
             lost += damped * contacts[block, CONTACT.rate, lane]
     return lost
 

@@ -15,21 +15,21 @@ friction on the cage (0 with ``pocket_reaction: false``), F_R the resistance to 
 import math
 
 from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
+from bearing_sim.levels.common.rollers import drag
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import ARROW
 from bearing_sim.numerics.rosenbrock2 import GAMMA
 from bearing_sim.numerics.simd import LANES
-from bearing_sim.physics.contact import CONTACT, line_penetration
+from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.drag import mixture_torque, roller_drag
-from bearing_sim.physics.film import resist_rolling
 from bearing_sim.physics.flange import axial_share, flange_friction, rub, shear
 from bearing_sim.physics.lamina_life import add_load_moments, equivalent_loads
 from bearing_sim.physics.land import land_torque
 from bearing_sim.physics.load_balance import LOAD, balance_ring
 from bearing_sim.physics.pocket import FRICTION_SPIN, pocket_friction
+from bearing_sim.physics.profile import profile_depth, profile_force
 from bearing_sim.physics.raceway import contour_at
-from bearing_sim.physics.traction import traction
 
 _STICKING = 2.0 / GAMMA  # c of `hold_sticking_contacts`
 _PITCH_POSITIONS = 10  # cage angles over one roller pitch for the equivalent loads
@@ -41,7 +41,12 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
     rollers, raceways, loads = params.rollers, params.raceways, work.loads
     inner_radius = raceways.inner_radius + work.growth[0]
     cosine, sine = math.cos(cage_angle), math.sin(cage_angle)
-    free_at_pitch = line_penetration(rollers.mass * raceways.pitch_radius * cage_speed * cage_speed, raceways.stiffness)
+    profile = raceways.profile
+    free_at_pitch = profile_depth(rollers.mass * raceways.pitch_radius * cage_speed * cage_speed, raceways.stiffness, profile)
+    by_force = 0.9  # exponent of a penetration by its force
+    if profile.crowned and free_at_pitch > 0.0:
+        force, slope = profile_force(free_at_pitch, raceways.stiffness, profile)
+        by_force = force / (slope * free_at_pitch)
     intervals = raceways.contour.shape[0]
     turns = cage_angle / (2.0 * math.pi)
     start = (turns - math.floor(turns)) * intervals
@@ -51,12 +56,12 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
         position = start + work.pitch[2, j]
         radius, slope = contour_at(raceways.contour, position - intervals if position >= intervals else position)
         loads[LOAD.contour_slope, j] = slope
-        loads[LOAD.squeeze, j] = inner_radius + 2.0 * rollers.radius - radius
+        loads[LOAD.squeeze, j] = inner_radius + 2.0 * (rollers.radius - profile.highest) - radius
         # The penetration is a ten-thousandth of the radius: the centrifugal force is taken without it.
-        loads[LOAD.radius, j] = radius - rollers.radius
+        loads[LOAD.radius, j] = radius - rollers.radius + profile.highest
         loads[LOAD.centrifugal, j] = rollers.mass * loads[LOAD.radius, j] * cage_speed * cage_speed
-        loads[LOAD.free, j] = free_at_pitch * (1.0 + 0.9 * (loads[LOAD.radius, j] / raceways.pitch_radius - 1.0))
-    converged = balance_ring(load_y, load_z, raceways.stiffness, loads, work.ring)
+        loads[LOAD.free, j] = free_at_pitch * (1.0 + by_force * (loads[LOAD.radius, j] / raceways.pitch_radius - 1.0))
+    converged = balance_ring(load_y, load_z, raceways.stiffness, profile, loads, work.ring)
     for j in range(rollers.count):
         loads[LOAD.radius, j] += loads[LOAD.outer_penetration, j]
     return converged
@@ -78,9 +83,11 @@ def _tractions(cage_speed, shaft_speed, y, model, work):
         contacts[blocks + block, CONTACT.rolling, lane] = 0.5 * (cage_speed * (radius + rollers.radius) + roller_rolling)
         contacts[blocks + block, CONTACT.sliding, lane] = surface - orbital
         contacts[blocks + block, CONTACT.load, lane] = loads[LOAD.outer, j]
-    traction(contacts, model.lubrication.inner, model.lubrication.outer)
-    if model.lubrication.rolling_resistance.on:
-        resist_rolling(contacts, model.lubrication.rolling_resistance)
+        outer = loads[LOAD.outer_penetration, j]
+        inner = loads[LOAD.squeeze, j] + work.ring[0] * loads[LOAD.cosine, j] + work.ring[1] * loads[LOAD.sine, j] - outer
+        contacts[block, CONTACT.penetration, lane] = inner + model.params.raceways.profile.highest
+        contacts[blocks + block, CONTACT.penetration, lane] = outer + model.params.raceways.profile.highest
+    drag(model.params.raceways, model.lubrication, contacts)
 
 
 @fused
@@ -236,7 +243,7 @@ def _push_rollers(inner_radius, params, work, with_jacobian):
     Parameters
     ----------
     inner_radius : R_i, grown [m].
-    params, work : of the level; `bearing_sim.physics.film.resist_rolling` has written into ``work.contacts``.
+    params, work : of the level; `bearing_sim.levels.common.rollers.drag` has written into ``work.contacts``.
     with_jacobian : whether to add to the Jacobian.
     """
     contacts, jacobian, rollers, blocks = work.contacts, work.jacobian.rows, params.rollers, work.contacts.shape[0] // 2

@@ -34,7 +34,7 @@ from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.forces import border_accelerations as planar_accelerations
 from bearing_sim.levels.planar.state import BORDER as PLANAR
 from bearing_sim.levels.spatial.jacobian import land_cage_jacobian, land_ring_jacobian, react_on_support, roller_jacobian
-from bearing_sim.levels.spatial.slices import press_points, sum_resistance, sum_tractions
+from bearing_sim.levels.spatial.slices import press_points, resist, sum_tractions
 from bearing_sim.levels.spatial.state import (
     BORDER,
     CAGE_TILT_Y,
@@ -59,7 +59,6 @@ from bearing_sim.levels.spatial.state import (
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.simd import larger, load, magnitude, spread, spread_run, store, total, where_positive
 from bearing_sim.physics.contact import damped_line_contact
-from bearing_sim.physics.film import resist_rolling_along
 from bearing_sim.physics.flange import axial_share, flange_friction
 from bearing_sim.physics.pocket import pocket_friction_lanes
 from bearing_sim.physics.traction import traction_along
@@ -330,8 +329,6 @@ def _accelerate(block, y, churning, model, rows, contacts, rate):
     # the resistance to rolling, as at level `planar`
     resistance_i, resistance_e = load(contacts, block, SLICED.resistance), load(contacts, outer, SLICED.resistance)
     push_i, push_e = 1.0 - 2.0 * params.raceways.diameter_ratio, 1.0 + 2.0 * params.raceways.diameter_ratio
-    m_i += push_i * load(contacts, block, SLICED.resistance_moment)
-    m_e -= push_e * load(contacts, outer, SLICED.resistance_moment)
     force, moment = -load(rows, block, ROLLER.pocket_force), -load(rows, block, ROLLER.pocket_moment)
     friction = load(rows, block, ROLLER.pocket_friction)
     play_cosine, play_sine = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
@@ -400,8 +397,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     traction_along(points[:end], middle, count, model.lubrication.inner, model.lubrication.outer)
     sum_tractions(contacts, points, first_points, count)
     if resistance:
-        resist_rolling_along(points[:end], middle, model.lubrication.rolling_resistance)
-        sum_resistance(contacts, points, first_points, count)
+        resist(contacts, rows.shape[0], model.lubrication.rolling_resistance)
     if params.flanges.load > 0.0:
         press_axially(params, rows, contacts)
     for block in range(rows.shape[0]):

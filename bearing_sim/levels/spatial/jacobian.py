@@ -183,13 +183,10 @@ def _inner_chain(block, resistance, params, viscosity, rows, contacts, chain):
     if resistance:
         push = 1.0 - 2.0 * params.raceways.diameter_ratio
         t += push * load(contacts, block, SLICED.resistance)
-        m += push * load(contacts, block, SLICED.resistance_moment)
         _chain_row(block, _RESISTANCE, SLICED.of_resistance, -1, rows, contacts, chain)
-        _chain_row(block, _RESISTANCE + _SEEN, SLICED.of_resistance_moment, -1, rows, contacts, chain)
         for k in range(_SEEN):
-            resisted, turned = load(chain, 0, _RESISTANCE + k), load(chain, 0, _RESISTANCE + _SEEN + k)
+            resisted = load(chain, 0, _RESISTANCE + k)
             add(chain, 0, _SEEN + k, push * resisted)
-            add(chain, 0, 3 * _SEEN + k, push * turned)
             add(chain, 0, 4 * _SEEN + k, -resisted)
     if params.flanges.on:
         _flange_chain(block, params, viscosity, rows, chain)
@@ -262,14 +259,9 @@ def _inner_jacobian(block, y, inner_radius, resistance, params, viscosity, rows,
         add(jacobian, block, _SPINNING + column, force)
         if resistance:
             push, rate = 1.0 - 2.0 * params.raceways.diameter_ratio, carried if k == 0 else 0.5 * params.rollers.radius
-            resisted, turned = (
-                rate * load(contacts, block, SLICED.resistance_d_rolling),
-                rate * load(contacts, block, SLICED.resistance_d_rolling + 1),
-            )
+            resisted = rate * load(contacts, block, SLICED.resistance_d_rolling)
             add(jacobian, block, _RADIAL + column, -(push * resisted * n_t))
             add(jacobian, block, _ALONG + column, push * resisted * n_r)
-            add(jacobian, block, _TILTING + column, -(push * turned * n_t))
-            add(jacobian, block, _SKEWING + column, push * turned * n_r)
             add(jacobian, block, _SPINNING + column, -resisted)
     if params.flanges.on:
         first = ROLLER.inner_flange
@@ -290,7 +282,6 @@ def _ring_jacobian(block, resistance, params, rows, contacts, jacobian):
     if resistance:
         push = 1.0 - 2.0 * params.raceways.diameter_ratio
         across += push * load(contacts, block, SLICED.resistance)
-        skewing += push * load(contacts, block, SLICED.resistance_moment)
     if params.flanges.on:
         moment = load(rows, block, ROLLER.inner_flange + FLANGE.skewing)
         across += load(rows, block, ROLLER.inner_flange + FLANGE.force) - moment * load(rows, block, ROLLER.lean_normal) * inverse
@@ -374,14 +365,12 @@ def _outer_resistance(block, params, rows, contacts, jacobian):
     """Add the outer contact's resistance to rolling to a roller's rows."""
     outer, push = rows.shape[0] + block, -(1.0 + 2.0 * params.raceways.diameter_ratio)
     _outer_row(block, _ALONG, push, SLICED.of_resistance, -1, rows, contacts, params, jacobian)
-    _outer_row(block, _SKEWING, push, SLICED.of_resistance_moment, -1, rows, contacts, params, jacobian)
     _outer_row(block, _SPINNING, -1.0, SLICED.of_resistance, -1, rows, contacts, params, jacobian)
     radius, orbital_speed, roller_radius = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed), params.rollers.radius
     for k in range(3):
         column, rate = (R, orbital_speed) if k == 0 else ((PHI_SPEED, radius + 2.0 * roller_radius) if k == 1 else (SPIN, spread(roller_radius)))
         resisted = 0.5 * rate * load(contacts, outer, SLICED.resistance_d_rolling)
         add(jacobian, block, _ALONG + column, push * resisted)
-        add(jacobian, block, _SKEWING + column, push * 0.5 * rate * load(contacts, outer, SLICED.resistance_d_rolling + 1))
         add(jacobian, block, _SPINNING + column, -resisted)
 
 

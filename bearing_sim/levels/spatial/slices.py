@@ -22,10 +22,13 @@ from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.elementary import exponential, logarithm, ninth_root
 from bearing_sim.numerics.simd import highest, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, TINY, damped_line_contact, damping_factor, elastic_line_contact, hertz_pressure
+from bearing_sim.physics.film import resist_rolling_by_rows
 
 _NEWTON_STEPS = 2  # towards the ends of the part that bears: what is left is at most 4 % of it
 _LEVEL = 1e-15  # m; a depth that changes by less over half a roller has no end
 _NEAR_END = 1e-12  # least 1 - s^2: nearer to its end the logarithmic profile counts as no deeper
+_LEAST_PART = 1e-6  # of a roller that bears, or does not
+_SOFT_EDGE = 2e-8  # m; assumption, far below any film: until it is so deep a slice bears in part, so that the part does not jump
 _LEAST_BEND, _LEAST_SLOPE = 0.2, 0.05  # bounds of the start and of the slope of Newton's method, from -1 to 1 of the roller
 
 
@@ -50,6 +53,7 @@ def _clear(block, contacts, rows):
     store(contacts, block, SLICED.skewing, 0.0)
     for row in range(SLICED.stiffness, rows):
         store(contacts, block, row, 0.0)
+    store(contacts, block, SLICED.part, 1.0)
 
 
 @fused
@@ -134,6 +138,12 @@ def _place_on_loaded_part(block, contacts, slices, points, first):
     """Write the points of a quadrature on the part that bears; parameters as of `place_points`."""
     left, right = _loaded_part(load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.lean) * slices.half_length, slices)
     middle, half = 0.5 * (left + right), 0.5 * (right - left)
+    before, behind = 0.5 * (left - 1.0), 0.5 * (right + 1.0)  # middles of the parts that do not bear
+    depth, slope = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.lean) * slices.half_length
+    off = (1.0 + left) * (_drop(before, slices) - depth - slope * before) + (1.0 - right) * (_drop(behind, slices) - depth - slope * behind)
+    beside = 1.0 - half
+    store(contacts, block, SLICED.part, larger(half, _LEAST_PART))
+    store(contacts, block, SLICED.gap, where_positive(beside - _LEAST_PART, larger(off, 0.0) / (2.0 * larger(beside, _LEAST_PART)), 0.0))
     for k in range(slices.abscissae.shape[0]):
         place = middle + half * slices.abscissae[k]
         store(points, first + k, POSITION, place * slices.half_length)
@@ -147,7 +157,7 @@ def place_points(block, contacts, slices, points, first):
 
     Parameters
     ----------
-    contacts : rows `SLICED`; penetration and lean go in.
+    contacts : rows `SLICED`; penetration and lean go in, and the part that bears and the gap beside it come out.
     slices : `bearing_sim.model.params.Slices`.
     points : rows `bearing_sim.physics.contact.CONTACT` and, behind them, those of `bearing_sim.levels.spatial.state`; takes position, fraction of
         the roller's length and drop of the profile.
@@ -156,10 +166,19 @@ def place_points(block, contacts, slices, points, first):
     if slices.profile != SLICED_EQUALLY:
         _place_on_loaded_part(block, contacts, slices, points, first)
         return
-    for k in range(slices.positions.shape[0]):
+    count = slices.positions.shape[0]
+    depth, lean = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.lean)
+    bears, off = spread(0.0), spread(0.0)
+    for k in range(count):
         store(points, first + k, POSITION, slices.positions[k])
-        store(points, first + k, FRACTION, 1.0 / slices.positions.shape[0])
+        store(points, first + k, FRACTION, 1.0 / count)
         store(points, first + k, DROP, slices.crown[k])
+        there = depth + lean * slices.positions[k] - slices.crown[k]
+        pressed = larger(there, 0.0)
+        bears += smaller(pressed * (1.0 / _SOFT_EDGE), 1.0)
+        off += pressed - there
+    store(contacts, block, SLICED.part, larger(bears * (1.0 / count), _LEAST_PART))
+    store(contacts, block, SLICED.gap, off / larger(count - bears, 1.0))
 
 
 @template
@@ -293,35 +312,24 @@ def sum_tractions(contacts, points, first_points, count):
 
 
 @kernel
-def sum_resistance(contacts, points, first_points, count):
-    """Write resistances to rolling, their moments and derivatives of all contacts from those of their points; parameters as of `press_points`."""
+def resist(contacts, middle, resistance):
+    """Write resistances to rolling of all contacts and their derivatives; their loads, and on which part they bear, have been written.
+
+    A contact resists on all its length, with what the film beside the part that bears adds (`bearing_sim.physics.film`), so evenly that its moment is
+    left out.
+
+    Parameters
+    ----------
+    contacts : rows `SLICED`.
+    middle : block where the contacts with the outer raceway begin.
+    resistance : `bearing_sim.physics.film.RollingResistance`.
+    """
+    resist_rolling_by_rows(SLICED, contacts, middle, True, resistance)
     for block in range(contacts.shape[0]):
-        first = first_points[block]
-        if first < 0:
-            continue
-        f_0, f_1, u_0, u_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-        k_0, k_1, k_2 = spread(0.0), spread(0.0), spread(0.0)
-        d_0, d_1, d_2 = spread(0.0), spread(0.0), spread(0.0)
-        for k in range(first, first + count):
-            x, fraction, d_load = load(points, k, POSITION), load(points, k, FRACTION), load(points, k, CONTACT.resistance_d_load)
-            force, d_rolling = fraction * load(points, k, CONTACT.resistance), fraction * load(points, k, CONTACT.resistance_d_rolling)
-            d_depth, d_rate = d_load * load(points, k, D_DEPTH), d_load * load(points, k, D_RATE)
-            f_0 += force
-            f_1 += force * x
-            u_0 += d_rolling
-            u_1 += d_rolling * x
-            k_0 += d_depth
-            k_1 += d_depth * x
-            k_2 += d_depth * x * x
-            d_0 += d_rate
-            d_1 += d_rate * x
-            d_2 += d_rate * x * x
-        store(contacts, block, SLICED.resistance, f_0)
-        store(contacts, block, SLICED.resistance_moment, f_1)
-        store(contacts, block, SLICED.resistance_d_rolling, u_0)
-        store(contacts, block, SLICED.resistance_d_rolling + 1, u_1)
+        d_load = load(contacts, block, SLICED.resistance_d_load)
+        k_0, k_1 = d_load * load(contacts, block, SLICED.stiffness), d_load * load(contacts, block, SLICED.stiffness + 1)
+        d_0, d_1 = d_load * load(contacts, block, SLICED.damping), d_load * load(contacts, block, SLICED.damping + 1)
         _store_changes(block, contacts, SLICED.of_resistance, k_0, k_1, d_0, d_1)
-        _store_changes(block, contacts, SLICED.of_resistance_moment, k_1, k_2, d_1, d_2)
 
 
 @template
