@@ -212,6 +212,5 @@ def test_levels_with_and_without_slices_agree_on_the_default_profile(idling):
         assert planar[name] == pytest.approx(spatial[name], rel=within), name
     # what is left is tilting cages and rollers; straight rollers slip twice as much
     assert abs(planar["cage_slip"] - spatial["cage_slip"]) < 0.25 * abs(idling["planar, straight"]["cage_slip"] - spatial["cage_slip"])
-    assert idling["planar, straight"]["load"] > 1.2 * spatial["load"]
     assert idling["slip"]["load"] == pytest.approx(planar["load"], rel=0.01)
     assert idling["slip"]["rating_life"] == pytest.approx(planar["rating_life"], rel=0.02)

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 LEVELS = ("steady", "slip", "planar", "spatial")  # from the lowest to the highest fidelity
 NUMBERS = {"steady": 0, "slip": 1, "planar": 2, "spatial": 3}  # code of a level in a sample
-REDUCES_TO = {"spatial": "planar"}  # equal motion and loads, to round-off, unless the scene uses what only the higher level has
+REDUCES_TO = {"spatial": "planar"}  # equal motion and loads, of straight rollers to round-off, unless the scene uses what only the higher level has
 
 
 class Effect(NamedTuple):
@@ -130,7 +130,6 @@ def hint(scene) -> str | None:
         return None
     of_scenes = [effect for effect in EFFECTS if not effect.field.startswith("wants.")]
     missing = ", ".join(effect.field for effect in of_scenes if scene.level in effect.levels and lower not in effect.levels)
-    softer = "" if scene.bearing.roller.profile.law == "none" else ", without the compliance that the profile adds to contacts,"
-    faster = f"level {lower} computes the same motion and loads{softer} several times faster"
+    faster = f"level {lower} computes the same motion and loads several times faster"
     upright = ", unless the cage tilts by itself" if scene.level == "spatial" else ""
     return f"level {scene.level}: nothing in the scene needs it ({missing}); {faster}{upright}"
