@@ -30,6 +30,7 @@ from bearing_sim.studies import correction as studied
 from bearing_sim.sweep.point import run_until_settled
 
 DOMAIN = Domain((100.0, 5000.0), (10.0, 5000.0), (330.0, 430.0), 2.0 * math.pi / 3.0, 0.0)
+LAGS = slice(ANSWER.lag, ANSWER.lag_ahead + 1)
 FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)
 POWERS = slice(ANSWER.shaft_power, len(ANSWER))
 
@@ -82,12 +83,40 @@ def test_a_correction_meets_points_that_it_has_not_seen_as_well_as_it_says(made)
     assert shares == pytest.approx(1.0, abs=0.02)
 
 
-def test_answers_that_do_not_exist_stay_so_and_a_lag_stays_what_it_is(made):
+def test_answers_that_do_not_exist_stay_so(made):
     conditions = at_random(4)
     steady, _ = made_up(conditions)
-    steady[1], steady[:, ANSWER.lag] = math.nan, 0.02
+    steady[1] = math.nan
     found = made.applied(conditions, steady)
-    assert np.isnan(found[1, ANSWER.cage_slip]) and np.isfinite(found[0]).all() and (found[[0, 2, 3], ANSWER.lag] == 0.02).all()
+    assert np.isnan(found[1]).all() and np.isfinite(found[0]).all()
+
+
+def test_lags_are_corrected_by_their_ratios_and_that_of_a_cage_that_stands_stays_unknown():
+    conditions = at_random(64)
+    steady, planar = made_up(conditions)
+    steady[:, LAGS] = [0.02, 0.3, 0.1]
+    planar[:, LAGS] = [0.02, 0.45, 0.1]
+    steady[5, LAGS] = planar[5, LAGS] = math.nan
+    found = fit_correction(DOMAIN, conditions, steady, planar).applied(conditions, steady)
+    told = np.arange(64) != 5
+    assert found[told, ANSWER.lag_behind] == pytest.approx(0.45, rel=0.1) and found[told, ANSWER.lag] == pytest.approx(0.02, rel=1e-6)
+    assert np.isnan(found[5, LAGS]).all() and np.isfinite(found[5, ANSWER.cage_slip])
+
+
+def test_lags_are_measured_from_the_ways_of_cages():
+    """Ways made up by the law that level steady has, with lags half as long again."""
+    steady = np.full(len(ANSWER), math.nan)
+    steady[[ANSWER.cage_slip, ANSWER.lag, ANSWER.lag_behind, ANSWER.lag_ahead]] = 0.2, 0.1, 0.5, 0.3
+    slip, ratio, ways = 0.25, 1.5, []
+    for start, distant, reach in ((0.45, 0.5, 0.24), (0.02, 0.3, 0.14)):
+        away, first = start - slip, start
+        for _ in range(2000):
+            away -= away / (ratio * (0.1 + (distant - 0.1) * abs(away) / reach)) * 1e-4
+        ways.append(studied._Way(first, slip + away, 0.2))
+    assert studied._lags(steady, slip, ways[1], ways[0]) == pytest.approx([0.15, 0.75, 0.45], rel=0.1)
+    unknown = studied._Way(math.nan, math.nan, math.nan)
+    assert studied._lags(steady, slip, unknown, unknown) == pytest.approx([0.1, 0.5, 0.3])
+    assert studied._lags(steady, slip, unknown, ways[0]) == pytest.approx([0.15, 0.75, 0.45], rel=0.1)
 
 
 def test_beyond_its_points_a_correction_is_bounded_by_the_largest_that_was_found(made):

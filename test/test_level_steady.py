@@ -5,12 +5,13 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from bearing_sim import Inputs, SceneError, Simulation, load_scene
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
-from bearing_sim.levels.steady.operating_point import ANSWER, SETTLED, STOPPED, new_orbit, solve_point
+from bearing_sim.levels.steady.operating_point import ANSWER, FAR_AHEAD, SETTLED, STOPPED, new_orbit, solve_point
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.levels.steady.table_builder import solve_scene
 from bearing_sim.model.params import lubricate, pack
@@ -185,15 +186,49 @@ def test_disturbed_cage_of_level_slip_comes_back_with_the_lag():
     assert -1.0 / slope == pytest.approx(lag, rel=0.12)
 
 
-def test_cage_goes_to_the_operating_point_as_an_exponential():
+def test_cage_goes_to_the_operating_point_with_a_lag_that_changes_with_the_distance():
     run = direct()
     found = answer(run.scene)
     ideal = run.sample["ideal_cage_speed"]
-    block = run.advance(3 * found.lag, samples=30)
-    left = np.exp(-block["time"] / found.lag)
-    np.testing.assert_allclose(block["cage_speed"], ideal * (1 - found.cage_slip * (1 - left)), rtol=1e-9)
-    turned = ideal * ((1 - found.cage_slip) * block["time"] + found.cage_slip * found.lag * (1 - left))
-    np.testing.assert_allclose(block["cage_angle"], turned, rtol=1e-9)
+    duration, ahead = 3 * found.lag, FAR_AHEAD * found.cage_slip * ideal
+    block = run.advance(duration, samples=200)
+
+    def rate(_, y):
+        away = y[1] - ideal * (1 - found.cage_slip)  # the cage starts in ideal rolling
+        return [y[1], -away / (found.lag + (found.lag_ahead - found.lag) * away / ahead)]
+
+    expected = solve_ivp(rate, (0.0, duration), [0.0, ideal], t_eval=block["time"], rtol=1e-10, atol=1e-10).y
+    # one lag where it changes by less than 2 %, of second order where it changes by more
+    np.testing.assert_allclose(block["cage_speed"], expected[1], atol=1e-3 * found.cage_slip * ideal)
+    np.testing.assert_allclose(block["cage_angle"], expected[0], atol=1e-3 * found.cage_slip * ideal * duration)
+
+
+def test_cage_near_its_speed_follows_as_an_exponential():
+    run = direct()
+    run.advance(1.0)
+    found, ideal = answer(run.scene), run.sample["ideal_cage_speed"]
+    run._state[slip_state.OMEGA] *= 1.0001
+    away = run._state[slip_state.OMEGA] - ideal * (1 - found.cage_slip)
+    block = run.advance(3 * found.lag, samples=3)
+    left = away * np.exp(-np.arange(1, 4))
+    np.testing.assert_allclose(block["cage_speed"] - ideal * (1 - found.cage_slip), left, rtol=1e-3)
+
+
+@pytest.mark.parametrize("rpm", [1500.0, -1500.0])
+def test_a_skidding_cage_is_brought_back_no_faster_than_its_limited_torque_can(rpm):
+    """An NU 232 that idles at half of its load slips by 44 %; when the load comes back, tractions drive at their limit for seconds."""
+    given = {"name": "idling", "bearing": {"preset": "NU 232"}, "lubricant": {"oil": "ISO VG 220", "supply": "oil_bath", "temperature": "40 degC"}}
+    given |= {"operating": {"shaft_speed": f"{rpm} rpm", "radial_load": "1 kN"}, "heat": {"law": "none"}}
+    slips = []
+    for level, table in (("slip", None), ("steady", empty_table())):
+        run = Simulation(load_scene(given, [f"level={level}"]), None, *([table] if table is not None else []))
+        run.advance(3.0)
+        back = Inputs(run.inputs.shaft_speed, 2000.0, 0.0, run.inputs.oil_temperature)
+        run.advance(1e-3, back)
+        slips.append(run.advance(1.0, samples=20)["cage_slip"])
+    slip, steady = slips
+    assert slip[0] > 0.4 and 0.25 < slip[4] < 0.35 and slip[-1] < 0.05  # a quarter of a second takes it a third of the way
+    assert np.abs(steady - slip).max() < 0.03
 
 
 def test_many_short_advances_are_one_long_one_on_a_ramp_of_nothing_but_time():

@@ -9,6 +9,7 @@ import math
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import qmc
@@ -25,7 +26,7 @@ from bearing_sim.estimation.correction import (
     write_correction,
 )
 from bearing_sim.estimation.response import conditions_at, coordinates, embedded
-from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.levels.steady.operating_point import ANSWER, FAR_AHEAD, FAR_BEHIND
 from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import Quality, obtain_table, solve_points
 from bearing_sim.model.params import Life, pack
@@ -46,6 +47,11 @@ _PURSUED = 10.0  # times the goals; larger errors, such as at a jump from one st
 _SHORTEST, _LONGEST = 24.0, 120.0  # turns of an ideal cage; cages that skid under little load wander and never rest, their means count
 _TELLING = 0.02  # slip from which on another state is looked for
 _MORE = 2.0  # times the slip found, at which the search for another state begins
+_SHORTEST_WAY, _LONGEST_WAY = 1.0, 8.0  # turns; a shorter way is over before it can be measured
+_TAKING_UP = 1.5  # turns, in which rollers take up the play of their pockets, and spins follow
+_SAMPLES = 30  # of a turn
+_FAR, _TOLD = 0.2, 0.02  # of a far distance, at which a cage has to be at least, and of its distance, by which it has to come nearer
+_LARGEST_RATIO = 4.0  # of a lag to that of level steady, more is not believed
 _MEANS = tuple(name for name in ANSWER._fields if name in {each.name for each in OBSERVABLES})
 _LOADS = ("inner_equivalent_load", "outer_equivalent_load", "inner_lamina_load", "outer_lamina_load")
 
@@ -60,7 +66,8 @@ def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> 
 
     Returns
     -------
-    ``steady``, ``planar`` : columns `bearing_sim.levels.steady.operating_point.ANSWER`, NaN where there is no answer.
+    ``steady``, ``planar`` : columns `bearing_sim.levels.steady.operating_point.ANSWER`, NaN where there is no answer.  Lags of ``planar`` are those
+        of ``steady`` where the cage's way was too short to tell.
     ``other_slip`` : in which ``planar`` settles from more slip; NaN where that was not tried.
     """
     steady, planar = solve_points(scene, np.array(conditions)), scene.at_level("planar")
@@ -70,8 +77,11 @@ def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> 
         try:
             run = Simulation(planar, inputs)
             rolling = run.sample.copy()
+            ahead = _way(run, steady[k, ANSWER.lag_ahead])
             found[k] = _answers(_settled(run), life)
             slip = found[k, ANSWER.cage_slip]
+            skidding = Simulation(planar, inputs, start=_slipping(rolling, slip + FAR_BEHIND * (1.0 - slip), with_spins=True))
+            found[k, ANSWER.lag : ANSWER.lag_ahead + 1] = _lags(steady[k], slip, ahead, _way(skidding, steady[k, ANSWER.lag_behind]))
             if _TELLING <= slip < 0.5:
                 other[k] = _settled(Simulation(planar, inputs, start=_slipping(rolling, _MORE * slip))).slip
         except IntegrationError:
@@ -84,16 +94,68 @@ def _settled(run: Simulation) -> Outcome:
     return advance_until_settled(run, _SHORTEST * turn, _LONGEST * turn)
 
 
-def _slipping(rolling: np.void, slip: float) -> np.void:
-    """Return the sample of ideal rolling with a cage that slips, by 90 % at most; rollers go with it and spin as they would without slip."""
+class _Way(NamedTuple):
+    """How a cage that is far from the slip it settles at comes nearer; NaN where that was not measured."""
+
+    first: float  # mean slip over a turn
+    last: float  # and over another, later one
+    seconds: float  # between both
+
+
+def _way(run: Simulation, lag: float) -> _Way:
+    """Return how the cage of a run that has just begun comes nearer, over half of the time constant that level ``steady`` has for it."""
+    turn = 1.0 / abs(cage_rate(run.scene, run.inputs.shaft_speed))
+    turns = min(0.5 * lag / turn, _LONGEST_WAY)
+    if not turns > _SHORTEST_WAY:
+        return _Way(math.nan, math.nan, math.nan)
+    run.advance(_TAKING_UP * turn)  # play
+    first = float(run.advance(turn, samples=_SAMPLES)["cage_slip"].mean())
+    if turns > 1.0:
+        run.advance((turns - 1.0) * turn)
+    last = float(run.advance(turn, samples=_SAMPLES)["cage_slip"].mean())
+    return _Way(first, last, max(turns, 1.0) * turn)
+
+
+def _lags(steady: np.ndarray, slip: float, ahead: _Way, behind: _Way) -> np.ndarray:
+    """Return the three lags of level ``planar`` as those of ``steady``, longer or shorter as the cage's ways were measured.
+
+    Parameters
+    ----------
+    steady : answer of level ``steady``, columns `ANSWER`.
+    slip : at which level ``planar`` settles.
+    ahead, behind : ways from less slip and from more.
+    """
+    lag, settled = steady[ANSWER.lag], steady[ANSWER.cage_slip]
+    ratios = []
+    for way, distant, reach in (
+        (behind, steady[ANSWER.lag_behind], FAR_BEHIND * (1.0 - settled)),
+        (ahead, steady[ANSWER.lag_ahead], FAR_AHEAD * settled),
+    ):
+        distance, nearer = abs(0.5 * (way.first + way.last) - slip), abs(way.first - slip) - abs(way.last - slip)
+        expected = lag + (distant - lag) * distance / max(reach, 1e-6)
+        told = distance > _FAR * reach and nearer > _TOLD * distance and expected > 0.0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.divide(distance * way.seconds, nearer * expected)
+        ratios.append(float(np.clip(ratio, 1.0 / _LARGEST_RATIO, _LARGEST_RATIO)) if told else math.nan)
+    known = [ratio for ratio in ratios if math.isfinite(ratio)]
+    near = math.exp(float(np.mean(np.log(known)))) if known else 1.0
+    factors = [near, *(ratio if math.isfinite(ratio) else near for ratio in ratios)]
+    return steady[ANSWER.lag : ANSWER.lag_ahead + 1] * factors
+
+
+def _slipping(rolling: np.void, slip: float, with_spins: bool = False) -> np.void:
+    """Return the sample of ideal rolling with a cage that slips, by 90 % at most, and rollers that go with it.
+
+    They spin as they would without slip, or ``with_spins`` as they roll on the outer raceway: the others push the cage at first.
+    """
     sample, slip = rolling.copy(), min(slip, 0.9)
-    for name in ("cage_speed", "orbital_speed"):
+    for name in ("cage_speed", "orbital_speed", *(["roller_spin"] if with_spins else [])):
         sample[name] *= 1.0 - slip
     return sample
 
 
 def _answers(outcome: Outcome, life: Life) -> np.ndarray:
-    """Return the means of a settled run as an answer of level ``steady``; its lag is NaN."""
+    """Return the means of a settled run as an answer of level ``steady``; its lags are NaN."""
     window, answers = outcome.window, np.full(len(ANSWER), math.nan)
     for name in _MEANS:
         answers[ANSWER._fields.index(name)] = float(window[name].mean())

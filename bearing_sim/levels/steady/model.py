@@ -21,7 +21,19 @@ from bearing_sim.levels.common.power import write_friction_moment
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import OMEGA, THETA
-from bearing_sim.levels.steady.operating_point import ANSWER, CREEP, FAILED, March, Orbit, march, new_march, new_orbit, solve_point
+from bearing_sim.levels.steady.operating_point import (
+    ANSWER,
+    CREEP,
+    FAILED,
+    FAR_AHEAD,
+    FAR_BEHIND,
+    March,
+    Orbit,
+    march,
+    new_march,
+    new_orbit,
+    solve_point,
+)
 from bearing_sim.levels.steady.table import LookUp, Table, covers, empty_table, look_up, new_look_up
 from bearing_sim.model.params import Lubrication
 from bearing_sim.model.sample import COLUMN, SCALARS
@@ -32,6 +44,10 @@ from bearing_sim.physics.lamina_life import EquivalentLoads
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs, oil_properties, step
 
+_EVEN = 0.02  # of the lag; where it changes by less with the distance, one step follows exactly
+_PIECES = 4  # of an interval in which it changes by more
+_SHORTEST = 0.25  # of the lags near and far; none is shorter
+_NEAR = 1e-3  # of ideal speed; within it there is one lag
 _FIRST_LOSS = COLUMN.shaft_power + 1  # the losses by cause stand behind the power of the shaft
 
 
@@ -172,18 +188,63 @@ def observe(t, y, model, work, interval, previous, row, memory):
     _write_sample(t, y, model, work, interval, previous, row)
 
 
-@kernel
-def _follow(before, after, lag, duration, y):
-    """Let the cage follow, exactly, a speed that changes linearly; an unknown lag (NaN) counts as 0."""
+@template
+def _follow_evenly(before, after, lag, duration, y):
+    """Let the cage follow, exactly, a speed that changes linearly, with one time constant."""
     rise = (after - before) / duration
-    if not lag > 0.0:
-        y[THETA] += 0.5 * (before + after) * duration
-        y[OMEGA] = after
-        return
     gone = -math.expm1(-duration / lag)
     away = y[OMEGA] - before + rise * lag
     y[THETA] += before * duration + 0.5 * rise * duration * duration - rise * lag * duration + away * lag * gone
     y[OMEGA] = after - rise * lag + away * (1.0 - gone)
+
+
+@template
+def _lag_at(behind, ideal, answer):
+    """Return the time constant [s] of a cage that is slower than it settles at by a speed ``behind``, or faster where that is negative [rad/s].
+
+    It changes linearly with the distance, through what is known near the settled speed and far from it: so does that of a body that a limited torque
+    brings back.
+    """
+    lag, slip = answer[ANSWER.lag], answer[ANSWER.cage_slip]
+    distant = answer[ANSWER.lag_behind] if behind > 0.0 else answer[ANSWER.lag_ahead]
+    reach = (FAR_BEHIND * (1.0 - slip) if behind > 0.0 else FAR_AHEAD * slip) * ideal
+    if not distant > 0.0 or not reach > _NEAR * ideal:
+        return lag
+    return max(lag + (distant - lag) * abs(behind) / reach, _SHORTEST * min(lag, distant))
+
+
+@kernel
+def _follow(before, after, shaft_speed, model, answer, duration, y):
+    """Let the cage follow a speed that changes linearly; an unknown lag (NaN) counts as 0.
+
+    Parameters
+    ----------
+    before, after : settled speeds at both ends of a duration [rad/s].
+    shaft_speed : [rad/s].
+    model : of the level.
+    answer : at the end, columns `ANSWER`.
+    duration : [s].
+    y : state, changed in place.
+    """
+    lag = answer[ANSWER.lag]
+    if not lag > 0.0:
+        y[THETA] += 0.5 * (before + after) * duration
+        y[OMEGA] = after
+        return
+    ideal, sense = 0.5 * abs(shaft_speed) * (1.0 - model.params.raceways.diameter_ratio), 1.0 if shaft_speed >= 0.0 else -1.0
+    first, last = _lag_at(sense * (before - y[OMEGA]), ideal, answer), _lag_at(sense * (after - y[OMEGA]), ideal, answer)
+    if max(abs(first - lag), abs(last - lag)) <= _EVEN * lag:
+        _follow_evenly(before, after, lag, duration, y)
+        return
+    piece, settled = duration / _PIECES, before
+    for k in range(_PIECES):
+        towards = before + (after - before) * (k + 1) / _PIECES
+        angle, speed = y[THETA], y[OMEGA]
+        _follow_evenly(settled, towards, _lag_at(sense * (settled - speed), ideal, answer), piece, y)
+        halfway = 0.5 * (settled - speed + towards - y[OMEGA])
+        y[THETA], y[OMEGA] = angle, speed
+        _follow_evenly(settled, towards, _lag_at(sense * halfway, ideal, answer), piece, y)
+        settled = towards
 
 
 @kernel
@@ -211,7 +272,7 @@ def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory,
         if not answer_at(shaft_speed, load_y, load_z, model, work):
             return NOT_EVALUATED, h
         reached = _settled_speed(shaft_speed, model, work)
-        _follow(settled, reached, work.answer[ANSWER.lag], interval, y)
+        _follow(settled, reached, shaft_speed, model, work.answer, interval, y)
         counts[COUNT.steps] += 1
         counts[COUNT.unsettled_points] = work.solutions[2]
         _write_sample(end, y, model, work, interval, before, rows[k])
@@ -277,7 +338,7 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
         reached = _settled_speed(speed, model, work)
         interval = stretches[k]
         now += interval
-        _follow(settled, reached, work.answer[ANSWER.lag], interval, y)
+        _follow(settled, reached, speed, model, work.answer, interval, y)
         counts[COUNT.steps] += 1
         growth = growth_at(mounted, Temperatures(temperature, temperature, temperature, temperature, temperature))
         warmed = _warmed(lubrication, temperature, growth, kinematic_viscosities[k], temperature)
@@ -368,7 +429,7 @@ def advance_warm_profile(start, stretches, inputs, y, model, work, counts, previ
         reached = _settled_speed(speed, model, work)
         interval = stretches[k]
         now += interval
-        _follow(settled, reached, work.answer[ANSWER.lag], interval, y)
+        _follow(settled, reached, speed, model, work.answer, interval, y)
         counts[COUNT.steps] += 1
         there = Model(model.params, lubrication, Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), model.tolerances)
         _write_sample(now, y, there, work, interval, before, rows[k])

@@ -87,6 +87,7 @@ class Orbit(NamedTuple):
     diagonal: np.ndarray  # of the differences' equations, shape (M,)
     column: np.ndarray  # a right side, and three for the closing of the orbit, shape (M, 1 + 3)
     beside: np.ndarray  # spins at a cage speed nearby, shape (M,)
+    found: np.ndarray  # spins of the operating point, while those far from it are sought, shape (M,)
     residual: np.ndarray  # right side of the iteration before, shape (M,)
     reach: np.ndarray  # how far each spin may go in an iteration [rad/s], shape (M,)
     state: np.ndarray  # of level slip, shape (Z + 2,)
@@ -109,6 +110,7 @@ def new_orbit(count: int, angles: int | None = None, tolerances: tuple[float, fl
         diagonal=np.zeros(nodes),
         column=np.zeros((nodes, 1 + STEPS)),
         beside=np.zeros(nodes),
+        found=np.zeros(nodes),
         residual=np.zeros(nodes),
         reach=np.zeros(nodes),
         state=np.zeros(count + 2),
@@ -241,29 +243,35 @@ def solve_spins(speed, sense, model, work, orbit, tolerance, iterations, careful
 
 _SLIPS = np.array([0.0, 1e-3, 4e-3, 0.012, 0.03, 0.06, 0.1, 0.15, 0.2, 0.26, 0.33, 0.4, 0.48, 0.56, 0.64, 0.72, 0.8, 0.88, 0.94, 0.98, 0.995, 0.999])
 
+FAR_BEHIND = 0.3  # of the cage's settled speed
+FAR_AHEAD = 0.7  # of its slip
+_SLIPS_AT_ALL = 0.02  # slip from which a cage may be ahead by so much that it matters
+
 
 class AnswerColumn(NamedTuple):
     """What an operating point is answered by, and where."""
 
     cage_slip: int = 0  # mean in time
     lag: int = 1  # time constant of the cage's way back to it [s]
-    inner_equivalent_load: int = 2  # [N]
-    outer_equivalent_load: int = 3
-    inner_lamina_load: int = 4  # the same by laminae
-    outer_lamina_load: int = 5
-    reference_modification_factor: int = 6  # a_ISO of all laminae together
-    shaft_power: int = 7  # from here on means in time [W]; the order is that of `bearing_sim.levels.common.power.Powers`
-    inner_sliding_power: int = 8
-    outer_sliding_power: int = 9
-    inner_rolling_power: int = 10
-    outer_rolling_power: int = 11
-    churning_power: int = 12
-    windage_power: int = 13
-    land_power: int = 14
-    pocket_power: int = 15
-    damping_power: int = 16
-    seal_power: int = 17
-    flange_power: int = 18
+    lag_behind: int = 2  # the same of a cage that is `FAR_BEHIND` of its speed slower [s]: distance over acceleration
+    lag_ahead: int = 3  # and of one that has got rid of `FAR_AHEAD` of its slip [s]
+    inner_equivalent_load: int = 4  # [N]
+    outer_equivalent_load: int = 5
+    inner_lamina_load: int = 6  # the same by laminae
+    outer_lamina_load: int = 7
+    reference_modification_factor: int = 8  # a_ISO of all laminae together
+    shaft_power: int = 9  # from here on means in time [W]; the order is that of `bearing_sim.levels.common.power.Powers`
+    inner_sliding_power: int = 10
+    outer_sliding_power: int = 11
+    inner_rolling_power: int = 12
+    outer_rolling_power: int = 13
+    churning_power: int = 14
+    windage_power: int = 15
+    land_power: int = 16
+    pocket_power: int = 17
+    damping_power: int = 18
+    seal_power: int = 19
+    flange_power: int = 20
 
 
 ANSWER = AnswerColumn()
@@ -345,11 +353,10 @@ def _losses(answer):
 
 
 @kernel
-def _lag(slip, ideal, sense, model, work, orbit):
-    """Return the time constant of the cage's way to balance [s]; NaN where it leads away.
+def _slope_and_inertia(slip, ideal, sense, model, work, orbit):
+    """Return the change of the mean acceleration by cage speed [1/s] at a slip, and the inertia that goes with it; NaN where not known.
 
-    The slope of the mean drive by cage speed, over the inertia: that of cage and orbiting rollers, and of the spins that must
-    go with them, felt through the tractions.
+    The inertia is that of the spins, which must go with cage and orbiting rollers and are felt through the tractions, and of these, which count 1.
     """
     nodes, angles = orbit.spins.shape[0], orbit.accelerations.shape[0]
     change = _LAG_CHANGE * max(abs(slip), 1e-3) * ideal
@@ -362,12 +369,45 @@ def _lag(slip, ideal, sense, model, work, orbit):
     interval = 2.0 * math.pi / (nodes * sense * speed)
     for m in range(nodes):
         orbit.column[m, 0] = interval * (orbit.beside[m] - orbit.spins[m]) / (2.0 * change)
-    if not math.isfinite(slope) or not slope < 0.0 or not solve_cyclic(orbit.diagonal, orbit.column):
-        return math.nan
+    if not math.isfinite(slope) or not solve_cyclic(orbit.diagonal, orbit.column):
+        return slope, math.nan
     inertia = 1.0
     for m in range(nodes):
         inertia += orbit.drives[m] * orbit.column[m, 0] / angles
-    return -inertia / slope
+    return slope, inertia
+
+
+@kernel
+def _distant_lag(slip, distant, lag, ideal, sense, model, work, orbit):
+    """Return the distance over the acceleration of a cage that slips by ``distant`` instead of ``slip`` [s]; ``lag`` where that is not known.
+
+    Tractions that have reached their limit drive the cage no harder from far away than from near, so that it takes longer.
+    """
+    _, inertia = _slope_and_inertia(distant, ideal, sense, model, work, orbit)
+    found = inertia * (distant - slip) * abs(ideal) / _mean_drive(ideal * (1.0 - distant), sense, model, work, orbit, _FINE)
+    return found if math.isfinite(found) and found > 0.0 else lag
+
+
+@kernel
+def _write_lags(slip, ideal, sense, model, work, orbit, answer):
+    """Write the lags of an operating point, NaN where the cage leads away from it; ``orbit`` holds its spins, and does so afterwards."""
+    slope, inertia = _slope_and_inertia(slip, ideal, sense, model, work, orbit)
+    if not math.isfinite(inertia) or not slope < 0.0:
+        return
+    lag = -inertia / slope
+    answer[ANSWER.lag] = answer[ANSWER.lag_behind] = answer[ANSWER.lag_ahead] = lag
+    speed = orbit.speed[0]
+    for m in range(orbit.spins.shape[0]):
+        orbit.found[m] = orbit.spins[m]
+    answer[ANSWER.lag_behind] = _distant_lag(slip, slip + FAR_BEHIND * (1.0 - slip), lag, ideal, sense, model, work, orbit)
+    if slip > _SLIPS_AT_ALL:
+        orbit.speed[0] = speed
+        for m in range(orbit.spins.shape[0]):
+            orbit.spins[m] = orbit.found[m]
+        answer[ANSWER.lag_ahead] = _distant_lag(slip, (1.0 - FAR_AHEAD) * slip, lag, ideal, sense, model, work, orbit)
+    orbit.speed[0] = speed
+    for m in range(orbit.spins.shape[0]):
+        orbit.spins[m] = orbit.found[m]
 
 
 @kernel
@@ -424,7 +464,7 @@ def solve_point(model, work, orbit, answer):
         slip = _narrow(slip, drive, beyond, drive_beyond, ideal, sense, model, work, orbit)
     if not math.isfinite(slip):
         return FAILED
-    answer[ANSWER.lag] = _lag(slip, ideal, sense, model, work, orbit)
+    _write_lags(slip, ideal, sense, model, work, orbit, answer)
     speed = ideal * (1.0 - slip)
     left = _mean_drive(speed, sense, model, work, orbit, orbit.tolerances[1])
     if not math.isfinite(left):
@@ -534,7 +574,7 @@ def march(model, work, memory, answer):
     answer[ANSWER.cage_slip] = 1.0 - mean / ideal
     away = ideal - mean
     lag = (turned - mean * time) / away if abs(away) > 1e-6 * abs(ideal) else 0.0
-    answer[ANSWER.lag] = min(max(lag, 0.0), time)
+    answer[ANSWER.lag] = answer[ANSWER.lag_behind] = answer[ANSWER.lag_ahead] = min(max(lag, 0.0), time)
     for column in range(ANSWER.inner_equivalent_load, answer.shape[0]):
         source = COLUMN.inner_equivalent_load + column - ANSWER.inner_equivalent_load
         if column >= ANSWER.shaft_power:
