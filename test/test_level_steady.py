@@ -103,6 +103,14 @@ def test_a_scatter_of_the_drive_is_not_taken_for_a_balance(factor):
         assert toward * (after - before) > 1e-4, f"from a slip of {before}"
 
 
+def test_slip_does_not_stick_at_a_slip_that_the_search_passes():
+    """About 10 %, where the search looks, slip rises with the radius of the raceway as everywhere else."""
+    radii = 34.86413 + 2e-6 * np.arange(16)
+    of = [scene(f"bearing.outer_raceway.low_radius={radius!r} mm", "bearing.outer_raceway.d_value=0.105 mm") for radius in radii.tolist()]
+    rises = np.diff([answer(each, 45900.0, 720.0, each.lubricant.temperature).cage_slip for each in of])
+    assert rises.min() > 0.8 * rises.max() > 0.0
+
+
 def test_more_angles_a_pitch_change_slip_by_less_than_half_a_percent():
     of, found = scene(), []
     for angles in (11, 31):

@@ -196,7 +196,7 @@ def idling():
     given = {"name": "idling", "bearing": {"preset": "NU 210"}, "lubricant": {"oil": "ISO VG 68", "temperature": "60 degC"}, "heat": {"law": "none"}}
     given |= {"operating": {"shaft_speed": "3000 rpm", "radial_load": "150 N"}}
     found = {}
-    for kind in ("slip", "planar", "spatial", "planar, straight"):
+    for kind in ("planar", "spatial", "planar, straight"):
         level, *straight = kind.split(", ")
         run = Simulation(load_scene(given, [f"level={level}", *(["bearing.roller.crown=none"] if straight else [])]))
         run.advance(0.2)
@@ -212,5 +212,3 @@ def test_levels_with_and_without_slices_agree_on_the_default_profile(idling):
         assert planar[name] == pytest.approx(spatial[name], rel=within), name
     # what is left is tilting cages and rollers; straight rollers slip twice as much
     assert abs(planar["cage_slip"] - spatial["cage_slip"]) < 0.25 * abs(idling["planar, straight"]["cage_slip"] - spatial["cage_slip"])
-    assert idling["slip"]["load"] == pytest.approx(planar["load"], rel=0.01)
-    assert idling["slip"]["rating_life"] == pytest.approx(planar["rating_life"], rel=0.02)

@@ -58,6 +58,7 @@ REASONS = {
 }
 _ITERATIONS = 15
 _CAREFUL_ITERATIONS = 150
+_NEXT_TO_BALANCE = 0.1  # of the drive at the slip before; a smaller one may have the wrong sign
 _ROUGH, _FINE = 1e-3, 1e-5  # of the spin of rolling
 _SLIP_TOLERANCE = 1e-5
 _LARGEST_LEAD = 0.1  # negative slip; a cage that seems to be driven beyond has spins that were not resolved
@@ -309,17 +310,29 @@ def _mean_drive(speed, sense, model, work, orbit, tolerance):
 
 @kernel
 def _bracket(ideal, sense, model, work, orbit):
-    """Go from ideal rolling to where the mean torque changes its sign; return (slip before, drive there, slip after, drive there)."""
+    """Go from ideal rolling to where the mean torque changes its sign; return (slip before, drive there, slip after, drive there).
+
+    The way there asks for spins to a thousandth only, by which a sign next to a balance may be wrong: both ends are evaluated again.  Only a drive
+    that is small there counts as such: where spins stick and slip within a pitch drives scatter, and no sign is more right than another.
+    """
     before, drive_before = 0.0, _mean_drive(ideal, sense, model, work, orbit, _ROUGH)
     farthest = _FLANGED_LEAD if model.params.flanges.inner.area > 0.0 else _LARGEST_LEAD
     away = 1.0 if drive_before < 0.0 else -1.0  # most cages lag, those of slow bearings lead by next to nothing
+    nearer, drive_nearer = before, drive_before
     for i in range(1, _SLIPS.shape[0]):
         slip = away * _SLIPS[i]
         drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, _ROUGH)
         if not math.isfinite(drive + drive_before) or slip < -farthest:
             return math.nan, math.nan, math.nan, math.nan
         if drive * away >= 0.0:
-            return before, drive_before, slip, drive
+            exact = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, orbit.tolerances[1])
+            if exact * away >= 0.0 or not abs(exact) < _NEXT_TO_BALANCE * abs(drive_before):
+                exact = _mean_drive(ideal * (1.0 - before), sense, model, work, orbit, orbit.tolerances[1])
+                if exact * away < 0.0 or i == 1 or not abs(exact) < _NEXT_TO_BALANCE * abs(drive_nearer):
+                    return before, drive_before, slip, drive
+                return nearer, drive_nearer, before, exact
+            drive = exact
+        nearer, drive_nearer = before, drive_before
         before, drive_before = slip, drive
     return before, drive_before, math.inf, 0.0
 
