@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.numerics.compilation import fused, kernel
-from bearing_sim.numerics.elementary import ninth_root
 from bearing_sim.physics.contact import EXPONENT
 from bearing_sim.physics.profile import profile_force
 
@@ -22,7 +21,8 @@ _FIRST_LONGEST_STEP = 2e-5  # m, a few contact penetrations; doubled with each g
 _ITERATIONS = 400  # a ring in a wide play rolls from roller to roller before it has found its position
 _RELATIVE_RESIDUAL = 1e-7
 _FREE_ERROR = 1e-3  # relative, an upper bound of that of a free penetration; within it the force decides whether an inner contact carries
-_LEAST_DESCENT = 0.1  # of an inner penetration in one step, where the roller has a profile
+_ROLLER_ITERATIONS = 40
+_LEAST_DESCENT = 0.1  # of an inner penetration in one step
 _LEAST_INNER = 1e-12  # of the approach: where Newton's method starts at least, because it comes to the root from above after its first step
 
 
@@ -89,37 +89,15 @@ def squeezed_roller(approach, centrifugal, free, stiffness, profile):
     position = min(free / approach, 1.0) * (_OUTER_FRACTIONS.shape[0] - 1)
     index = min(int(position), _OUTER_FRACTIONS.shape[0] - 2)
     outer = approach * (_OUTER_FRACTIONS[index] + (position - index) * (_OUTER_FRACTIONS[index + 1] - _OUTER_FRACTIONS[index]))
-    inner, inner_root, outer_root, step = max(approach - outer, _LEAST_INNER * approach), 0.0, 0.0, 0.0
-    outer = approach - inner
-    if profile.crowned:
-        return _squeezed_crowned_roller(approach, inner, centrifugal, stiffness, profile)
-    for _ in range(20):
-        if inner <= 0.0:
-            return approach, 0.0, 0.0
-        outer_root, inner_root = stiffness * ninth_root(outer), stiffness * ninth_root(inner)
-        step = (outer_root * outer - inner_root * inner - centrifugal) / (EXPONENT * (outer_root + inner_root))
-        if abs(step) <= 1e-5 * inner:
-            break
-        outer -= step
-        inner += step
-    # The step just found is applied to first order: what it leaves is its square.
-    inner_load = inner_root * (inner + EXPONENT * step)
-    return outer - step, inner_load, EXPONENT * inner_root * outer_root / (outer_root + inner_root)
-
-
-@kernel
-def _squeezed_crowned_roller(approach, inner, centrifugal, stiffness, profile):
-    """Return what `squeezed_roller` does for a roller with a profile; ``inner`` is the first guess of the inner penetration [m]."""
-    inner_load, inner_slope, outer_slope, step = 0.0, 0.0, 0.0, 0.0
-    for _ in range(40):
-        if inner <= 0.0:
-            return approach, 0.0, 0.0
+    inner, inner_load, inner_slope, outer_slope, step = max(approach - outer, _LEAST_INNER * approach), 0.0, 0.0, 0.0, 0.0
+    for _ in range(_ROLLER_ITERATIONS):
         outer_load, outer_slope = profile_force(approach - inner, stiffness, profile)
         inner_load, inner_slope = profile_force(inner, stiffness, profile)
         step = (outer_load - inner_load - centrifugal) / (outer_slope + inner_slope)
         if abs(step) <= 1e-5 * inner:
             break
         inner = max(inner + step, _LEAST_DESCENT * inner)
+    # The step just found is applied to first order: what it leaves is its square.
     return approach - inner - step, inner_load + inner_slope * step, inner_slope * outer_slope / (outer_slope + inner_slope)
 
 

@@ -20,6 +20,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.elementary import ninth_root
@@ -74,9 +75,7 @@ def new_profile(drops) -> Profile:
     flat = float(np.mean(drop <= _STRAIGHT))
     first = [flat, 2.0 * (nodes[0, 0] - flat) / spacing - nodes[0, 1], *nodes[0, 2:]]
     nodes = np.array([first, *nodes, [1.0, 0.0, 1.0, 1.0, 0.0]])
-    values, slopes = nodes[:, 0], nodes[:, 1] * spacing
-    rise = np.diff(values)
-    cubic = [slopes[:-1] + slopes[1:] - 2.0 * rise, 3.0 * rise - 2.0 * slopes[:-1] - slopes[1:], slopes[:-1], values[:-1]]
+    cubic = CubicHermiteSpline(np.arange(_INTERVALS + 1), nodes[:, 0], nodes[:, 1] * spacing).c
     lines = [column for k in (2, 3, 4) for column in (nodes[:-1, k], np.diff(nodes[:, k]))]
     return Profile(True, highest, math.sqrt(scale), np.ascontiguousarray(np.stack([*cubic, *lines], axis=1)))
 
@@ -111,7 +110,22 @@ def _place_lanes(depth, profile):
     return index, position - index, 0.5 * t * (1.0 - t)
 
 
-@kernel
+@template
+def _cubic_lanes(table, index, x):
+    """Return G, its first and second derivative by t, in intervals of the table and places in them (lanes)."""
+    a, b, c = gather(table, index, _COLUMN.load), gather(table, index, _COLUMN.load + 1), gather(table, index, _COLUMN.load + 2)
+    fraction = ((a * x + b) * x + c) * x + gather(table, index, _COLUMN.load + 3)
+    return fraction, ((3.0 * a * x + 2.0 * b) * x + c) * float(_INTERVALS), (6.0 * a * x + 2.0 * b) * float(_INTERVALS * _INTERVALS)
+
+
+@template
+def _line_lanes(table, index, x, column):
+    """Return one of psi, a and g, likewise, and its derivative by t."""
+    rise = gather(table, index, column + 1)
+    return gather(table, index, column) + rise * x, rise * float(_INTERVALS)
+
+
+@fused
 def profile_force(depth, stiffness, profile):
     """Return Q [N] of a depth below the profile's highest line, and its derivative [N/m]; a straight profile counts as one, too.
 
@@ -168,11 +182,7 @@ def damped_profile_contact(penetration, rate, stiffness, damping, profile):
     root = stiffness * ninth_root(larger(raw, TINY))
     elastic = root * depth
     index, x, by_depth = _place_lanes(depth, profile)
-    table = profile.table
-    a, b, c = gather(table, index, _COLUMN.load), gather(table, index, _COLUMN.load + 1), gather(table, index, _COLUMN.load + 2)
-    fraction = ((a * x + b) * x + c) * x + gather(table, index, _COLUMN.load + 3)
-    first = ((3.0 * a * x + 2.0 * b) * x + c) * float(_INTERVALS)
-    second = (6.0 * a * x + 2.0 * b) * float(_INTERVALS * _INTERVALS)
+    fraction, first, second = _cubic_lanes(profile.table, index, x)
     steep = EXPONENT * fraction + by_depth * first
     # delta dM/d(delta), with (t (1 - t)/2)' = (1 - 2 t)/2 and (1 - 2 t)^2 = 1 - 8 t (1 - t)/2
     t = (index + x) * (1.0 / _INTERVALS)
@@ -202,20 +212,18 @@ def concentrate(stiffness, profile, contacts):
     for block in range(contacts.shape[0]):
         depth = larger(load(contacts, block, CONTACT.penetration) - profile.highest, TINY)
         index, x, by_depth = _place_lanes(depth, profile)
-        table = profile.table
-        rise = gather(table, index, _COLUMN.length + 1)
-        length = gather(table, index, _COLUMN.length) + rise * x
-        a, b, c = gather(table, index, _COLUMN.load), gather(table, index, _COLUMN.load + 1), gather(table, index, _COLUMN.load + 2)
-        fraction = ((a * x + b) * x + c) * x + gather(table, index, _COLUMN.load + 3)
-        steep = EXPONENT * fraction + by_depth * (((3.0 * a * x + 2.0 * b) * x + c) * float(_INTERVALS))
-        d_length = by_depth * rise * float(_INTERVALS) / (stiffness * ninth_root(depth) * depth * steep)
+        fraction, first, _ = _cubic_lanes(profile.table, index, x)
+        length, rises = _line_lanes(profile.table, index, x, _COLUMN.length)
+        part, _ = _line_lanes(profile.table, index, x, _COLUMN.part)
+        gap, _ = _line_lanes(profile.table, index, x, _COLUMN.gap)
+        d_length = by_depth * rises / (stiffness * ninth_root(depth) * depth * (EXPONENT * fraction + by_depth * first))
         whole = load(contacts, block, CONTACT.load)
         store(contacts, block, CONTACT.whole_load, whole)
         store(contacts, block, CONTACT.load, whole / length)
         store(contacts, block, CONTACT.length, length)
         store(contacts, block, CONTACT.d_length, d_length)
-        store(contacts, block, CONTACT.part, gather(table, index, _COLUMN.part) + gather(table, index, _COLUMN.part + 1) * x)
-        store(contacts, block, CONTACT.gap, gather(table, index, _COLUMN.gap) + gather(table, index, _COLUMN.gap + 1) * x)
+        store(contacts, block, CONTACT.part, part)
+        store(contacts, block, CONTACT.gap, gap)
 
 
 @fused

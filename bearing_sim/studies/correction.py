@@ -26,7 +26,7 @@ from bearing_sim.estimation.correction import (
     write_correction,
 )
 from bearing_sim.estimation.response import conditions_at, coordinates, embedded
-from bearing_sim.levels.steady.operating_point import ANSWER, FAR_AHEAD, FAR_BEHIND
+from bearing_sim.levels.steady.operating_point import ANSWER, distant_slip, lag_at
 from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import Quality, obtain_table, solve_points
 from bearing_sim.model.params import Life, pack
@@ -80,7 +80,7 @@ def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> 
             ahead = _way(run, steady[k, ANSWER.lag_ahead])
             found[k] = _answers(_settled(run), life)
             slip = found[k, ANSWER.cage_slip]
-            skidding = Simulation(planar, inputs, start=_slipping(rolling, slip + FAR_BEHIND * (1.0 - slip), with_spins=True))
+            skidding = Simulation(planar, inputs, start=_slipping(rolling, slip + distant_slip(1.0, slip), with_spins=True))
             found[k, ANSWER.lag : ANSWER.lag_ahead + 1] = _lags(steady[k], slip, ahead, _way(skidding, steady[k, ANSWER.lag_behind]))
             if _TELLING <= slip < 0.5:
                 other[k] = _settled(Simulation(planar, inputs, start=_slipping(rolling, _MORE * slip))).slip
@@ -110,10 +110,9 @@ def _way(run: Simulation, lag: float) -> _Way:
         return _Way(math.nan, math.nan, math.nan)
     run.advance(_TAKING_UP * turn)  # play
     first = float(run.advance(turn, samples=_SAMPLES)["cage_slip"].mean())
-    if turns > 1.0:
-        run.advance((turns - 1.0) * turn)
+    run.advance((turns - 1.0) * turn)
     last = float(run.advance(turn, samples=_SAMPLES)["cage_slip"].mean())
-    return _Way(first, last, max(turns, 1.0) * turn)
+    return _Way(first, last, turns * turn)
 
 
 def _lags(steady: np.ndarray, slip: float, ahead: _Way, behind: _Way) -> np.ndarray:
@@ -125,15 +124,11 @@ def _lags(steady: np.ndarray, slip: float, ahead: _Way, behind: _Way) -> np.ndar
     slip : at which level ``planar`` settles.
     ahead, behind : ways from less slip and from more.
     """
-    lag, settled = steady[ANSWER.lag], steady[ANSWER.cage_slip]
     ratios = []
-    for way, distant, reach in (
-        (behind, steady[ANSWER.lag_behind], FAR_BEHIND * (1.0 - settled)),
-        (ahead, steady[ANSWER.lag_ahead], FAR_AHEAD * settled),
-    ):
+    for way, side in ((behind, 1.0), (ahead, -1.0)):
         distance, nearer = abs(0.5 * (way.first + way.last) - slip), abs(way.first - slip) - abs(way.last - slip)
-        expected = lag + (distant - lag) * distance / max(reach, 1e-6)
-        told = distance > _FAR * reach and nearer > _TOLD * distance and expected > 0.0
+        expected = lag_at(side * distance, steady)
+        told = distance > _FAR * distant_slip(side, steady[ANSWER.cage_slip]) and nearer > _TOLD * distance and expected > 0.0
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = np.divide(distance * way.seconds, nearer * expected)
         ratios.append(float(np.clip(ratio, 1.0 / _LARGEST_RATIO, _LARGEST_RATIO)) if told else math.nan)

@@ -137,18 +137,22 @@ def _lands(land, model, own, rate, with_jacobian):
 @fused
 def normal_forces(params, contacts):
     """Write the normal forces of all contacts and their derivatives."""
-    stiffness, damping, profile = params.raceways.stiffness, params.raceways.damping, params.raceways.profile
-    if profile.crowned:
-        for block in range(contacts.shape[0]):
-            penetration, rate = load(contacts, block, CONTACT.penetration), load(contacts, block, CONTACT.rate)
-            force, d_penetration, d_rate = damped_profile_contact(penetration, rate, stiffness, damping, profile)
-            store(contacts, block, CONTACT.load, force)
-            store(contacts, block, CONTACT.stiffness, d_penetration)
-            store(contacts, block, CONTACT.damping, d_rate)
-        return
+    if params.raceways.profile.crowned:
+        _press_blocks(True, params.raceways, contacts)
+    else:
+        _press_blocks(False, params.raceways, contacts)
+
+
+@template
+def _press_blocks(crowned, raceways, contacts):
+    """Write normal forces, see `normal_forces`; ``crowned`` is a constant to the compiler."""
+    stiffness, damping = raceways.stiffness, raceways.damping
     for block in range(contacts.shape[0]):
         penetration, rate = load(contacts, block, CONTACT.penetration), load(contacts, block, CONTACT.rate)
-        force, d_penetration, d_rate = damped_line_contact(penetration, rate, stiffness, damping)
+        if crowned:
+            force, d_penetration, d_rate = damped_profile_contact(penetration, rate, stiffness, damping, raceways.profile)
+        else:
+            force, d_penetration, d_rate = damped_line_contact(penetration, rate, stiffness, damping)
         store(contacts, block, CONTACT.load, force)
         store(contacts, block, CONTACT.stiffness, d_penetration)
         store(contacts, block, CONTACT.damping, d_rate)

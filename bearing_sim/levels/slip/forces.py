@@ -43,10 +43,8 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
     cosine, sine = math.cos(cage_angle), math.sin(cage_angle)
     profile = raceways.profile
     free_at_pitch = profile_depth(rollers.mass * raceways.pitch_radius * cage_speed * cage_speed, raceways.stiffness, profile)
-    by_force = 0.9  # exponent of a penetration by its force
-    if profile.crowned and free_at_pitch > 0.0:
-        force, slope = profile_force(free_at_pitch, raceways.stiffness, profile)
-        by_force = force / (slope * free_at_pitch)
+    force, slope = profile_force(free_at_pitch, raceways.stiffness, profile)
+    by_force = force / (slope * free_at_pitch) if slope > 0.0 else 0.0  # exponent of a penetration by its force
     intervals = raceways.contour.shape[0]
     turns = cage_angle / (2.0 * math.pi)
     start = (turns - math.floor(turns)) * intervals
@@ -71,7 +69,7 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
 def _tractions(cage_speed, shaft_speed, y, model, work):
     """Compute the tangential forces in all contacts; results in ``work.contacts``."""
     rollers, inner_radius = model.params.rollers, model.params.raceways.inner_radius + work.growth[0]
-    contacts, loads, count = work.contacts, work.loads, model.params.rollers.count
+    contacts, loads, count, profile = work.contacts, work.loads, model.params.rollers.count, model.params.raceways.profile
     blocks = contacts.shape[0] // 2
     for j in range(count):
         radius, block, lane = loads[LOAD.radius, j], j // LANES, j % LANES
@@ -83,10 +81,11 @@ def _tractions(cage_speed, shaft_speed, y, model, work):
         contacts[blocks + block, CONTACT.rolling, lane] = 0.5 * (cage_speed * (radius + rollers.radius) + roller_rolling)
         contacts[blocks + block, CONTACT.sliding, lane] = surface - orbital
         contacts[blocks + block, CONTACT.load, lane] = loads[LOAD.outer, j]
-        outer = loads[LOAD.outer_penetration, j]
-        inner = loads[LOAD.squeeze, j] + work.ring[0] * loads[LOAD.cosine, j] + work.ring[1] * loads[LOAD.sine, j] - outer
-        contacts[block, CONTACT.penetration, lane] = inner + model.params.raceways.profile.highest
-        contacts[blocks + block, CONTACT.penetration, lane] = outer + model.params.raceways.profile.highest
+        if profile.crowned:
+            outer = loads[LOAD.outer_penetration, j]
+            inner = loads[LOAD.squeeze, j] + work.ring[0] * loads[LOAD.cosine, j] + work.ring[1] * loads[LOAD.sine, j] - outer
+            contacts[block, CONTACT.penetration, lane] = inner + profile.highest
+            contacts[blocks + block, CONTACT.penetration, lane] = outer + profile.highest
     drag(model.params.raceways, model.lubrication, contacts)
 
 

@@ -397,7 +397,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     traction_along(points[:end], middle, count, model.lubrication.inner, model.lubrication.outer)
     sum_tractions(contacts, points, first_points, count)
     if resistance:
-        resist(contacts, rows.shape[0], model.lubrication.rolling_resistance)
+        resist(contacts, params.slices, model.lubrication.rolling_resistance)
     if params.flanges.load > 0.0:
         press_axially(params, rows, contacts)
     for block in range(rows.shape[0]):

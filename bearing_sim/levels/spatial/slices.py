@@ -53,7 +53,6 @@ def _clear(block, contacts, rows):
     store(contacts, block, SLICED.skewing, 0.0)
     for row in range(SLICED.stiffness, rows):
         store(contacts, block, row, 0.0)
-    store(contacts, block, SLICED.part, 1.0)
 
 
 @fused
@@ -138,12 +137,8 @@ def _place_on_loaded_part(block, contacts, slices, points, first):
     """Write the points of a quadrature on the part that bears; parameters as of `place_points`."""
     left, right = _loaded_part(load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.lean) * slices.half_length, slices)
     middle, half = 0.5 * (left + right), 0.5 * (right - left)
-    before, behind = 0.5 * (left - 1.0), 0.5 * (right + 1.0)  # middles of the parts that do not bear
-    depth, slope = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.lean) * slices.half_length
-    off = (1.0 + left) * (_drop(before, slices) - depth - slope * before) + (1.0 - right) * (_drop(behind, slices) - depth - slope * behind)
-    beside = 1.0 - half
-    store(contacts, block, SLICED.part, larger(half, _LEAST_PART))
-    store(contacts, block, SLICED.gap, where_positive(beside - _LEAST_PART, larger(off, 0.0) / (2.0 * larger(beside, _LEAST_PART)), 0.0))
+    store(contacts, block, SLICED.left, left)
+    store(contacts, block, SLICED.right, right)
     for k in range(slices.abscissae.shape[0]):
         place = middle + half * slices.abscissae[k]
         store(points, first + k, POSITION, place * slices.half_length)
@@ -157,7 +152,7 @@ def place_points(block, contacts, slices, points, first):
 
     Parameters
     ----------
-    contacts : rows `SLICED`; penetration and lean go in, and the part that bears and the gap beside it come out.
+    contacts : rows `SLICED`; penetration and lean go in, ends of the part that bears come out.
     slices : `bearing_sim.model.params.Slices`.
     points : rows `bearing_sim.physics.contact.CONTACT` and, behind them, those of `bearing_sim.levels.spatial.state`; takes position, fraction of
         the roller's length and drop of the profile.
@@ -166,19 +161,10 @@ def place_points(block, contacts, slices, points, first):
     if slices.profile != SLICED_EQUALLY:
         _place_on_loaded_part(block, contacts, slices, points, first)
         return
-    count = slices.positions.shape[0]
-    depth, lean = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.lean)
-    bears, off = spread(0.0), spread(0.0)
-    for k in range(count):
+    for k in range(slices.positions.shape[0]):
         store(points, first + k, POSITION, slices.positions[k])
-        store(points, first + k, FRACTION, 1.0 / count)
+        store(points, first + k, FRACTION, 1.0 / slices.positions.shape[0])
         store(points, first + k, DROP, slices.crown[k])
-        there = depth + lean * slices.positions[k] - slices.crown[k]
-        pressed = larger(there, 0.0)
-        bears += smaller(pressed * (1.0 / _SOFT_EDGE), 1.0)
-        off += pressed - there
-    store(contacts, block, SLICED.part, larger(bears * (1.0 / count), _LEAST_PART))
-    store(contacts, block, SLICED.gap, off / larger(count - bears, 1.0))
 
 
 @template
@@ -311,20 +297,45 @@ def sum_tractions(contacts, points, first_points, count):
         store(contacts, block, SLICED.d_rolling + 1, u_1)
 
 
+@fused
+def _find_part(block, contacts, slices):
+    """Write which part of the rollers of a block of contacts bears, and the gap beside it."""
+    depth, lean = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.lean)
+    off = spread(0.0)
+    if slices.profile == SLICED_EQUALLY:
+        count, bears = slices.positions.shape[0], spread(0.0)
+        for k in range(count):
+            there = depth + lean * slices.positions[k] - slices.crown[k]
+            pressed = larger(there, 0.0)
+            bears += smaller(pressed * (1.0 / _SOFT_EDGE), 1.0)
+            off += pressed - there
+        store(contacts, block, SLICED.part, larger(bears * (1.0 / count), _LEAST_PART))
+        store(contacts, block, SLICED.gap, off / larger(count - bears, 1.0))
+        return
+    left, right, slope = load(contacts, block, SLICED.left), load(contacts, block, SLICED.right), lean * slices.half_length
+    before, behind = 0.5 * (left - 1.0), 0.5 * (right + 1.0)  # middles of the parts that do not bear
+    off += (1.0 + left) * (_drop(before, slices) - depth - slope * before) + (1.0 - right) * (_drop(behind, slices) - depth - slope * behind)
+    part = 0.5 * (right - left)
+    beside = 1.0 - part
+    store(contacts, block, SLICED.part, larger(part, _LEAST_PART))
+    store(contacts, block, SLICED.gap, where_positive(beside - _LEAST_PART, larger(off, 0.0) / (2.0 * larger(beside, _LEAST_PART)), 0.0))
+
+
 @kernel
-def resist(contacts, middle, resistance):
-    """Write resistances to rolling of all contacts and their derivatives; their loads, and on which part they bear, have been written.
+def resist(contacts, slices, resistance):
+    """Write resistances to rolling of all contacts and their derivatives; they have been pressed on their points.
 
     A contact resists on all its length, with what the film beside the part that bears adds (`bearing_sim.physics.film`), so evenly that its moment is
     left out.
 
     Parameters
     ----------
-    contacts : rows `SLICED`.
-    middle : block where the contacts with the outer raceway begin.
+    contacts, slices : as of `place_points`.
     resistance : `bearing_sim.physics.film.RollingResistance`.
     """
-    resist_rolling_by_rows(SLICED, contacts, middle, True, resistance)
+    for block in range(contacts.shape[0]):
+        _find_part(block, contacts, slices)
+    resist_rolling_by_rows(SLICED, contacts, contacts.shape[0] // 2, True, resistance)
     for block in range(contacts.shape[0]):
         d_load = load(contacts, block, SLICED.resistance_d_load)
         k_0, k_1 = d_load * load(contacts, block, SLICED.stiffness), d_load * load(contacts, block, SLICED.stiffness + 1)

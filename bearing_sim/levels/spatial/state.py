@@ -41,7 +41,7 @@ _FACTORED = BELOW + BORDER * SPEEDS
 # roller's length that it stands for, and the drop of the profile there [m]
 D_DEPTH, D_RATE, POSITION, FRACTION, DROP = range(len(CONTACT), len(CONTACT) + 5)
 POINT_ROWS = len(CONTACT) + 5
-SLICED_ROWS = 42
+SLICED_ROWS = 44
 RING_Y, RING_Z, RING_TILT_Y, RING_TILT_Z, CAGE_Y, CAGE_Z, CAGE_TILT_Y, CAGE_TILT_Z, THETA = range(BORDER)
 OMEGA = BORDER + THETA
 ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the nine
@@ -100,12 +100,14 @@ class SlicedRow(NamedTuple):
     of_skewing: int = 22  # derivatives of its moment by the same
     d_sliding: int = 27  # sums of dT/d(du) times 1, x and x^2
     d_rolling: int = 30  # of dT/du times 1 and x
-    part: int = 32  # fraction of the length that bears
-    gap: int = 33  # beside it [m]
-    resistance: int = 34  # from here on written only where contacts resist rolling: F_R [N]
-    resistance_d_rolling: int = 35  # dF_R/du [N s/m]
-    resistance_d_load: int = 36  # dF_R/dQ
-    of_resistance: int = 37  # derivatives by penetration and lean, three rows on by their rates
+    left: int = 32  # ends of the part that bears, from -1 to 1, where points are those of a quadrature
+    right: int = 33
+    part: int = 34  # from here on written only where contacts resist rolling: fraction of the length that bears
+    gap: int = 35  # beside it [m]
+    resistance: int = 36  # F_R [N]
+    resistance_d_rolling: int = 37  # dF_R/du [N s/m]
+    resistance_d_load: int = 38  # dF_R/dQ
+    of_resistance: int = 39  # derivatives by penetration and lean, three rows on by their rates
 
 
 SLICED = SlicedRow()

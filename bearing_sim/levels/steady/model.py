@@ -25,10 +25,9 @@ from bearing_sim.levels.steady.operating_point import (
     ANSWER,
     CREEP,
     FAILED,
-    FAR_AHEAD,
-    FAR_BEHIND,
     March,
     Orbit,
+    lag_at,
     march,
     new_march,
     new_orbit,
@@ -46,8 +45,6 @@ from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs
 
 _EVEN = 0.02  # of the lag; where it changes by less with the distance, one step follows exactly
 _PIECES = 4  # of an interval in which it changes by more
-_SHORTEST = 0.25  # of the lags near and far; none is shorter
-_NEAR = 1e-3  # of ideal speed; within it there is one lag
 _FIRST_LOSS = COLUMN.shaft_power + 1  # the losses by cause stand behind the power of the shaft
 
 
@@ -198,21 +195,6 @@ def _follow_evenly(before, after, lag, duration, y):
     y[OMEGA] = after - rise * lag + away * (1.0 - gone)
 
 
-@template
-def _lag_at(behind, ideal, answer):
-    """Return the time constant [s] of a cage that is slower than it settles at by a speed ``behind``, or faster where that is negative [rad/s].
-
-    It changes linearly with the distance, through what is known near the settled speed and far from it: so does that of a body that a limited torque
-    brings back.
-    """
-    lag, slip = answer[ANSWER.lag], answer[ANSWER.cage_slip]
-    distant = answer[ANSWER.lag_behind] if behind > 0.0 else answer[ANSWER.lag_ahead]
-    reach = (FAR_BEHIND * (1.0 - slip) if behind > 0.0 else FAR_AHEAD * slip) * ideal
-    if not distant > 0.0 or not reach > _NEAR * ideal:
-        return lag
-    return max(lag + (distant - lag) * abs(behind) / reach, _SHORTEST * min(lag, distant))
-
-
 @kernel
 def _follow(before, after, shaft_speed, model, answer, duration, y):
     """Let the cage follow a speed that changes linearly; an unknown lag (NaN) counts as 0.
@@ -231,8 +213,8 @@ def _follow(before, after, shaft_speed, model, answer, duration, y):
         y[THETA] += 0.5 * (before + after) * duration
         y[OMEGA] = after
         return
-    ideal, sense = 0.5 * abs(shaft_speed) * (1.0 - model.params.raceways.diameter_ratio), 1.0 if shaft_speed >= 0.0 else -1.0
-    first, last = _lag_at(sense * (before - y[OMEGA]), ideal, answer), _lag_at(sense * (after - y[OMEGA]), ideal, answer)
+    per_slip = 2.0 / (shaft_speed * (1.0 - model.params.raceways.diameter_ratio))  # of the ideal cage speed, with its sign
+    first, last = lag_at(per_slip * (before - y[OMEGA]), answer), lag_at(per_slip * (after - y[OMEGA]), answer)
     if max(abs(first - lag), abs(last - lag)) <= _EVEN * lag:
         _follow_evenly(before, after, lag, duration, y)
         return
@@ -240,10 +222,10 @@ def _follow(before, after, shaft_speed, model, answer, duration, y):
     for k in range(_PIECES):
         towards = before + (after - before) * (k + 1) / _PIECES
         angle, speed = y[THETA], y[OMEGA]
-        _follow_evenly(settled, towards, _lag_at(sense * (settled - speed), ideal, answer), piece, y)
+        _follow_evenly(settled, towards, lag_at(per_slip * (settled - speed), answer), piece, y)
         halfway = 0.5 * (settled - speed + towards - y[OMEGA])
         y[THETA], y[OMEGA] = angle, speed
-        _follow_evenly(settled, towards, _lag_at(sense * halfway, ideal, answer), piece, y)
+        _follow_evenly(settled, towards, lag_at(per_slip * halfway, answer), piece, y)
         settled = towards
 
 

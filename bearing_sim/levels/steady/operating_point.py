@@ -36,7 +36,7 @@ from bearing_sim.levels.slip.model import rhs, rhs_and_jacobian
 from bearing_sim.levels.slip.power import inertia_of_orbits, kinetic_power, slip_powers
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS, flat, new_block
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.linear_algebra import ALPHA_0, ARROW, STEPS, backward_difference, solve_cyclic
 from bearing_sim.numerics.time_stepping import CONTROL, OK, STEP_BUDGET, Memory, new_counts, new_memory
 from bearing_sim.physics.load_balance import LOAD
@@ -58,7 +58,7 @@ REASONS = {
 }
 _ITERATIONS = 15
 _CAREFUL_ITERATIONS = 150
-_NEXT_TO_BALANCE = 0.1  # of the drive at the slip before; a smaller one may have the wrong sign
+_STUCK, _NEXT_TO_BALANCE = 1e-3, 0.1  # of a bracket, and of the drive at its other end, below which that at an end may have the wrong sign
 _ROUGH, _FINE = 1e-3, 1e-5  # of the spin of rolling
 _SLIP_TOLERANCE = 1e-5
 _LARGEST_LEAD = 0.1  # negative slip; a cage that seems to be driven beyond has spins that were not resolved
@@ -246,6 +246,7 @@ _SLIPS = np.array([0.0, 1e-3, 4e-3, 0.012, 0.03, 0.06, 0.1, 0.15, 0.2, 0.26, 0.3
 
 FAR_BEHIND = 0.3  # of the cage's settled speed
 FAR_AHEAD = 0.7  # of its slip
+_NEAR, _SHORTEST = 1e-3, 0.25  # slip within which there is one lag; of the lags near and far, none is shorter
 _SLIPS_AT_ALL = 0.02  # slip from which a cage may be ahead by so much that it matters
 
 
@@ -310,29 +311,17 @@ def _mean_drive(speed, sense, model, work, orbit, tolerance):
 
 @kernel
 def _bracket(ideal, sense, model, work, orbit):
-    """Go from ideal rolling to where the mean torque changes its sign; return (slip before, drive there, slip after, drive there).
-
-    The way there asks for spins to a thousandth only, by which a sign next to a balance may be wrong: both ends are evaluated again.  Only a drive
-    that is small there counts as such: where spins stick and slip within a pitch drives scatter, and no sign is more right than another.
-    """
+    """Go from ideal rolling to where the mean torque changes its sign; return (slip before, drive there, slip after, drive there)."""
     before, drive_before = 0.0, _mean_drive(ideal, sense, model, work, orbit, _ROUGH)
     farthest = _FLANGED_LEAD if model.params.flanges.inner.area > 0.0 else _LARGEST_LEAD
     away = 1.0 if drive_before < 0.0 else -1.0  # most cages lag, those of slow bearings lead by next to nothing
-    nearer, drive_nearer = before, drive_before
     for i in range(1, _SLIPS.shape[0]):
         slip = away * _SLIPS[i]
         drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, _ROUGH)
         if not math.isfinite(drive + drive_before) or slip < -farthest:
             return math.nan, math.nan, math.nan, math.nan
         if drive * away >= 0.0:
-            exact = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, orbit.tolerances[1])
-            if exact * away >= 0.0 or not abs(exact) < _NEXT_TO_BALANCE * abs(drive_before):
-                exact = _mean_drive(ideal * (1.0 - before), sense, model, work, orbit, orbit.tolerances[1])
-                if exact * away < 0.0 or i == 1 or not abs(exact) < _NEXT_TO_BALANCE * abs(drive_nearer):
-                    return before, drive_before, slip, drive
-                return nearer, drive_nearer, before, exact
-            drive = exact
-        nearer, drive_nearer = before, drive_before
+            return before, drive_before, slip, drive
         before, drive_before = slip, drive
     return before, drive_before, math.inf, 0.0
 
@@ -353,6 +342,31 @@ def _narrow(low, drive_low, high, drive_high, ideal, sense, model, work, orbit):
         else:
             low, drive_low = high, drive_high
         high, drive_high = slip, drive
+    return slip
+
+
+@kernel
+def _beyond_an_end(slip, low, drive_low, high, drive_high, ideal, sense, model, work, orbit):
+    """Return the slip of the balance where the search for it has stuck at an end of its bracket, else the same slip.
+
+    Brackets ask for spins to a thousandth only, so that a drive next to a balance may have the wrong sign there, and the balance is on the other side
+    of that end.  Only a drive that was small and still is counts as such: where spins stick and slip within a pitch drives scatter.
+
+    Parameters
+    ----------
+    slip : found by `_narrow`.
+    low, drive_low, high, drive_high : as of `_bracket`.
+    """
+    for i in range(1, _SLIPS.shape[0] - 1):
+        end, outwards = math.copysign(_SLIPS[i], high), 1 if abs(high) == _SLIPS[i] else -1
+        if (end != low and end != high) or abs(slip - end) > _STUCK * abs(high - low):
+            continue
+        beyond = math.copysign(_SLIPS[i + outwards], high)
+        drive_beyond = _mean_drive(ideal * (1.0 - beyond), sense, model, work, orbit, orbit.tolerances[1])
+        drive_end = _mean_drive(ideal * (1.0 - end), sense, model, work, orbit, orbit.tolerances[1])
+        roughly = drive_high if end == high else drive_low
+        if drive_end * drive_beyond < 0.0 and max(abs(drive_end), abs(roughly)) < _NEXT_TO_BALANCE * abs(drive_beyond):
+            return _narrow(beyond, drive_beyond, end, drive_end, ideal, sense, model, work, orbit)
     return slip
 
 
@@ -401,6 +415,39 @@ def _distant_lag(slip, distant, lag, ideal, sense, model, work, orbit):
     return found if math.isfinite(found) and found > 0.0 else lag
 
 
+@template
+def _go_back(speed, orbit):
+    """Let the orbit hold the spins in ``found`` again, which belong to a cage speed."""
+    orbit.speed[0] = speed
+    for m in range(orbit.spins.shape[0]):
+        orbit.spins[m] = orbit.found[m]
+
+
+@template
+def distant_slip(behind, slip):
+    """Return how far from the settled ``slip`` a distant lag is known, in slip; ``behind`` is positive for slower cages, else they are ahead."""
+    return FAR_BEHIND * (1.0 - slip) if behind > 0.0 else FAR_AHEAD * slip
+
+
+@kernel
+def lag_at(behind, answer):
+    """Return the time constant [s] of a cage that slips by ``behind`` more than it settles at, less where that is negative.
+
+    It changes linearly with the distance, through what is known near the settled speed and far from it: so does that of a body that a limited
+    torque brings back.
+
+    Parameters
+    ----------
+    behind : in slip.
+    answer : columns `ANSWER`.
+    """
+    lag, reach = answer[ANSWER.lag], distant_slip(behind, answer[ANSWER.cage_slip])
+    distant = answer[ANSWER.lag_behind] if behind > 0.0 else answer[ANSWER.lag_ahead]
+    if not distant > 0.0 or not reach > _NEAR:
+        return lag
+    return max(lag + (distant - lag) * abs(behind) / reach, _SHORTEST * min(lag, distant))
+
+
 @kernel
 def _write_lags(slip, ideal, sense, model, work, orbit, answer):
     """Write the lags of an operating point, NaN where the cage leads away from it; ``orbit`` holds its spins, and does so afterwards."""
@@ -412,15 +459,11 @@ def _write_lags(slip, ideal, sense, model, work, orbit, answer):
     speed = orbit.speed[0]
     for m in range(orbit.spins.shape[0]):
         orbit.found[m] = orbit.spins[m]
-    answer[ANSWER.lag_behind] = _distant_lag(slip, slip + FAR_BEHIND * (1.0 - slip), lag, ideal, sense, model, work, orbit)
+    answer[ANSWER.lag_behind] = _distant_lag(slip, slip + distant_slip(1.0, slip), lag, ideal, sense, model, work, orbit)
+    _go_back(speed, orbit)
     if slip > _SLIPS_AT_ALL:
-        orbit.speed[0] = speed
-        for m in range(orbit.spins.shape[0]):
-            orbit.spins[m] = orbit.found[m]
-        answer[ANSWER.lag_ahead] = _distant_lag(slip, (1.0 - FAR_AHEAD) * slip, lag, ideal, sense, model, work, orbit)
-    orbit.speed[0] = speed
-    for m in range(orbit.spins.shape[0]):
-        orbit.spins[m] = orbit.found[m]
+        answer[ANSWER.lag_ahead] = _distant_lag(slip, slip - distant_slip(-1.0, slip), lag, ideal, sense, model, work, orbit)
+        _go_back(speed, orbit)
 
 
 @kernel
@@ -474,7 +517,9 @@ def solve_point(model, work, orbit, answer):
     if math.isinf(beyond):
         status = STOPPED
     elif math.isfinite(slip):
-        slip = _narrow(slip, drive, beyond, drive_beyond, ideal, sense, model, work, orbit)
+        low, high = slip, beyond
+        slip = _narrow(low, drive, high, drive_beyond, ideal, sense, model, work, orbit)
+        slip = _beyond_an_end(slip, low, drive, high, drive_beyond, ideal, sense, model, work, orbit)
     if not math.isfinite(slip):
         return FAILED
     _write_lags(slip, ideal, sense, model, work, orbit, answer)
