@@ -21,7 +21,7 @@ from bearing_sim.estimation.correction import (
 )
 from bearing_sim.estimation.response import Domain, conditions_at
 from bearing_sim.levels.steady import table_builder
-from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CAGE_SLIPS
 from bearing_sim.levels.steady.table_builder import look_up
 from bearing_sim.model.table_span import span_of
 from bearing_sim.scene.loader import load_scene
@@ -30,7 +30,6 @@ from bearing_sim.studies import correction as studied
 from bearing_sim.sweep.point import run_until_settled
 
 DOMAIN = Domain((100.0, 5000.0), (10.0, 5000.0), (330.0, 430.0), 2.0 * math.pi / 3.0, 0.0)
-LAGS = slice(ANSWER.lag, ANSWER.lag_ahead + 1)
 FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)
 POWERS = slice(ANSWER.shaft_power, len(ANSWER))
 
@@ -91,32 +90,48 @@ def test_answers_that_do_not_exist_stay_so(made):
     assert np.isnan(found[1]).all() and np.isfinite(found[0]).all()
 
 
-def test_lags_are_corrected_by_their_ratios_and_that_of_a_cage_that_stands_stays_unknown():
+def test_lag_and_accelerations_are_corrected_and_those_of_a_cage_that_stands_stay_unknown():
     conditions = at_random(64)
     steady, planar = made_up(conditions)
-    steady[:, LAGS] = [0.02, 0.3, 0.1]
-    planar[:, LAGS] = [0.02, 0.45, 0.1]
-    steady[5, LAGS] = planar[5, LAGS] = math.nan
+    for each, drag, lag in ((steady, 0.0, 0.1), (planar, 20.0, 0.15)):
+        each[:, ANSWER.lag] = lag
+        each[:, ACCELERATIONS] = conditions[:, [1]] * (CAGE_SLIPS - 0.1) - drag
+    steady[5, ANSWER.lag : ACCELERATIONS.stop] = planar[5, ANSWER.lag : ACCELERATIONS.stop] = math.nan
     found = fit_correction(DOMAIN, conditions, steady, planar).applied(conditions, steady)
     told = np.arange(64) != 5
-    assert found[told, ANSWER.lag_behind] == pytest.approx(0.45, rel=0.1) and found[told, ANSWER.lag] == pytest.approx(0.02, rel=1e-6)
-    assert np.isnan(found[5, LAGS]).all() and np.isfinite(found[5, ANSWER.cage_slip])
+    assert found[told, ANSWER.lag] == pytest.approx(0.15, rel=0.05)
+    usual = np.sqrt(np.mean(np.square(steady[told, ACCELERATIONS]), axis=1))
+    assert (np.abs(found - planar)[told, ACCELERATIONS].max(axis=1) < 0.1 * (20.0 + usual)).all()
+    assert np.isnan(found[5, ANSWER.lag : ACCELERATIONS.stop]).all() and np.isfinite(found[5, ANSWER.cage_slip])
 
 
-def test_lags_are_measured_from_the_ways_of_cages():
-    """Ways made up by the law that level steady has, with lags half as long again."""
+def test_accelerations_and_lag_are_measured_on_the_ways_of_cages():
+    """Ways of a cage that more drag brakes than level steady knows, and that its spins drive less."""
+    turn, slip = 0.1, 0.25
     steady = np.full(len(ANSWER), math.nan)
-    steady[[ANSWER.cage_slip, ANSWER.lag, ANSWER.lag_behind, ANSWER.lag_ahead]] = 0.2, 0.1, 0.5, 0.3
-    slip, ratio, ways = 0.25, 1.5, []
-    for start, distant, reach in ((0.45, 0.5, 0.24), (0.02, 0.3, 0.14)):
-        away, first = start - slip, start
-        for _ in range(2000):
-            away -= away / (ratio * (0.1 + (distant - 0.1) * abs(away) / reach)) * 1e-4
-        ways.append(studied._Way(first, slip + away, 0.2))
-    assert studied._lags(steady, slip, ways[1], ways[0]) == pytest.approx([0.15, 0.75, 0.45], rel=0.1)
-    unknown = studied._Way(math.nan, math.nan, math.nan)
-    assert studied._lags(steady, slip, unknown, unknown) == pytest.approx([0.1, 0.5, 0.3])
-    assert studied._lags(steady, slip, unknown, ways[0]) == pytest.approx([0.15, 0.75, 0.45], rel=0.1)
+    steady[[ANSWER.cage_slip, ANSWER.lag, ANSWER.spin_inertia, ANSWER.spin_delay]] = 0.2, 0.5, 1.4, 0.05
+    steady[ACCELERATIONS] = 100.0 * (CAGE_SLIPS - 0.2)
+    planar, ideal, ways = 80.0 * (CAGE_SLIPS - slip), 2.0 * math.pi / turn, []
+    for start in (0.05, 0.6):
+        slips = [start]
+        for _ in range(160):
+            slips.append(slips[-1] - float(np.interp(slips[-1], CAGE_SLIPS, planar)) / ideal * turn / 4.0)
+        ways.append(np.array(slips))
+    found = dict(zip(ANSWER._fields[1:], studied._way_to_balance(steady, slip, tuple(ways), turn)))
+    accelerations = np.array(list(found.values()))[3:]
+    passed = (CAGE_SLIPS > 0.05) & (CAGE_SLIPS < 0.6)
+    np.testing.assert_allclose(accelerations[passed], planar[passed], atol=0.5)
+    # beyond, they differ as at the farthest slip that was passed
+    np.testing.assert_allclose(
+        accelerations[[0, 1, 2, -1]], steady[ACCELERATIONS][[0, 1, 2, -1]] + (planar - steady[ACCELERATIONS])[[3, 3, 3, -2]], atol=0.5
+    )
+    assert (found["spin_inertia"], found["spin_delay"]) == (1.4, 0.05)
+    assert found["lag"] == pytest.approx(ideal / 80.0, rel=0.1)
+    quick = steady.copy()
+    quick[ANSWER.lag] = 0.5 * turn
+    assert studied._way_to_balance(quick, slip, tuple(ways), turn)[0] == 0.5 * turn  # back before it could be measured
+    at_rest = (np.full(20, slip), np.full(20, slip))
+    np.testing.assert_array_equal(studied._way_to_balance(steady, slip, at_rest, turn), steady[ANSWER.lag : ACCELERATIONS.stop])
 
 
 def test_beyond_its_points_a_correction_is_bounded_by_the_largest_that_was_found(made):

@@ -5,10 +5,11 @@ Rollers with play press on their pockets several times harder than rollers that 
 passing rollers shake the inner ring.  Level ``planar`` computes all that; its settled means cost a tenth of a second of a core a point.  Here the
 difference to level ``steady`` is a spline over the operating points, as smooth as the points that are left out of it ask for:
 
-    s(S') = s(S) + c_S,    P'_n = P_n exp(c_n),    W'_k = W_k + c_k W_shaft,    tau'_m = tau_m exp(c_m),
+    s(S') = s(S) + c_S,    P'_n = P_n exp(c_n),    W'_k = W_k + c_k W_shaft,    tau' = tau exp(c_tau),    a'_m = a_m + c_m a,
 
 S slip, s the scale of `bearing_sim.estimation.response.slip_scale`, P_n the equivalent loads of both rings, whole and by laminae, and the factor
-that oil gives to life, W_k powers by cause, W_shaft that of the shaft, tau_m the cage's lags.  No c exceeds what was found at any of the points.
+that oil gives to life, W_k powers by cause, W_shaft that of the shaft, tau the cage's lag, a_m its accelerations, a their root mean square.  No c
+exceeds what was found at any of the points.
 Such corrections of a fast model by a few runs of an accurate one are known as multi-fidelity models (M. C. Kennedy and A. O'Hagan, Biometrika 87
 (2000) 1).
 
@@ -29,20 +30,19 @@ from bearing_sim.estimation.response import CONDITIONS, Domain, coordinates, dom
 from bearing_sim.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
 from bearing_sim.files.kept_arrays import read_arrays, write_arrays
 from bearing_sim.files.limits import RESPONSE_FILE
-from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER
 from bearing_sim.levels.steady.table_builder import FOLDER
 from bearing_sim.model.validity import BY_NAME
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.heat import NoHeat
 from bearing_sim.scene.scene import Scene
 
-VERSION = 4  # of the files, and of how points are chosen
+VERSION = 5  # of the files, and of how points are chosen
 LIFE_EXPONENT = 4.0
 """A life falls with this power of the equivalent loads: 4.5 times 8/9 (`bearing_sim.physics.rating_life.rating_life_revolutions`)."""
 STATES_APART = 0.01 * BY_NAME["table_states"].high
 """Slips of two states differ by more."""
 _SLOWEST = 0.1  # of the largest speed; slower points are corrected as these
-_LAGS = slice(ANSWER.lag, ANSWER.lag_ahead + 1)
 _FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)
 _POWERS = slice(ANSWER.shaft_power, len(ANSWER))
 _LEAST_POWER = 1e-9  # W; of a shaft that puts in less no share is taken
@@ -62,8 +62,8 @@ class Correction(NamedTuple):
     domain : operating points that it is for; slower and lighter ones are corrected as the slowest and lightest.
     conditions : operating points that were measured, columns `bearing_sim.estimation.response.CONDITIONS`, shape (k, 4).
     metrics : by which coordinates are multiplied before distances count, for slip and powers, and for loads; shape (2, c, c).
-    weights : of `bearing_sim.estimation.splines.spline_functions`, columns `ANSWER`, shape (k + c + 1, 21).
-    changes : what was found at the points, columns `ANSWER` on the scales of the module, shape (k, 21).
+    weights : of `bearing_sim.estimation.splines.spline_functions`, columns `ANSWER`, shape (k + c + 1, len(ANSWER)).
+    changes : what was found at the points, columns `ANSWER` on the scales of the module, shape (k, len(ANSWER)).
     errors : at each point where it is left out: of slip [1] and of life, relative; shape (k, 2).
     two_states : conditions at which level ``planar`` has two states, and the slip of each, from ideal rolling first; shape (m, 6).
     failed : points that have no answer at one of the levels.
@@ -101,7 +101,7 @@ class Correction(NamedTuple):
         Parameters
         ----------
         conditions : columns `bearing_sim.estimation.response.CONDITIONS`, further ones count for nothing, shape (n, 4 or more).
-        answers : columns `bearing_sim.levels.steady.operating_point.ANSWER`, shape (n, 21).
+        answers : columns `bearing_sim.levels.steady.operating_point.ANSWER`, shape (n, len(ANSWER)).
 
         Returns
         -------
@@ -135,26 +135,39 @@ class Correction(NamedTuple):
 
 
 def changed(answers: np.ndarray, changes: np.ndarray) -> np.ndarray:
-    """Return answers changed by what a correction adds, on its scales; columns `ANSWER`, shapes (n, 21)."""
+    """Return answers changed by what a correction adds, on its scales; columns `ANSWER`, shapes (n, len(ANSWER))."""
     found = answers.copy()
     found[:, ANSWER.cage_slip] = restored_slip(slip_scale(answers[:, ANSWER.cage_slip]) + changes[:, ANSWER.cage_slip])
-    found[:, _LAGS] *= np.exp(changes[:, _LAGS])
+    found[:, ANSWER.lag] *= np.exp(changes[:, ANSWER.lag])
+    found[:, ACCELERATIONS] += changes[:, ACCELERATIONS] * _usual_acceleration(answers)
     found[:, _FACTORS] *= np.exp(changes[:, _FACTORS])
     found[:, _POWERS] += changes[:, _POWERS] * answers[:, [ANSWER.shaft_power]]
     return found
 
 
 def changes_between(answers: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Return what makes answers of level ``steady`` those of another level, the inverse of `changed`; columns `ANSWER`, shapes (n, 21)."""
+    """Return what makes answers of level ``steady`` those of another level, the inverse of `changed`; columns `ANSWER`, shapes (n, len(ANSWER))."""
     found = np.zeros_like(answers)
     found[:, ANSWER.cage_slip] = slip_scale(others[:, ANSWER.cage_slip]) - slip_scale(answers[:, ANSWER.cage_slip])
     with np.errstate(divide="ignore", invalid="ignore"):
-        lags = np.log(others[:, _LAGS] / answers[:, _LAGS])
-        found[:, _LAGS] = np.where(np.isfinite(lags), lags, 0.0)  # that of a stopped cage is not known
+        # what is not known, such as the lag of a stopped cage, does not change
+        found[:, ANSWER.lag] = _known(np.log(others[:, ANSWER.lag] / answers[:, ANSWER.lag]))
+        found[:, ACCELERATIONS] = _known((others - answers)[:, ACCELERATIONS] / _usual_acceleration(answers))
         found[:, _FACTORS] = np.log(others[:, _FACTORS] / answers[:, _FACTORS])
         shaft = answers[:, [ANSWER.shaft_power]]
         found[:, _POWERS] = np.where(np.abs(shaft) > _LEAST_POWER, (others - answers)[:, _POWERS] / shaft, 0.0)
     return np.where(answers == others, 0.0, found)  # no load at both: no change
+
+
+def _known(changes):
+    return np.where(np.isfinite(changes), changes, 0.0)
+
+
+def _usual_acceleration(answers):
+    """Return the root mean square of each answer's accelerations that are known, shape (n, 1)."""
+    known = np.isfinite(answers[:, ACCELERATIONS])
+    squares = np.where(known, answers[:, ACCELERATIONS], 0.0) ** 2
+    return np.sqrt(squares.sum(axis=1, keepdims=True) / np.maximum(known.sum(axis=1, keepdims=True), 1))
 
 
 def fit_correction(domain: Domain, conditions: np.ndarray, answers: np.ndarray, others: np.ndarray, seconds: float = 0.0) -> Correction:
@@ -164,8 +177,8 @@ def fit_correction(domain: Domain, conditions: np.ndarray, answers: np.ndarray, 
     ----------
     domain : of the scene.
     conditions : columns `bearing_sim.estimation.response.CONDITIONS`, shape (k, 4).
-    answers, others : of level ``steady``, and of ``planar`` from ideal rolling; columns `ANSWER`, shape (k, 21); points where one of them has NaN
-        are left out.
+    answers, others : of level ``steady``, and of ``planar`` from ideal rolling; columns `ANSWER`, shape (k, len(ANSWER)); points where one of them
+        has no answer are left out.
     seconds : that the points took.
 
     Raises

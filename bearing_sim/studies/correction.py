@@ -9,7 +9,6 @@ import math
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import qmc
@@ -26,7 +25,7 @@ from bearing_sim.estimation.correction import (
     write_correction,
 )
 from bearing_sim.estimation.response import conditions_at, coordinates, embedded
-from bearing_sim.levels.steady.operating_point import ANSWER, distant_slip, lag_at
+from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CAGE_SLIPS
 from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import Quality, obtain_table, solve_points
 from bearing_sim.model.params import Life, pack
@@ -47,11 +46,12 @@ _PURSUED = 10.0  # times the goals; larger errors, such as at a jump from one st
 _SHORTEST, _LONGEST = 24.0, 120.0  # turns of an ideal cage; cages that skid under little load wander and never rest, their means count
 _TELLING = 0.02  # slip from which on another state is looked for
 _MORE = 2.0  # times the slip found, at which the search for another state begins
-_SHORTEST_WAY, _LONGEST_WAY = 1.0, 8.0  # turns; a shorter way is over before it can be measured
-_TAKING_UP = 1.5  # turns, in which rollers take up the play of their pockets, and spins follow
-_SAMPLES = 30  # of a turn
-_FAR, _TOLD = 0.2, 0.02  # of a far distance, at which a cage has to be at least, and of its distance, by which it has to come nearer
-_LARGEST_RATIO = 4.0  # of a lag to that of level steady, more is not believed
+_FAR_BEHIND = 0.9  # slip at which a cage begins its way back
+_QUARTER, _LONGEST_WAY, _AT_REST = 0.25, 30.0, 1e-3  # of a turn, over which slip is averaged on a way; turns; change of slip in a turn
+_SAMPLES_OF_A_QUARTER = 8
+_ON_THE_WAY, _ON_THE_WAY_BACK = 2, 10  # quarters after which spins have followed a cage that began in ideal rolling, and one that began skidding
+_TOLD, _WIDEST = 0.02, 4  # change of slip that tells an acceleration, and quarters each way within which it is looked for
+_LEAST_LAG = 1.0  # turns; a cage that comes back sooner is back before its acceleration shows
 _MEANS = tuple(name for name in ANSWER._fields if name in {each.name for each in OBSERVABLES})
 _LOADS = ("inner_equivalent_load", "outer_equivalent_load", "inner_lamina_load", "outer_lamina_load")
 
@@ -66,8 +66,8 @@ def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> 
 
     Returns
     -------
-    ``steady``, ``planar`` : columns `bearing_sim.levels.steady.operating_point.ANSWER`, NaN where there is no answer.  Lags of ``planar`` are those
-        of ``steady`` where the cage's way was too short to tell.
+    ``steady``, ``planar`` : columns `bearing_sim.levels.steady.operating_point.ANSWER`, NaN where there is no answer.  How the
+        cage goes to its speed is as of ``steady`` where its way was too short to tell.
     ``other_slip`` : in which ``planar`` settles from more slip; NaN where that was not tried.
     """
     steady, planar = solve_points(scene, np.array(conditions)), scene.at_level("planar")
@@ -77,11 +77,12 @@ def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> 
         try:
             run = Simulation(planar, inputs)
             rolling = run.sample.copy()
-            ahead = _way(run, steady[k, ANSWER.lag_ahead])
+            on = _slips_on_the_way(run)[_ON_THE_WAY:]
             found[k] = _answers(_settled(run), life)
             slip = found[k, ANSWER.cage_slip]
-            skidding = Simulation(planar, inputs, start=_slipping(rolling, slip + distant_slip(1.0, slip), with_spins=True))
-            found[k, ANSWER.lag : ANSWER.lag_ahead + 1] = _lags(steady[k], slip, ahead, _way(skidding, steady[k, ANSWER.lag_behind]))
+            back = _slips_on_the_way(Simulation(planar, inputs, start=_slipping(rolling, _FAR_BEHIND, with_spins=True)))[_ON_THE_WAY_BACK:]
+            turn = 1.0 / abs(cage_rate(planar, speed))
+            found[k, ANSWER.lag : ACCELERATIONS.stop] = _way_to_balance(steady[k], slip, (on, back), turn)
             if _TELLING <= slip < 0.5:
                 other[k] = _settled(Simulation(planar, inputs, start=_slipping(rolling, _MORE * slip))).slip
         except IntegrationError:
@@ -94,48 +95,53 @@ def _settled(run: Simulation) -> Outcome:
     return advance_until_settled(run, _SHORTEST * turn, _LONGEST * turn)
 
 
-class _Way(NamedTuple):
-    """How a cage that is far from the slip it settles at comes nearer; NaN where that was not measured."""
-
-    first: float  # mean slip over a turn
-    last: float  # and over another, later one
-    seconds: float  # between both
-
-
-def _way(run: Simulation, lag: float) -> _Way:
-    """Return how the cage of a run that has just begun comes nearer, over half of the time constant that level ``steady`` has for it."""
-    turn = 1.0 / abs(cage_rate(run.scene, run.inputs.shaft_speed))
-    turns = min(0.5 * lag / turn, _LONGEST_WAY)
-    if not turns > _SHORTEST_WAY:
-        return _Way(math.nan, math.nan, math.nan)
-    run.advance(_TAKING_UP * turn)  # play
-    first = float(run.advance(turn, samples=_SAMPLES)["cage_slip"].mean())
-    run.advance((turns - 1.0) * turn)
-    last = float(run.advance(turn, samples=_SAMPLES)["cage_slip"].mean())
-    return _Way(first, last, turns * turn)
+def _slips_on_the_way(run: Simulation) -> np.ndarray:
+    """Return the mean slips of a run that has just begun, quarter by quarter of a cage turn, until its cage rests or is long on its way."""
+    quarter = _QUARTER / abs(cage_rate(run.scene, run.inputs.shaft_speed))
+    in_turn, slips = round(1.0 / _QUARTER), []
+    while len(slips) < _LONGEST_WAY * in_turn:
+        slips.append(float(run.advance(quarter, samples=_SAMPLES_OF_A_QUARTER)["cage_slip"].mean()))
+        if len(slips) > _ON_THE_WAY_BACK + in_turn and abs(slips[-1] - slips[-1 - in_turn]) < _AT_REST:
+            break
+    return np.array(slips)
 
 
-def _lags(steady: np.ndarray, slip: float, ahead: _Way, behind: _Way) -> np.ndarray:
-    """Return the three lags of level ``planar`` as those of ``steady``, longer or shorter as the cage's ways were measured.
+def _change_at(slip: float, slips: np.ndarray) -> float:
+    """Return by how much slip changes in a quarter of a turn where it passes a slip for the first time; NaN where it does not."""
+    passed = np.flatnonzero((slips[1:-2] - slip) * (slips[2:-1] - slip) <= 0.0)
+    if not len(passed):
+        return math.nan
+    k, reach = int(passed[0]) + 1, 1  # between this quarter and the next
+    while abs(slips[k + 1] - slips[k]) * 2 * reach < _TOLD and reach < min(_WIDEST, k, len(slips) - 2 - k):
+        reach += 1
+    changes = [(slips[i + reach] - slips[i - reach]) / (2 * reach) for i in (k, k + 1)]
+    return float(np.interp(slip, *zip(*sorted(zip(slips[k : k + 2], changes)))))
+
+
+def _way_to_balance(steady: np.ndarray, slip: float, ways: tuple[np.ndarray, np.ndarray], turn: float) -> np.ndarray:
+    """Return lag, inertia and delay of spins, and accelerations of the cage at level ``planar``.
+
+    Where no way tells an acceleration, it differs from that of level ``steady`` as those between which it is, or the nearest one.
 
     Parameters
     ----------
     steady : answer of level ``steady``, columns `ANSWER`.
     slip : at which level ``planar`` settles.
-    ahead, behind : ways from less slip and from more.
+    ways : slips of a cage from rolling, and of one from far behind, quarter by quarter of a turn.
+    turn : of an ideal cage [s].
     """
-    ratios = []
-    for way, side in ((behind, 1.0), (ahead, -1.0)):
-        distance, nearer = abs(0.5 * (way.first + way.last) - slip), abs(way.first - slip) - abs(way.last - slip)
-        expected = lag_at(side * distance, steady)
-        told = distance > _FAR * distant_slip(side, steady[ANSWER.cage_slip]) and nearer > _TOLD * distance and expected > 0.0
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.divide(distance * way.seconds, nearer * expected)
-        ratios.append(float(np.clip(ratio, 1.0 / _LARGEST_RATIO, _LARGEST_RATIO)) if told else math.nan)
-    known = [ratio for ratio in ratios if math.isfinite(ratio)]
-    near = math.exp(float(np.mean(np.log(known)))) if known else 1.0
-    factors = [near, *(ratio if math.isfinite(ratio) else near for ratio in ratios)]
-    return steady[ANSWER.lag : ANSWER.lag_ahead + 1] * factors
+    found, ideal = steady.copy(), 2.0 * math.pi / turn
+    per_change = -ideal / (_QUARTER * turn)
+    measured = np.array([per_change * _change_at(there, ways[int(there > slip)]) for there in CAGE_SLIPS.tolist()])
+    measured[(np.abs(CAGE_SLIPS - slip) < _TOLD) | ~(measured * (CAGE_SLIPS - slip) > 0.0)] = math.nan
+    more = measured - steady[ACCELERATIONS]
+    if (told := np.isfinite(more)).any():
+        found[ACCELERATIONS] += np.interp(CAGE_SLIPS, CAGE_SLIPS[told], more[told])
+    near = [side * per_change * _change_at(slip + side * _TOLD, way) for side, way in zip((-1.0, 1.0), ways)]
+    lags = [_TOLD * ideal / acceleration for acceleration in near if acceleration > 0.0]
+    if steady[ANSWER.lag] > _LEAST_LAG * turn and lags:
+        found[ANSWER.lag] = math.exp(float(np.mean(np.log(lags))))
+    return found[ANSWER.lag : ACCELERATIONS.stop]
 
 
 def _slipping(rolling: np.void, slip: float, with_spins: bool = False) -> np.void:

@@ -65,7 +65,7 @@ def first_cage_centre(params, ring_y, ring_z):
 def steady_state_at(params, work, sample) -> np.ndarray:
     """Return the state of level ``steady`` at a sample; parameters as of `slip_state_at`."""
     work.bearing.ring[:] = sample["ring_y"], sample["ring_z"]
-    return np.array([sample["cage_angle"], sample["cage_speed"]])
+    return np.array([sample["cage_angle"], sample["cage_speed"], sample["cage_speed"]])
 
 
 def slip_state_at(params, work, sample) -> np.ndarray:

@@ -1,13 +1,14 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Level ``steady``: the periodic state of level ``slip`` at the present inputs, and the cage's first-order lag behind it.
+"""Level ``steady``: the periodic state of level ``slip`` at the present inputs, and how cage and spins follow it.
 
-State: y = (theta_c, omega_c) in rad and rad/s.  The cage's speed approaches that of the operating point as exp(-t/T), with T from the
-operating point, too; everything else takes the operating point's value at once.  Operating points come from a table where there is one
-that holds the inputs, otherwise from `bearing_sim.levels.steady.operating_point`: nothing is extrapolated.
+State: y = (theta_c, omega_c, s) in rad and rad/s, s the cage speed that the spins have followed to.  The cage goes to its speed at the operating
+point with the acceleration that it has at its slip, also from the operating point; everything else takes the operating point's value at once.
+Operating points come from a table where there is one that holds the inputs, otherwise from `bearing_sim.levels.steady.operating_point`: nothing is
+extrapolated.
 
 A sample has the loads, radii and ring position of level ``slip`` at the cage's angle and speed; equivalent loads, lives and
 powers are means over a roller pitch.  Roller spins, their angles and pocket forces are not computed: they are NaN.  Left out, besides
-what level ``slip`` leaves out: everything that happens within a cage turn, and the spins' own lag.
+what level ``slip`` leaves out: everything that happens within a cage turn, and how the spins of single rollers differ on the way.
 """
 
 import math
@@ -45,6 +46,8 @@ from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs
 
 _EVEN = 0.02  # of the lag; where it changes by less with the distance, one step follows exactly
 _PIECES = 4  # of an interval in which it changes by more
+_HARDLY_FELT = 1.0 + 1e-6  # inertia up to which spins count for nothing
+FOLLOWED = 2  # where the state holds the cage speed that the spins have followed to
 _FIRST_LOSS = COLUMN.shaft_power + 1  # the losses by cause stand behind the power of the shaft
 
 
@@ -83,8 +86,9 @@ def forget(work):
 
 
 def initial_state(params, work, shaft_speed, load_y, load_z):
-    """Return the state of ideal rolling: the cage at omega_i (1 - gamma)/2."""
-    return np.array([0.0, 0.5 * shaft_speed * (1 - params.raceways.diameter_ratio)])
+    """Return the state of ideal rolling: the cage at omega_i (1 - gamma)/2, and spins that go with it."""
+    speed = 0.5 * shaft_speed * (1 - params.raceways.diameter_ratio)
+    return np.array([0.0, speed, speed])
 
 
 @kernel
@@ -186,13 +190,31 @@ def observe(t, y, model, work, interval, previous, row, memory):
 
 
 @template
-def _follow_evenly(before, after, lag, duration, y):
-    """Let the cage follow, exactly, a speed that changes linearly, with one time constant."""
-    rise = (after - before) / duration
-    gone = -math.expm1(-duration / lag)
-    away = y[OMEGA] - before + rise * lag
-    y[THETA] += before * duration + 0.5 * rise * duration * duration - rise * lag * duration + away * lag * gone
-    y[OMEGA] = after - rise * lag + away * (1.0 - gone)
+def _follow_evenly(before, after, lag, answer, duration, y):
+    """Let cage and spins follow, exactly, a speed that changes linearly, with constant coefficients.
+
+    With the lag tau, the inertia I and the delay T of the spins, cage speed w and spins' s:  w' = I (w_settled - w)/tau - (I - 1) s',
+    s' = (w - s)/T.
+    """
+    rise, mean = (after - before) / duration, 0.5 * (before + after)
+    away = y[OMEGA] - before + rise * lag  # from the solution that changes linearly
+    inertia, delay = answer[ANSWER.spin_inertia], answer[ANSWER.spin_delay]
+    if not (inertia > _HARDLY_FELT and delay > 0.0):
+        speed = after - rise * lag + away * math.exp(-duration / lag)
+        y[THETA] += mean * duration - lag * (speed - y[OMEGA])
+        y[OMEGA] = y[FOLLOWED] = speed
+        return
+    spins_away = y[FOLLOWED] - before + rise * (lag + delay)
+    by_cage, by_spins = -(inertia / lag + (inertia - 1.0) / delay), (inertia - 1.0) / delay
+    middle, product = 0.5 * (by_cage - 1.0 / delay), inertia / (lag * delay)
+    fast = middle - math.sqrt(middle * middle - product)
+    slow = product / fast
+    one, other = math.exp(slow * duration) / (slow - fast), math.exp(fast * duration) / (slow - fast)
+    cage_left = one * ((by_cage - fast) * away + by_spins * spins_away) - other * ((by_cage - slow) * away + by_spins * spins_away)
+    spins_left = one * (away / delay - (1.0 / delay + fast) * spins_away) - other * (away / delay - (1.0 / delay + slow) * spins_away)
+    speed, followed = after - rise * lag + cage_left, after - rise * (lag + delay) + spins_left
+    y[THETA] += mean * duration - lag / inertia * (speed - y[OMEGA] + (inertia - 1.0) * (followed - y[FOLLOWED]))
+    y[OMEGA], y[FOLLOWED] = speed, followed
 
 
 @kernel
@@ -211,21 +233,22 @@ def _follow(before, after, shaft_speed, model, answer, duration, y):
     lag = answer[ANSWER.lag]
     if not lag > 0.0:
         y[THETA] += 0.5 * (before + after) * duration
-        y[OMEGA] = after
+        y[OMEGA] = y[FOLLOWED] = after
         return
-    per_slip = 2.0 / (shaft_speed * (1.0 - model.params.raceways.diameter_ratio))  # of the ideal cage speed, with its sign
-    first, last = lag_at(per_slip * (before - y[OMEGA]), answer), lag_at(per_slip * (after - y[OMEGA]), answer)
+    ideal = 0.5 * max(abs(shaft_speed), CREEP) * (1.0 - model.params.raceways.diameter_ratio)
+    per_slip = (1.0 if shaft_speed >= 0.0 else -1.0) / ideal
+    first, last = lag_at(per_slip * (before - y[OMEGA]), ideal, answer), lag_at(per_slip * (after - y[OMEGA]), ideal, answer)
     if max(abs(first - lag), abs(last - lag)) <= _EVEN * lag:
-        _follow_evenly(before, after, lag, duration, y)
+        _follow_evenly(before, after, lag, answer, duration, y)
         return
     piece, settled = duration / _PIECES, before
     for k in range(_PIECES):
         towards = before + (after - before) * (k + 1) / _PIECES
-        angle, speed = y[THETA], y[OMEGA]
-        _follow_evenly(settled, towards, lag_at(per_slip * (settled - speed), answer), piece, y)
+        angle, speed, followed = y[THETA], y[OMEGA], y[FOLLOWED]
+        _follow_evenly(settled, towards, lag_at(per_slip * (settled - speed), ideal, answer), answer, piece, y)
         halfway = 0.5 * (settled - speed + towards - y[OMEGA])
-        y[THETA], y[OMEGA] = angle, speed
-        _follow_evenly(settled, towards, lag_at(per_slip * halfway, answer), piece, y)
+        y[THETA], y[OMEGA], y[FOLLOWED] = angle, speed, followed
+        _follow_evenly(settled, towards, lag_at(per_slip * halfway, ideal, answer), answer, piece, y)
         settled = towards
 
 

@@ -76,6 +76,15 @@ _FIRST_STEP, _LONGEST_STEP = 1e-6, 1.0  # s
 _AN_INSTANT = 1e-6  # of an ideal cage turn
 
 
+_SLIPS = np.array([0.0, 1e-3, 4e-3, 0.012, 0.03, 0.06, 0.1, 0.15, 0.2, 0.26, 0.33, 0.4, 0.48, 0.56, 0.64, 0.72, 0.8, 0.88, 0.94, 0.98, 0.995, 0.999])
+CAGE_SLIPS = np.array([-0.1, 0.0, 0.03, 0.1, 0.2, 0.33, 0.48, 0.64])
+"""Slips at which a cage's acceleration is part of the answer to an operating point."""
+_PASSED = np.array([-1, 0, 4, 6, 8, 10, 12, 14])  # which of the slips of the search they are, if any
+_SKIDDING = 5  # up to which of them spins are asked how they follow a cage that is far from its balance
+_LONGEST_LAG = 1e4  # s
+_APART = 0.01  # slip by which one of `CAGE_SLIPS` has to be apart from the balance to count
+
+
 class Orbit(NamedTuple):
     """State and workspace; M = N Z nodes along the orbit, in the order in which a roller passes them."""
 
@@ -88,11 +97,12 @@ class Orbit(NamedTuple):
     diagonal: np.ndarray  # of the differences' equations, shape (M,)
     column: np.ndarray  # a right side, and three for the closing of the orbit, shape (M, 1 + 3)
     beside: np.ndarray  # spins at a cage speed nearby, shape (M,)
-    found: np.ndarray  # spins of the operating point, while those far from it are sought, shape (M,)
+    found: np.ndarray  # spins of the operating point, while others are sought, shape (M,)
     residual: np.ndarray  # right side of the iteration before, shape (M,)
     reach: np.ndarray  # how far each spin may go in an iteration [rad/s], shape (M,)
     state: np.ndarray  # of level slip, shape (Z + 2,)
     rate: np.ndarray  # shape (Z + 2,)
+    passed: np.ndarray  # mean accelerations at the slips that the search for the operating point has passed, else NaN [rad/s^2]
     tolerances: np.ndarray  # of the slip, over 0.01 + slip, and of spins, over the spin of rolling, shape (2,)
 
 
@@ -116,6 +126,7 @@ def new_orbit(count: int, angles: int | None = None, tolerances: tuple[float, fl
         reach=np.zeros(nodes),
         state=np.zeros(count + 2),
         rate=np.zeros(count + 2),
+        passed=np.full(_SLIPS.shape[0], math.nan),
         tolerances=np.array(tolerances),
     )
 
@@ -242,41 +253,43 @@ def solve_spins(speed, sense, model, work, orbit, tolerance, iterations, careful
     return False
 
 
-_SLIPS = np.array([0.0, 1e-3, 4e-3, 0.012, 0.03, 0.06, 0.1, 0.15, 0.2, 0.26, 0.33, 0.4, 0.48, 0.56, 0.64, 0.72, 0.8, 0.88, 0.94, 0.98, 0.995, 0.999])
-
-FAR_BEHIND = 0.3  # of the cage's settled speed
-FAR_AHEAD = 0.7  # of its slip
-_NEAR, _SHORTEST = 1e-3, 0.25  # slip within which there is one lag; of the lags near and far, none is shorter
-_SLIPS_AT_ALL = 0.02  # slip from which a cage may be ahead by so much that it matters
-
-
 class AnswerColumn(NamedTuple):
     """What an operating point is answered by, and where."""
 
     cage_slip: int = 0  # mean in time
-    lag: int = 1  # time constant of the cage's way back to it [s]
-    lag_behind: int = 2  # the same of a cage that is `FAR_BEHIND` of its speed slower [s]: distance over acceleration
-    lag_ahead: int = 3  # and of one that has got rid of `FAR_AHEAD` of its slip [s]
-    inner_equivalent_load: int = 4  # [N]
-    outer_equivalent_load: int = 5
-    inner_lamina_load: int = 6  # the same by laminae
-    outer_lamina_load: int = 7
-    reference_modification_factor: int = 8  # a_ISO of all laminae together
-    shaft_power: int = 9  # from here on means in time [W]; the order is that of `bearing_sim.levels.common.power.Powers`
-    inner_sliding_power: int = 10
-    outer_sliding_power: int = 11
-    inner_rolling_power: int = 12
-    outer_rolling_power: int = 13
-    churning_power: int = 14
-    windage_power: int = 15
-    land_power: int = 16
-    pocket_power: int = 17
-    damping_power: int = 18
-    seal_power: int = 19
-    flange_power: int = 20
+    lag: int = 1  # time constant of the cage's way back to it from nearby [s]
+    spin_inertia: int = 2  # inertia of a skidding cage, orbiting rollers and the spins that follow it, over that of cage and orbiting rollers
+    spin_delay: int = 3  # with which they follow [s]
+    acceleration_lead_10: int = 4  # of a cage whose spins have followed it, at each of `CAGE_SLIPS`, positive where it gains speed [rad/s^2]
+    acceleration_0: int = 5
+    acceleration_3: int = 6
+    acceleration_10: int = 7
+    acceleration_20: int = 8
+    acceleration_33: int = 9
+    acceleration_48: int = 10
+    acceleration_64: int = 11
+    inner_equivalent_load: int = 12  # [N]
+    outer_equivalent_load: int = 13
+    inner_lamina_load: int = 14  # the same by laminae
+    outer_lamina_load: int = 15
+    reference_modification_factor: int = 16  # a_ISO of all laminae together
+    shaft_power: int = 17  # from here on means in time [W]; the order is that of `bearing_sim.levels.common.power.Powers`
+    inner_sliding_power: int = 18
+    outer_sliding_power: int = 19
+    inner_rolling_power: int = 20
+    outer_rolling_power: int = 21
+    churning_power: int = 22
+    windage_power: int = 23
+    land_power: int = 24
+    pocket_power: int = 25
+    damping_power: int = 26
+    seal_power: int = 27
+    flange_power: int = 28
 
 
 ANSWER = AnswerColumn()
+ACCELERATIONS = slice(ANSWER.acceleration_lead_10, ANSWER.acceleration_64 + 1)
+"""Columns of an answer that hold accelerations of a cage, as many as `CAGE_SLIPS`."""
 
 
 @kernel
@@ -312,7 +325,10 @@ def _mean_drive(speed, sense, model, work, orbit, tolerance):
 @kernel
 def _bracket(ideal, sense, model, work, orbit):
     """Go from ideal rolling to where the mean torque changes its sign; return (slip before, drive there, slip after, drive there)."""
+    for i in range(_SLIPS.shape[0]):
+        orbit.passed[i] = math.nan
     before, drive_before = 0.0, _mean_drive(ideal, sense, model, work, orbit, _ROUGH)
+    orbit.passed[0] = drive_before
     farthest = _FLANGED_LEAD if model.params.flanges.inner.area > 0.0 else _LARGEST_LEAD
     away = 1.0 if drive_before < 0.0 else -1.0  # most cages lag, those of slow bearings lead by next to nothing
     for i in range(1, _SLIPS.shape[0]):
@@ -320,6 +336,8 @@ def _bracket(ideal, sense, model, work, orbit):
         drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, _ROUGH)
         if not math.isfinite(drive + drive_before) or slip < -farthest:
             return math.nan, math.nan, math.nan, math.nan
+        if away > 0.0:
+            orbit.passed[i] = drive
         if drive * away >= 0.0:
             return before, drive_before, slip, drive
         before, drive_before = slip, drive
@@ -379,40 +397,46 @@ def _losses(answer):
     return total
 
 
-@kernel
-def _slope_and_inertia(slip, ideal, sense, model, work, orbit):
-    """Return the change of the mean acceleration by cage speed [1/s] at a slip, and the inertia that goes with it; NaN where not known.
-
-    The inertia is that of the spins, which must go with cage and orbiting rollers and are felt through the tractions, and of these, which count 1.
-    """
-    nodes, angles = orbit.spins.shape[0], orbit.accelerations.shape[0]
-    change = _LAG_CHANGE * max(abs(slip), 1e-3) * ideal
-    speed = ideal * (1.0 - slip)
-    above = _mean_drive(speed + change, sense, model, work, orbit, _FINE)
-    for m in range(nodes):
-        orbit.beside[m] = orbit.spins[m]
-    below = _mean_drive(speed - change, sense, model, work, orbit, _FINE)
-    slope = sense * (above - below) / (2.0 * change)
-    interval = 2.0 * math.pi / (nodes * sense * speed)
-    for m in range(nodes):
-        orbit.column[m, 0] = interval * (orbit.beside[m] - orbit.spins[m]) / (2.0 * change)
-    if not math.isfinite(slope) or not solve_cyclic(orbit.diagonal, orbit.column):
-        return slope, math.nan
-    inertia = 1.0
-    for m in range(nodes):
-        inertia += orbit.drives[m] * orbit.column[m, 0] / angles
-    return slope, inertia
+@template
+def _felt_behind(interval, orbit):
+    """Replace what spins change by, in ``orbit.column``, by how far they are behind it; return what the cage feels of that, NaN where not known."""
+    for m in range(orbit.spins.shape[0]):
+        orbit.column[m, 0] *= interval
+    felt = math.nan
+    if solve_cyclic(orbit.diagonal, orbit.column):
+        felt = 0.0
+        for m in range(orbit.spins.shape[0]):
+            felt += orbit.drives[m] * orbit.column[m, 0] / orbit.accelerations.shape[0]
+    return felt
 
 
 @kernel
-def _distant_lag(slip, distant, lag, ideal, sense, model, work, orbit):
-    """Return the distance over the acceleration of a cage that slips by ``distant`` instead of ``slip`` [s]; ``lag`` where that is not known.
+def _inertia_and_delay(faster, sense, orbit):
+    """Return how spins follow a cage that changes its speed slowly; NaN where that is not known.
 
-    Tractions that have reached their limit drive the cage no harder from far away than from near, so that it takes longer.
+    Parameters
+    ----------
+    faster : by how much a cage is whose spins are those of ``orbit.beside`` [rad/s].
+    sense : of rotation.
+    orbit : holds the spins of the cage.
+
+    Returns
+    -------
+    inertia that goes with cage and orbiting rollers, which count 1: spins are felt through the tractions; mean time until a spin has followed [s].
     """
-    _, inertia = _slope_and_inertia(distant, ideal, sense, model, work, orbit)
-    found = inertia * (distant - slip) * abs(ideal) / _mean_drive(ideal * (1.0 - distant), sense, model, work, orbit, _FINE)
-    return found if math.isfinite(found) and found > 0.0 else lag
+    nodes = orbit.spins.shape[0]
+    interval = 2.0 * math.pi / (nodes * sense * orbit.speed[0])
+    for m in range(nodes):
+        orbit.column[m, 0] = (orbit.beside[m] - orbit.spins[m]) / faster
+    behind = _felt_behind(interval, orbit)  # how far spins are, by the acceleration of the cage
+    later = _felt_behind(interval, orbit)
+    return 1.0 + behind, later / behind if behind != 0.0 else 0.0
+
+
+@template
+def _keep_spins(orbit, kept):
+    for m in range(orbit.spins.shape[0]):
+        kept[m] = orbit.spins[m]
 
 
 @template
@@ -423,47 +447,74 @@ def _go_back(speed, orbit):
         orbit.spins[m] = orbit.found[m]
 
 
-@template
-def distant_slip(behind, slip):
-    """Return how far from the settled ``slip`` a distant lag is known, in slip; ``behind`` is positive for slower cages, else they are ahead."""
-    return FAR_BEHIND * (1.0 - slip) if behind > 0.0 else FAR_AHEAD * slip
-
-
 @kernel
-def lag_at(behind, answer):
-    """Return the time constant [s] of a cage that slips by ``behind`` more than it settles at, less where that is negative.
+def lag_at(behind, ideal, answer):
+    """Return the time constant of a cage's way to its settled speed, its distance over its acceleration [s].
 
-    It changes linearly with the distance, through what is known near the settled speed and far from it: so does that of a body that a limited
-    torque brings back.
+    It changes linearly with the distance between those that are known, as that of a body does which a limited torque brings back, and in proportion
+    to it beyond.  A slip at which the cage is driven away from its settled speed is passed over.
 
     Parameters
     ----------
-    behind : in slip.
+    behind : by how much more than it settles at the cage slips, less where that is negative.
+    ideal : speed of the cage without slip [rad/s, positive].
     answer : columns `ANSWER`.
     """
-    lag, reach = answer[ANSWER.lag], distant_slip(behind, answer[ANSWER.cage_slip])
-    distant = answer[ANSWER.lag_behind] if behind > 0.0 else answer[ANSWER.lag_ahead]
-    if not distant > 0.0 or not reach > _NEAR:
-        return lag
-    return max(lag + (distant - lag) * abs(behind) / reach, _SHORTEST * min(lag, distant))
+    slip, distance, toward = answer[ANSWER.cage_slip], abs(behind), 1.0 if behind > 0.0 else -1.0
+    count, known, lag = CAGE_SLIPS.shape[0], 0.0, answer[ANSWER.lag]
+    for i in range(count):
+        k = i if toward > 0.0 else count - 1 - i
+        there, acceleration = toward * (CAGE_SLIPS[k] - slip), toward * answer[ANSWER.acceleration_lead_10 + k]
+        if not (there > _APART and acceleration > 0.0):
+            continue
+        lag_there = min(there * ideal / acceleration, _LONGEST_LAG)
+        if distance <= there:
+            return lag + (lag_there - lag) * (distance - known) / (there - known)
+        known, lag = there, lag_there
+    return lag * distance / known if known > 0.0 else lag
 
 
 @kernel
-def _write_lags(slip, ideal, sense, model, work, orbit, answer):
-    """Write the lags of an operating point, NaN where the cage leads away from it; ``orbit`` holds its spins, and does so afterwards."""
-    slope, inertia = _slope_and_inertia(slip, ideal, sense, model, work, orbit)
-    if not math.isfinite(inertia) or not slope < 0.0:
-        return
-    lag = -inertia / slope
-    answer[ANSWER.lag] = answer[ANSWER.lag_behind] = answer[ANSWER.lag_ahead] = lag
-    speed = orbit.speed[0]
-    for m in range(orbit.spins.shape[0]):
-        orbit.found[m] = orbit.spins[m]
-    answer[ANSWER.lag_behind] = _distant_lag(slip, slip + distant_slip(1.0, slip), lag, ideal, sense, model, work, orbit)
+def _write_accelerations(slip, ideal, sense, model, work, orbit, answer):
+    """Write accelerations at `CAGE_SLIPS`, and how spins follow a cage that skids; ``orbit`` holds the spins at ``slip``, and does afterwards."""
+    speed, count = orbit.speed[0], CAGE_SLIPS.shape[0]
+    _keep_spins(orbit, orbit.found)
+    for i in range(2 * count):  # away from the operating point both ways: spins are sought from those found before
+        k = count - 1 - i if i < count else i - count
+        if i == count:
+            _go_back(speed, orbit)
+        if (CAGE_SLIPS[k] <= slip) != (i < count):
+            continue
+        drive = orbit.passed[_PASSED[k]] if k > 0 else math.nan
+        if i >= count or not math.isfinite(drive):
+            drive = _mean_drive(ideal * (1.0 - CAGE_SLIPS[k]), sense, model, work, orbit, _ROUGH)
+        answer[ANSWER.acceleration_lead_10 + k] = drive
+        if k == _SKIDDING - 1:
+            _keep_spins(orbit, orbit.beside)
+        if k == _SKIDDING and slip < CAGE_SLIPS[k - 1]:
+            inertia, delay = _inertia_and_delay((CAGE_SLIPS[k] - CAGE_SLIPS[k - 1]) * ideal, sense, orbit)
+            if math.isfinite(inertia + delay):
+                answer[ANSWER.spin_inertia], answer[ANSWER.spin_delay] = max(inertia, 1.0), max(delay, 0.0)
     _go_back(speed, orbit)
-    if slip > _SLIPS_AT_ALL:
-        answer[ANSWER.lag_ahead] = _distant_lag(slip, slip - distant_slip(-1.0, slip), lag, ideal, sense, model, work, orbit)
-        _go_back(speed, orbit)
+    for k in range(count):
+        answer[ANSWER.acceleration_lead_10 + k] /= answer[ANSWER.spin_inertia]
+
+
+@kernel
+def _write_lag(slip, ideal, sense, model, work, orbit, answer):
+    """Write how a cage goes to an operating point, NaN where it leads away from it; ``orbit`` holds its spins, and does so afterwards."""
+    change = _LAG_CHANGE * max(abs(slip), 1e-3) * ideal
+    speed = ideal * (1.0 - slip)
+    above = _mean_drive(speed + change, sense, model, work, orbit, _FINE)
+    _keep_spins(orbit, orbit.beside)
+    below = _mean_drive(speed - change, sense, model, work, orbit, _FINE)
+    slope = sense * (above - below) / (2.0 * change)
+    inertia, delay = _inertia_and_delay(2.0 * change, sense, orbit)
+    if not math.isfinite(slope + inertia) or not slope < 0.0:
+        return
+    answer[ANSWER.lag] = -inertia / slope
+    answer[ANSWER.spin_inertia], answer[ANSWER.spin_delay] = max(inertia, 1.0), max(delay, 0.0)
+    _write_accelerations(slip, ideal, sense, model, work, orbit, answer)
 
 
 @kernel
@@ -522,7 +573,7 @@ def solve_point(model, work, orbit, answer):
         slip = _beyond_an_end(slip, low, drive, high, drive_beyond, ideal, sense, model, work, orbit)
     if not math.isfinite(slip):
         return FAILED
-    _write_lags(slip, ideal, sense, model, work, orbit, answer)
+    _write_lag(slip, ideal, sense, model, work, orbit, answer)
     speed = ideal * (1.0 - slip)
     left = _mean_drive(speed, sense, model, work, orbit, orbit.tolerances[1])
     if not math.isfinite(left):
@@ -632,7 +683,10 @@ def march(model, work, memory, answer):
     answer[ANSWER.cage_slip] = 1.0 - mean / ideal
     away = ideal - mean
     lag = (turned - mean * time) / away if abs(away) > 1e-6 * abs(ideal) else 0.0
-    answer[ANSWER.lag] = answer[ANSWER.lag_behind] = answer[ANSWER.lag_ahead] = min(max(lag, 0.0), time)
+    answer[ANSWER.lag] = min(max(lag, 0.0), time)
+    answer[ANSWER.spin_inertia], answer[ANSWER.spin_delay] = 1.0, 0.0  # in this lag
+    for k in range(CAGE_SLIPS.shape[0]):
+        answer[ANSWER.acceleration_lead_10 + k] = math.nan
     for column in range(ANSWER.inner_equivalent_load, answer.shape[0]):
         source = COLUMN.inner_equivalent_load + column - ANSWER.inner_equivalent_load
         if column >= ANSWER.shaft_power:
