@@ -27,6 +27,8 @@ from bearing_sim.sweep.grid import read_axis
         ("5 kN", "N", 5000.0),
         ("206 GPa", "Pa", 2.06e11),
         ("1e-3", "m", 1e-3),
+        ("2.5 mil", "m", 63.5e-6),
+        ("1 mils", "m", 25.4e-6),
         (7, "m", 7.0),
     ],
 )

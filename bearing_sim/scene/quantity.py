@@ -71,6 +71,8 @@ def to_si(value: object, unit: str) -> float:
         raise ValueError(f"{value!r} has powers of powers in its unit; expected {expected(unit)}")
     if unit == SPEED:
         written_unit = _TURNS.get("".join(written_unit.casefold().split()), written_unit)
+    if unit == "m" and written_unit in _THOUSANDTHS_OF_AN_INCH:
+        written_unit = "thou"
     import pint
 
     registry = unit_registry()
@@ -106,6 +108,7 @@ _TURNS = {
     **dict.fromkeys(("krpm", "1000/min"), "kilorevolution/min"),
     "khz": "kilorevolution/s",
 }
+_THOUSANDTHS_OF_AN_INCH = ("mil", "mils")  # where a length is meant; to pint a mil is an angle
 _ANGLES = ("radian", "degree", "turn", "revolution", "cycle", "arcminute", "arcsecond", "grade", "revolutions_per_minute", "revolutions_per_second")
 _SPELLINGS = (
     "N",

@@ -35,7 +35,7 @@ from bearing_sim.sweep.thermal import equilibrium_temperatures
 _PER_BIN = 8  # samples
 _REFERENCE = 0.01  # times the default tolerances, of the reference
 _CHECK = 0.04  # times the default tolerances, of the run that estimates the reference's own error
-_FACTORS = (3.0, 1.0, 0.3, 0.1, 0.03)  # times the default tolerances, to compare
+_FACTORS = (3.0, 1.0, 0.6, 0.3, 0.15, 0.08, 0.03)  # times the default tolerances, to compare: factors of two below the default ones
 _ENOUGH = 1.0  # s of processor time after which a setting is not timed again
 _REPEATS = 3
 _MOST_SLICES = 200  # of the settings; edge loads are compared with theirs

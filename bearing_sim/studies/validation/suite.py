@@ -40,7 +40,7 @@ TESTED = (
     ),
     Tested("level planar: its limits, symmetries and rough inputs", "level slip, independent calculation", ("test_level_planar",)),
     Tested("level spatial: its planar limit, gyroscopic moments, misalignment", "level planar, closed forms", ("test_level_spatial",)),
-    Tested("level steady: periodic states", "level slip, marched", ("test_level_steady",)),
+    Tested("level steady: periodic states, and how a cage goes to them", "level slip, marched", ("test_level_steady",)),
     Tested("energy: work less heat is what is stored", "conservation", ("test_power",)),
     Tested("integrators: order, stiff problems, tolerance", "closed forms, SciPy", ("test_integrators",)),
     Tested("sums over time do not depend on how a run is cut", "the same run in one call", ("test_cut_invariance",)),
@@ -50,6 +50,7 @@ TESTED = (
     Tested(
         "traction and films: derivatives, limits, signs", "finite differences, published fits", ("test_kernels", "test_film", "test_traction_laws")
     ),
+    Tested("profiles of aligned rollers: force, tractions, damping", "sums over strips, finite differences", ("test_profile",)),
     Tested("slices: load, moment, symmetry", "equilibrium, symmetry", ("test_lamina", "test_life", "test_misalignment")),
     Tested("alarms: false-alarm rates, faults found", "probability theory, simulated faults", ("test_cusum", "test_residual")),
     Tested("bands and sensitivities: coverage", "closed forms", ("test_uncertainty", "test_calibrate")),
