@@ -15,8 +15,9 @@ from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.steady.model import FOLLOWED
 from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CAGE_SLIPS, SETTLED, STOPPED, lag_at, new_orbit, solve_point
 from bearing_sim.levels.steady.table import empty_table
-from bearing_sim.levels.steady.table_builder import solve_scene
+from bearing_sim.levels.steady.table_builder import build_table, solve_scene
 from bearing_sim.model.params import lubricate, pack
+from bearing_sim.model.table_span import Span
 from bearing_sim.numerics.linear_algebra import ALPHA_0, ALPHA_1, ALPHA_2, ALPHA_3, solve_cyclic
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import scene_inputs
@@ -291,6 +292,24 @@ def test_a_cage_that_skids_begins_to_skid_and_idles_as_at_level_slip():
         slips.append(np.array(found))
     slip, steady = slips
     assert slip.max() > 0.4 and np.abs(steady - slip).max() < 0.006
+
+
+def test_samples_of_a_table_may_be_far_apart_on_the_way_of_a_cage():
+    """A load that falls and a speed that rises within a turn and a half of the cage, in one sample and in thirty."""
+    of, found = idling("steady", load="2 kN", table=empty_table()).scene, []
+    params, span = pack(of), Span(175.0, 2200.0, 313.15, 313.15, False)
+    table = build_table(params, lambda kelvin: lubricate(of.lubricant, params, kelvin), span, 0.3, 1)[0]
+    for samples in (1, 30):
+        run, reached = idling("steady", load="2 kN", table=table), []
+        run.advance(1.0)
+        for speed, load in ((157.0, 1000.0), (157.0, 1000.0), (157.0, 2000.0), (170.0, 2000.0), (170.0, 2000.0)):
+            run.advance(0.14, Inputs(speed, load, 0.0, run.inputs.oil_temperature), samples=samples)
+            reached.append([run.sample["cage_speed"], run.sample["cage_angle"]])
+        found.append(np.array(reached))
+    one, many = found
+    ideal = run.sample["ideal_cage_speed"]
+    assert np.ptp(many[:, 0]) > 0.15 * ideal and np.abs(one[:, 0] - many[:, 0]).max() < 0.005 * ideal
+    assert np.abs(np.diff(one[:, 1] - many[:, 1])).max() < 0.005 * ideal * 0.14
 
 
 def test_accelerations_are_those_of_a_cage_of_level_slip_that_passes():

@@ -413,7 +413,7 @@ def _look_up(run: Simulation, window: Window) -> tuple[Results, float]:
     spent = time.process_time() - clock
     whole = np.concatenate(blocks)
     means = {name: 0.5 * (row[1:] + row[:-1]) for name, row in _observed(whole).items()}  # of the time between two samples
-    return _binned(means, whole["damage"], instants, edges), spent
+    return _binned(means | {"slip": _mean_slips(run.scene, whole)}, whole["damage"], instants, edges), spent
 
 
 def _march(run: Simulation, window: Window) -> tuple[Results, float]:
@@ -422,14 +422,15 @@ def _march(run: Simulation, window: Window) -> tuple[Results, float]:
     instants = sorted({*edges.tolist(), *window.times, *_before(run.scene, window, edges[0])})
     speeds = [row[0] for row in window.inputs]
     turns = np.diff(turned(run.scene, np.array(window.times), np.array(speeds), np.array(instants)))
-    blocks, times, damage, spent = [], [np.zeros(1)], [run.sample["damage"]], 0.0
+    blocks, times, damage, spent, before = [], [np.zeros(1)], [run.sample["damage"]], 0.0, run.sample.copy()
     for begin, end, parts in zip(instants, instants[1:], turns.tolist()):
         samples = max(round(_PER_BIN * parts / BIN), 1)
         inputs = window.at(end)
         clock = time.process_time()
         block = run.advance(end - begin, inputs, samples=samples)
         spent += time.process_time() - clock
-        blocks.append(_observed(block))
+        blocks.append(_observed(block) | {"slip": _mean_slips(run.scene, np.array([before, *block]))})
+        before = block[-1]
         times.append(np.linspace(begin, end, samples + 1)[1:])
         damage += block["damage"].tolist()
     observed = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
@@ -444,13 +445,19 @@ def _before(scene: Scene, window: Window, end: float) -> list[float]:
 
 
 def _observed(block: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the observables that are compared, shape (n,) each."""
+    """Return the observables that are compared at instants, shape (n,) each."""
     return {
-        "slip": 100.0 * block["cage_slip"],
         "load": np.maximum(block["inner_load"], block["outer_load"]).max(axis=1),
         "edge": np.maximum(block["inner_edge_pressure"], block["outer_edge_pressure"]),
         "pressure": np.maximum(block["inner_pressure"], block["outer_pressure"]),
     }
+
+
+def _mean_slips(scene: Scene, samples: np.ndarray) -> np.ndarray:
+    """Return the mean slips [%] between samples, shape (n - 1,), by the angles of cage and shaft: exact however far apart they are."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turned = np.diff(samples["cage_angle"]) / np.diff(samples["shaft_angle"])
+    return 100.0 * (1.0 - turned * 2.0 / (1.0 - scene.bearing.diameter_ratio))
 
 
 def _binned(observed: dict[str, np.ndarray], damage: np.ndarray, times: np.ndarray, edges: np.ndarray) -> Results:

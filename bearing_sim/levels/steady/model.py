@@ -23,6 +23,7 @@ from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import OMEGA, THETA
 from bearing_sim.levels.steady.operating_point import (
+    ACCELERATIONS,
     ANSWER,
     CREEP,
     FAILED,
@@ -44,8 +45,9 @@ from bearing_sim.physics.lamina_life import EquivalentLoads
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs, oil_properties, step
 
-_EVEN = 0.02  # of the lag; where it changes by less with the distance, one step follows exactly
-_PIECES = 4  # of an interval in which it changes by more
+_NEAR, _EVEN = 0.02, 0.02  # slip, and fraction of the lag; as near, and where the lag changes by less, one step follows exactly
+_PIECES = 12  # of an interval in which it changes by more
+_MUCH, _MOST_PARTS = 0.01, 16  # change of the settled slip in an interval, by each of which it is cut in one part more
 _HARDLY_FELT = 1.0 + 1e-6  # inertia up to which spins count for nothing
 FOLLOWED = 2  # where the state holds the cage speed that the spins have followed to
 _FIRST_LOSS = COLUMN.shaft_power + 1  # the losses by cause stand behind the power of the shaft
@@ -59,6 +61,7 @@ class Work(NamedTuple):
     table: Table
     scratch: LookUp
     answer: np.ndarray  # at the newest inputs, shape (len(ANSWER),)
+    ways: np.ndarray  # how a cage goes, columns as of the answer, where an interval begins and within it; shape (2, ACCELERATIONS.stop)
     asked: np.ndarray  # inputs that were last solved for: speed, loads, temperature, shape (4,); see `forget`
     solved: np.ndarray  # the answer to them, shape (len(ANSWER),)
     march: March  # for operating points without a periodic state
@@ -73,6 +76,7 @@ def new_work(params, table: Table | None = None):
         table=table if table is not None else empty_table(),
         scratch=new_look_up(),
         answer=np.full(len(ANSWER), math.nan),
+        ways=np.full((2, ACCELERATIONS.stop), math.nan),
         asked=np.full(4, math.nan),
         solved=np.full(len(ANSWER), math.nan),
         march=new_march(params.rollers.count),
@@ -217,44 +221,112 @@ def _follow_evenly(before, after, lag, answer, duration, y):
     y[OMEGA], y[FOLLOWED] = speed, followed
 
 
+@template
+def _begin_interval(work):
+    """Keep how a cage goes at the newest inputs, where the next interval begins."""
+    for column in range(work.ways.shape[1]):
+        work.ways[0, column] = work.answer[column]
+
+
+@template
+def _between(work, fraction):
+    """Write how a cage goes at a fraction of an interval, and return it."""
+    way = work.ways[1]
+    for column in range(way.shape[0]):
+        way[column] = work.ways[0, column] + fraction * (work.answer[column] - work.ways[0, column])
+    return way
+
+
 @kernel
-def _follow(before, after, shaft_speed, model, answer, duration, y):
+def _follow(before, after, shaft_speeds, model, work, duration, y):
     """Let the cage follow a speed that changes linearly; an unknown lag (NaN) counts as 0.
 
     Parameters
     ----------
-    before, after : settled speeds at both ends of a duration [rad/s].
-    shaft_speed : [rad/s].
+    before, after : settled speeds at both ends of an interval [rad/s].
+    shaft_speeds : likewise [rad/s].
     model : of the level.
-    answer : at the end, columns `ANSWER`.
-    duration : [s].
+    work : its answer is that at the end.
+    duration : of the interval [s].
     y : state, changed in place.
     """
-    lag = answer[ANSWER.lag]
-    if not lag > 0.0:
+    lag, lag_before = work.answer[ANSWER.lag], work.ways[0, ANSWER.lag]
+    if not (lag > 0.0 and lag_before > 0.0):
         y[THETA] += 0.5 * (before + after) * duration
         y[OMEGA] = y[FOLLOWED] = after
         return
-    ideal = 0.5 * max(abs(shaft_speed), CREEP) * (1.0 - model.params.raceways.diameter_ratio)
-    per_slip = (1.0 if shaft_speed >= 0.0 else -1.0) / ideal
-    first, last = lag_at(per_slip * (before - y[OMEGA]), ideal, answer), lag_at(per_slip * (after - y[OMEGA]), ideal, answer)
-    if max(abs(first - lag), abs(last - lag)) <= _EVEN * lag:
-        _follow_evenly(before, after, lag, answer, duration, y)
+    ideals = (_ideal_speed(shaft_speeds[0], model), _ideal_speed(shaft_speeds[1], model))
+    sense = 1.0 if shaft_speeds[1] >= 0.0 else -1.0
+    farthest = max(abs(before - y[OMEGA]), abs(after - y[OMEGA])) / ideals[1]
+    far = max(abs(lag_at(farthest, ideals[1], work.answer) - lag), abs(lag_at(-farthest, ideals[1], work.answer) - lag), abs(lag_before - lag))
+    if farthest < _NEAR and far <= _EVEN * lag:
+        _follow_evenly(before, after, lag, work.answer, duration, y)
         return
     piece, settled = duration / _PIECES, before
     for k in range(_PIECES):
+        way, ideal = _between(work, (k + 0.5) / _PIECES), ideals[0] + (ideals[1] - ideals[0]) * (k + 0.5) / _PIECES
         towards = before + (after - before) * (k + 1) / _PIECES
         angle, speed, followed = y[THETA], y[OMEGA], y[FOLLOWED]
-        _follow_evenly(settled, towards, lag_at(per_slip * (settled - speed), ideal, answer), answer, piece, y)
+        _follow_evenly(settled, towards, lag_at(sense * (settled - speed) / ideal, ideal, way), way, piece, y)
         halfway = 0.5 * (settled - speed + towards - y[OMEGA])
         y[THETA], y[OMEGA], y[FOLLOWED] = angle, speed, followed
-        _follow_evenly(settled, towards, lag_at(per_slip * halfway, ideal, answer), answer, piece, y)
+        _follow_evenly(settled, towards, lag_at(sense * halfway / ideal, ideal, way), way, piece, y)
         settled = towards
 
 
+@template
+def _ideal_speed(shaft_speed, model):
+    """Return the speed of a cage without slip, without sign [rad/s]."""
+    return 0.5 * max(abs(shaft_speed), CREEP) * (1.0 - model.params.raceways.diameter_ratio)
+
+
+@template
+def _settled_speed(shaft_speed, slip, model):
+    return 0.5 * shaft_speed * (1.0 - model.params.raceways.diameter_ratio) * (1.0 - slip)
+
+
+@template
+def _linearly(begin, end, fraction):
+    return begin + (end - begin) * fraction
+
+
+@template
+def _covered(inputs, work):
+    return covers(inputs[0], math.hypot(inputs[1], inputs[2]), inputs[3], inputs[4], work.table)
+
+
 @kernel
-def _settled_speed(shaft_speed, model, work):
-    return 0.5 * shaft_speed * (1.0 - model.params.raceways.diameter_ratio) * (1.0 - work.answer[ANSWER.cage_slip])
+def _follow_inputs(begin, end, duration, model, work, y):
+    """Let the cage follow inputs that change linearly; afterwards ``work`` is ready for the next interval.
+
+    Where the settled slip changes much, a table is asked for inputs in between, too.
+
+    Parameters
+    ----------
+    begin, end : shaft speed [rad/s], load y, load z [N], temperature of the films [K] and growth [m]; ``work`` has the answers to both.
+    duration : [s].
+    model : of the level.
+    work : `Work`.
+    y : state, changed in place.
+    """
+    first_slip, last_slip, parts = work.ways[0, ANSWER.cage_slip], work.answer[ANSWER.cage_slip], 1
+    if _covered(begin, work) and _covered(end, work):
+        parts += min(int(abs(last_slip - first_slip) / _MUCH), _MOST_PARTS - 1)
+    settled, speed = _settled_speed(begin[0], first_slip, model), begin[0]
+    for k in range(1, parts):
+        there = _linearly(begin[0], end[0], k / parts)
+        load_y, load_z = _linearly(begin[1], end[1], k / parts), _linearly(begin[2], end[2], k / parts)
+        if not _from_table(there, load_y, load_z, _linearly(begin[3], end[3], k / parts), _linearly(begin[4], end[4], k / parts), work):
+            for column in range(work.ways.shape[1]):
+                work.answer[column] = work.ways[0, column]
+        reached = _settled_speed(there, work.answer[ANSWER.cage_slip], model)
+        _follow(settled, reached, (speed, there), model, work, duration / parts, y)
+        _begin_interval(work)
+        settled, speed = reached, there
+    if parts > 1:
+        _from_table(end[0], end[1], end[2], end[3], end[4], work)
+    _follow(settled, _settled_speed(end[0], last_slip, model), (speed, end[0]), model, work, duration / parts, y)
+    _begin_interval(work)
 
 
 @kernel
@@ -269,19 +341,22 @@ def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory,
     shaft_speed = shaft_speed_at(t, model.drive)
     if not answer_at(shaft_speed, load_y, load_z, model, work):
         return NOT_EVALUATED, h
-    before, settled = previous, _settled_speed(shaft_speed, model, work)
+    films, before = model.lubrication.film_temperature, previous
+    begin = (shaft_speed, load_y, load_z, films, excess_growth(shaft_speed, films, model.lubrication.growth, model.params.mounted))
+    _begin_interval(work)
     for k in range(samples):
-        end = t + (k + 1) * interval
-        load_y, load_z = load_at(end, model.drive)
-        shaft_speed = shaft_speed_at(end, model.drive)
+        time = t + (k + 1) * interval
+        load_y, load_z = load_at(time, model.drive)
+        shaft_speed = shaft_speed_at(time, model.drive)
         if not answer_at(shaft_speed, load_y, load_z, model, work):
             return NOT_EVALUATED, h
-        reached = _settled_speed(shaft_speed, model, work)
-        _follow(settled, reached, shaft_speed, model, work.answer, interval, y)
+        end = (shaft_speed, load_y, load_z, films, excess_growth(shaft_speed, films, model.lubrication.growth, model.params.mounted))
+        _follow_inputs(begin, end, interval, model, work, y)
+        begin = end
         counts[COUNT.steps] += 1
         counts[COUNT.unsettled_points] = work.solutions[2]
-        _write_sample(end, y, model, work, interval, before, rows[k])
-        before, settled = rows[k], reached
+        _write_sample(time, y, model, work, interval, before, rows[k])
+        before = rows[k]
     return OK, h
 
 
@@ -335,21 +410,23 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
     lubrication, mounted = model.lubrication, model.params.mounted
     if not _from_table(inputs[0, 0], inputs[0, 1], inputs[0, 2], inputs[0, 3], 0.0, work):
         return 0
-    settled, before, now = _settled_speed(inputs[0, 0], model, work), previous, start
+    before, now = previous, start
+    _begin_interval(work)
     for k in range(stretches.shape[0]):
         speed, load_y, load_z, temperature = inputs[k + 1, 0], inputs[k + 1, 1], inputs[k + 1, 2], inputs[k + 1, 3]
         if not _from_table(speed, load_y, load_z, temperature, 0.0, work):
             return k
-        reached = _settled_speed(speed, model, work)
         interval = stretches[k]
         now += interval
-        _follow(settled, reached, speed, model, work.answer, interval, y)
+        _follow_inputs(
+            (inputs[k, 0], inputs[k, 1], inputs[k, 2], inputs[k, 3], 0.0), (speed, load_y, load_z, temperature, 0.0), interval, model, work, y
+        )
         counts[COUNT.steps] += 1
         growth = growth_at(mounted, Temperatures(temperature, temperature, temperature, temperature, temperature))
         warmed = _warmed(lubrication, temperature, growth, kinematic_viscosities[k], temperature)
         there = Model(model.params, warmed, Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), model.tolerances)
         _write_sample(now, y, there, work, interval, before, rows[k])
-        settled, before = reached, rows[k]
+        before = rows[k]
     return stretches.shape[0]
 
 
@@ -424,29 +501,32 @@ def advance_warm_profile(start, stretches, inputs, y, model, work, counts, previ
     growth = excess_growth(inputs[0, 0], lubrication.film_temperature, lubrication.growth, mounted)
     if not _from_table(inputs[0, 0], inputs[0, 1], inputs[0, 2], lubrication.film_temperature, growth, work):
         return 0
-    settled, before, now = _settled_speed(inputs[0, 0], model, work), previous, start
+    before, now = previous, start
+    begin = (inputs[0, 0], inputs[0, 1], inputs[0, 2], lubrication.film_temperature, growth)
+    _begin_interval(work)
     for k in range(stretches.shape[0]):
         speed, load_y, load_z, inlet = inputs[k + 1, 0], inputs[k + 1, 1], inputs[k + 1, 2], inputs[k + 1, 3]
         lubrication = _lubrication_at(inlet, heat.temperatures, heat.network.oils, mounted, lubrication)
         growth = excess_growth(speed, lubrication.film_temperature, lubrication.growth, mounted)
         if not _from_table(speed, load_y, load_z, lubrication.film_temperature, growth, work):
             return k
-        reached = _settled_speed(speed, model, work)
         interval = stretches[k]
         now += interval
-        _follow(settled, reached, speed, model, work.answer, interval, y)
+        end = (speed, load_y, load_z, lubrication.film_temperature, growth)
+        _follow_inputs(begin, end, interval, model, work, y)
         counts[COUNT.steps] += 1
         there = Model(model.params, lubrication, Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), model.tolerances)
         _write_sample(now, y, there, work, interval, before, rows[k])
         _write_heat(heat, rows[k])
         took = _take_heat(interval, inlet, count, before, rows[k], heat)
-        settled, before = reached, rows[k]
+        begin, before = end, rows[k]
         if took:
             lubrication = _lubrication_at(inlet, heat.temperatures, heat.network.oils, mounted, lubrication)
             heat.seats[0], heat.seats[1], heat.seats[2], heat.seats[3] = seats_at(speed, lubrication.growth, mounted, heat.gaps)
             growth = excess_growth(speed, lubrication.film_temperature, lubrication.growth, mounted)
             if _from_table(speed, load_y, load_z, lubrication.film_temperature, growth, work):
-                settled = _settled_speed(speed, model, work)
+                begin = (speed, load_y, load_z, lubrication.film_temperature, growth)
+                _begin_interval(work)
     return stretches.shape[0]
 
 
