@@ -25,6 +25,7 @@ from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CAG
 from bearing_sim.levels.steady.table_builder import look_up
 from bearing_sim.model.table_span import span_of
 from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies import correction as studied
 from bearing_sim.sweep.point import run_until_settled
@@ -188,6 +189,34 @@ def test_more_points_are_measured_as_long_as_they_help(errors, points, monkeypat
     assert measured[-1] == points and next(found, None) is None
 
 
+def test_points_lie_evenly_within_the_operating_points_and_on_their_edges():
+    found = studied._spread(1024, 1, DOMAIN)
+    for column, ends in enumerate((DOMAIN.speeds, DOMAIN.loads, DOMAIN.temperatures)):
+        values = found[:, column]
+        assert ends[0] * (1 - 1e-9) <= values.min() and values.max() <= ends[1] * (1 + 1e-9)
+        for end in ends:
+            assert np.mean(np.isclose(values, end, rtol=1e-9)) == pytest.approx(0.05, abs=0.01)
+    assert np.mean(found[:, 3] < 0.5 * DOMAIN.period) == pytest.approx(0.5, abs=0.02)  # directions have no edge
+    assert len(np.unique(found[:, 3])) == 1024
+
+
+def test_points_are_measured_at_fine_tolerances_whatever_those_of_the_scene_are(monkeypatch):
+    scenes = []
+
+    def refuse(scene, *_, **__):
+        scenes.append(scene)
+        raise IntegrationError("no run")
+
+    monkeypatch.setattr(studied, "Simulation", refuse)
+    for overrides in ([], ["integration.relative_tolerance=0.2"], ["integration.fixed_step=10 us"]):
+        found = studied.measured_points(load_scene("deng2017_table1", ["level=slip", *overrides]), ((4000.0, 800.0, 393.15, 0.0),))
+        assert np.isnan(found["planar"]).all() and np.isfinite(found["steady"]).all()
+    assert (
+        len({scene.integration for scene in scenes}) == 1
+        and scenes[0].integration == load_scene("deng2017_table1", tolerance_overrides(0.3)).integration
+    )
+
+
 def test_without_a_table_a_scene_that_asks_for_a_correction_says_how_one_is_built(tmp_path, monkeypatch):
     monkeypatch.setattr(table_builder, "FOLDER", tmp_path)
     scene = load_scene("deng2017_table1", ["level=steady", "table.correction=planar"])
@@ -207,10 +236,15 @@ def test_a_scene_that_level_planar_cannot_compute_is_refused_by_the_command_with
     assert isinstance(result.exception, SystemExit)  # no traceback
 
 
-def test_tables_with_and_without_a_correction_are_kept_apart():
+def test_tables_with_and_without_a_correction_are_kept_apart(monkeypatch):
     plain, corrected = (load_scene("deng2017_table1", ["level=steady", f"table.correction={word}"]) for word in ("none", "planar"))
-    assert table_builder.table_path(plain, span_of(plain)) != table_builder.table_path(corrected, span_of(corrected))
+    plain_path, path = (table_builder.table_path(each, span_of(each)) for each in (plain, corrected))
+    assert plain_path != path
     domain = correction_domain(corrected)
+    monkeypatch.setattr(table_builder, "CORRECTION_VERSION", 0)
+    again = table_builder.table_path(corrected, span_of(corrected))
+    assert again != path and table_builder.table_path(plain, span_of(plain)) == plain_path  # a table outlives no correction that it has
+    monkeypatch.undo()
     heavier = load_scene(plain, ["bearing.cage.mass=2 kg"])  # which changes nothing at level steady
     assert correction_path(plain, domain) == correction_path(corrected, domain) != correction_path(heavier, domain)
 

@@ -31,13 +31,12 @@ from bearing_sim.estimation.splines import left_out, metric_of, searched, spline
 from bearing_sim.files.kept_arrays import read_arrays, write_arrays
 from bearing_sim.files.limits import RESPONSE_FILE
 from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER
-from bearing_sim.levels.steady.table_builder import FOLDER
+from bearing_sim.levels.steady.table_builder import CORRECTION_VERSION, FOLDER
 from bearing_sim.model.validity import BY_NAME
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.heat import NoHeat
 from bearing_sim.scene.scene import Scene
 
-VERSION = 5  # of the files, and of how points are chosen
 LIFE_EXPONENT = 4.0
 """A life falls with this power of the equivalent loads: 4.5 times 8/9 (`bearing_sim.physics.rating_life.rating_life_revolutions`)."""
 STATES_APART = 0.01 * BY_NAME["table_states"].high
@@ -245,7 +244,7 @@ def correction_domain(scene: Scene, temperatures: tuple[float, float] | None = N
 
 def correction_digest(scene: Scene, domain: Domain) -> str:
     """Return a hash of what a correction depends on: bearing, mounting, support, oil and life of the scene, operating points, this program."""
-    parts = (scene.bearing, scene.mounting, scene.support, scene.lubricant, scene.life, scene.dynamics, domain, VERSION)
+    parts = (scene.bearing, scene.mounting, scene.support, scene.lubricant, scene.life, scene.dynamics, domain, CORRECTION_VERSION)
     return hashlib.sha256("\n".join([sources_hash(), *map(repr, parts)]).encode()).hexdigest()[:24]
 
 

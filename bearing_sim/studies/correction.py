@@ -8,6 +8,7 @@ them, in the neighbourhood of those that are missed most when they are left out;
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,14 +25,14 @@ from bearing_sim.estimation.correction import (
     read_correction,
     write_correction,
 )
-from bearing_sim.estimation.response import conditions_at, coordinates, embedded
+from bearing_sim.estimation.response import CONDITIONS, Domain, conditions_at, coordinates, embedded
 from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CAGE_SLIPS
 from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import Quality, obtain_table, solve_points
 from bearing_sim.model.params import Life, pack
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.physics.rating_life import rating_life_revolutions
-from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies.trade_course import cage_rate
 from bearing_sim.sweep.settling import Outcome, advance_until_settled
@@ -43,6 +44,8 @@ _BATCH = 8  # points of a task
 _PAYS = 0.8  # of the error before, to which twice as many points must bring it, or no more than `ENOUGH_POINTS` are measured (assumption)
 _CANDIDATES = 4096
 _PURSUED = 10.0  # times the goals; larger errors, such as at a jump from one state to another, do not draw more points
+_FINER = 0.3  # times the default tolerances: a table must not add its own error to theirs where rollers rattle
+_ON_EDGES = 0.05  # of the points for each edge of the operating points; a spline errs most there
 _SHORTEST, _LONGEST = 24.0, 120.0  # turns of an ideal cage; cages that skid under little load wander and never rest, their means count
 _TELLING = 0.02  # slip from which on another state is looked for
 _MORE = 2.0  # times the slip found, at which the search for another state begins
@@ -71,6 +74,7 @@ def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> 
     ``other_slip`` : in which ``planar`` settles from more slip; NaN where that was not tried.
     """
     steady, planar = solve_points(scene, np.array(conditions)), scene.at_level("planar")
+    planar = replace(planar, integration=Integration().with_tolerances(_FINER))  # not those of the scene: its other runs share the correction
     life, found, other = pack(planar).life, np.full((len(conditions), len(ANSWER)), math.nan), np.full(len(conditions), math.nan)
     for k, (speed, load, kelvin, angle) in enumerate(conditions):
         inputs = Inputs(speed, load * math.cos(angle), load * math.sin(angle), kelvin)
@@ -208,7 +212,7 @@ def obtain_correction(
 
 def _measured(scene, domain, path: Path, workers, progress, most) -> Correction:
     began, plain = time.perf_counter(), measured_scene(scene, "slip")
-    spread = conditions_at(qmc.Sobol(d=4, scramble=True, seed=np.random.default_rng(1)).random(min(FIRST_POINTS, most)), domain)
+    spread = _spread(min(FIRST_POINTS, most), 1, domain)
     conditions, rows, before = np.zeros((0, 4)), [], None
     with Journal(path) as journal:
         while True:
@@ -222,6 +226,14 @@ def _measured(scene, domain, path: Path, workers, progress, most) -> Correction:
                 return found
             before = found
             spread = _doubtful(found, min(len(conditions), most - len(conditions)), len(conditions))
+
+
+def _spread(count: int, seed: int, domain: Domain) -> np.ndarray:
+    """Return so many operating points, evenly spread and on the edges of speed, load and temperature."""
+    places = qmc.Sobol(d=len(CONDITIONS), scramble=True, seed=np.random.default_rng(seed)).random(count)
+    bounded = [CONDITIONS.index(name) for name in CONDITIONS if name != "load_angle"]
+    places[:, bounded] = np.clip((places[:, bounded] - _ON_EDGES) / (1.0 - 2.0 * _ON_EDGES), 0.0, 1.0)
+    return conditions_at(places, domain)
 
 
 def _missed(found: Correction) -> list[str]:
@@ -249,7 +261,7 @@ def _fitted(domain, conditions, rows, seconds) -> Correction:
 
 def _doubtful(found: Correction, count: int, seed: int) -> np.ndarray:
     """Return conditions at which a correction is least sure, each a candidate that is far from the others."""
-    candidates = conditions_at(qmc.Sobol(d=4, scramble=True, seed=np.random.default_rng(seed)).random(_CANDIDATES), found.domain)
+    candidates = _spread(_CANDIDATES, seed, found.domain)
     errors = found.errors_near(candidates) / [SLIP_GOAL, LIFE_GOAL]
     weights = np.sqrt(np.square(np.minimum(errors, _PURSUED)).sum(axis=1))
     there, chosen = (embedded(coordinates(each, found.domain), found.domain) @ found.metrics[0] for each in (candidates, found.conditions))

@@ -307,6 +307,8 @@ class _Grid:
 
 
 FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "tables"
+CORRECTION_VERSION = 6
+"""Of how corrections are measured, fitted and kept (`bearing_sim.estimation.correction`); tables that others have corrected are built again."""
 
 
 def table_numbers(scene: Scene, span: Span) -> list[np.ndarray]:
@@ -322,7 +324,7 @@ def corrected_by(scene: Scene) -> str:
     """Return what the correction of a scene's table depends on besides its numbers; empty for a table without one."""
     if scene.table.correction == "none":
         return ""
-    return repr((scene.table.correction, scene.bearing, scene.support, scene.dynamics))  # a level with masses and a support
+    return repr((scene.table.correction, CORRECTION_VERSION, scene.bearing, scene.support, scene.dynamics))  # a level with masses and a support
 
 
 def table_hash(scene: Scene, span: Span) -> str:
