@@ -46,7 +46,7 @@ from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs, oil_properties, step
 
 _NEAR, _EVEN = 0.02, 0.02  # slip, and fraction of the lag; as near, and where the lag changes by less, one step follows exactly
-_PIECES = 12  # of an interval in which it changes by more
+_PIECES = 4  # of an interval in which it changes by more
 _MUCH, _MOST_PARTS = 0.01, 16  # change of the settled slip in an interval, by each of which it is cut in one part more
 _HARDLY_FELT = 1.0 + 1e-6  # inertia up to which spins count for nothing
 FOLLOWED = 2  # where the state holds the cage speed that the spins have followed to
