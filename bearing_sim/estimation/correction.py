@@ -150,23 +150,18 @@ def changes_between(answers: np.ndarray, others: np.ndarray) -> np.ndarray:
     found[:, ANSWER.cage_slip] = slip_scale(others[:, ANSWER.cage_slip]) - slip_scale(answers[:, ANSWER.cage_slip])
     with np.errstate(divide="ignore", invalid="ignore"):
         # what is not known, such as the lag of a stopped cage, does not change
-        found[:, ANSWER.lag] = _known(np.log(others[:, ANSWER.lag] / answers[:, ANSWER.lag]))
-        found[:, ACCELERATIONS] = _known((others - answers)[:, ACCELERATIONS] / _usual_acceleration(answers))
+        found[:, ANSWER.lag] = np.nan_to_num(np.log(others[:, ANSWER.lag] / answers[:, ANSWER.lag]), posinf=0.0, neginf=0.0)
+        found[:, ACCELERATIONS] = np.nan_to_num((others - answers)[:, ACCELERATIONS] / _usual_acceleration(answers), posinf=0.0, neginf=0.0)
         found[:, _FACTORS] = np.log(others[:, _FACTORS] / answers[:, _FACTORS])
         shaft = answers[:, [ANSWER.shaft_power]]
         found[:, _POWERS] = np.where(np.abs(shaft) > _LEAST_POWER, (others - answers)[:, _POWERS] / shaft, 0.0)
     return np.where(answers == others, 0.0, found)  # no load at both: no change
 
 
-def _known(changes):
-    return np.where(np.isfinite(changes), changes, 0.0)
-
-
 def _usual_acceleration(answers):
     """Return the root mean square of each answer's accelerations that are known, shape (n, 1)."""
-    known = np.isfinite(answers[:, ACCELERATIONS])
-    squares = np.where(known, answers[:, ACCELERATIONS], 0.0) ** 2
-    return np.sqrt(squares.sum(axis=1, keepdims=True) / np.maximum(known.sum(axis=1, keepdims=True), 1))
+    squares = np.square(answers[:, ACCELERATIONS])
+    return np.sqrt(np.nansum(squares, axis=1, keepdims=True) / np.maximum(np.isfinite(squares).sum(axis=1, keepdims=True), 1))
 
 
 def fit_correction(domain: Domain, conditions: np.ndarray, answers: np.ndarray, others: np.ndarray, seconds: float = 0.0) -> Correction:

@@ -69,10 +69,7 @@ def to_si(value: object, unit: str) -> float:
         return number
     if _EXCESSIVE_POWER.search(written_unit):  # pint would compute 9**9**9**9
         raise ValueError(f"{value!r} has powers of powers in its unit; expected {expected(unit)}")
-    if unit == SPEED:
-        written_unit = _TURNS.get("".join(written_unit.casefold().split()), written_unit)
-    if unit == "m" and written_unit in _THOUSANDTHS_OF_AN_INCH:
-        written_unit = "thou"
+    written_unit = _MEANT.get(unit, {}).get("".join(written_unit.casefold().split()), written_unit)
     import pint
 
     registry = unit_registry()
@@ -108,7 +105,8 @@ _TURNS = {
     **dict.fromkeys(("krpm", "1000/min"), "kilorevolution/min"),
     "khz": "kilorevolution/s",
 }
-_THOUSANDTHS_OF_AN_INCH = ("mil", "mils")  # where a length is meant; to pint a mil is an angle
+# By the unit that is expected; to pint a mil is an angle.
+_MEANT = {SPEED: _TURNS, "m": dict.fromkeys(("mil", "mils"), "thou")}
 _ANGLES = ("radian", "degree", "turn", "revolution", "cycle", "arcminute", "arcsecond", "grade", "revolutions_per_minute", "revolutions_per_second")
 _SPELLINGS = (
     "N",

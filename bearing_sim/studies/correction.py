@@ -85,8 +85,7 @@ def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> 
             found[k] = _answers(_settled(run), life)
             slip = found[k, ANSWER.cage_slip]
             back = _slips_on_the_way(Simulation(planar, inputs, start=_slipping(rolling, _FAR_BEHIND, with_spins=True)))[_ON_THE_WAY_BACK:]
-            turn = 1.0 / abs(cage_rate(planar, speed))
-            found[k, ANSWER.lag : ACCELERATIONS.stop] = _way_to_balance(steady[k], slip, (on, back), turn)
+            found[k, ANSWER.lag : ACCELERATIONS.stop] = _way_to_balance(steady[k], slip, (on, back), _turn(run))
             if _TELLING <= slip < 0.5:
                 other[k] = _settled(Simulation(planar, inputs, start=_slipping(rolling, _MORE * slip))).slip
         except IntegrationError:
@@ -94,14 +93,18 @@ def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> 
     return {"steady": steady.tolist(), "planar": found.tolist(), "other_slip": other.tolist()}
 
 
+def _turn(run: Simulation) -> float:
+    """Return how long a cage without slip takes for a turn [s]."""
+    return 1.0 / abs(cage_rate(run.scene, run.inputs.shaft_speed))
+
+
 def _settled(run: Simulation) -> Outcome:
-    turn = 1.0 / abs(cage_rate(run.scene, run.inputs.shaft_speed))
-    return advance_until_settled(run, _SHORTEST * turn, _LONGEST * turn)
+    return advance_until_settled(run, _SHORTEST * _turn(run), _LONGEST * _turn(run))
 
 
 def _slips_on_the_way(run: Simulation) -> np.ndarray:
     """Return the mean slips of a run that has just begun, quarter by quarter of a cage turn, until its cage rests or is long on its way."""
-    quarter = _QUARTER / abs(cage_rate(run.scene, run.inputs.shaft_speed))
+    quarter = _QUARTER * _turn(run)
     in_turn, slips = round(1.0 / _QUARTER), []
     while len(slips) < _LONGEST_WAY * in_turn:
         slips.append(float(run.advance(quarter, samples=_SAMPLES_OF_A_QUARTER)["cage_slip"].mean()))
@@ -231,7 +234,7 @@ def _measured(scene, domain, path: Path, workers, progress, most) -> Correction:
 def _spread(count: int, seed: int, domain: Domain) -> np.ndarray:
     """Return so many operating points, evenly spread and on the edges of speed, load and temperature."""
     places = qmc.Sobol(d=len(CONDITIONS), scramble=True, seed=np.random.default_rng(seed)).random(count)
-    bounded = [CONDITIONS.index(name) for name in CONDITIONS if name != "load_angle"]
+    bounded = [name != "load_angle" for name in CONDITIONS]
     places[:, bounded] = np.clip((places[:, bounded] - _ON_EDGES) / (1.0 - 2.0 * _ON_EDGES), 0.0, 1.0)
     return conditions_at(places, domain)
 

@@ -68,6 +68,16 @@ class Work(NamedTuple):
     solutions: np.ndarray  # operating points solved so far, and how many of them by marching, and without an end to it, int64, shape (3,)
 
 
+class Condition(NamedTuple):
+    """What an operating point is looked up by."""
+
+    shaft_speed: float  # [rad/s]
+    load_y: float  # [N]
+    load_z: float
+    temperature: float  # of the films [K]
+    growth: float  # of the inner raceway beyond that of a bearing of one temperature [m]
+
+
 def new_work(params, table: Table | None = None):
     """Return the level's workspace for a bearing; without a table every operating point is solved."""
     return Work(
@@ -126,24 +136,36 @@ def solve_condition(shaft_speed, load_y, load_z, model, work):
     return True
 
 
+@template
+def _covered(condition, work):
+    """Return whether the table answers for a condition."""
+    return covers(condition.shaft_speed, math.hypot(condition.load_y, condition.load_z), condition.temperature, condition.growth, work.table)
+
+
 @kernel
-def _from_table(speed, load_y, load_z, temperature, growth, work):
+def _from_table(condition, work):
     """Write the table's answer to a condition into ``work.answer``; return whether it has one."""
-    load = math.hypot(load_y, load_z)
-    if not covers(speed, load, temperature, growth, work.table):
+    if not _covered(condition, work):
         return False
-    look_up(speed, load, temperature, math.atan2(load_z, load_y), growth, work.table, work.scratch, work.answer)
+    speed, load_y, load_z, temperature, growth = condition
+    look_up(speed, math.hypot(load_y, load_z), temperature, math.atan2(load_z, load_y), growth, work.table, work.scratch, work.answer)
     return math.isfinite(work.answer[ANSWER.cage_slip])
 
 
+@template
+def _condition_at(t, model):
+    """Return the condition at a time [s]."""
+    load_y, load_z = load_at(t, model.drive)
+    speed, films = shaft_speed_at(t, model.drive), model.lubrication.film_temperature
+    return Condition(speed, load_y, load_z, films, excess_growth(speed, films, model.lubrication.growth, model.params.mounted))
+
+
 @kernel
-def answer_at(shaft_speed, load_y, load_z, model, work):
-    """Write the operating point of a condition into ``work.answer``; return whether there is one.  Parameters as of `solve_condition`."""
-    lubrication = model.lubrication
-    growth = excess_growth(shaft_speed, lubrication.film_temperature, lubrication.growth, model.params.mounted)
-    if _from_table(shaft_speed, load_y, load_z, lubrication.film_temperature, growth, work):
+def _answer_to(condition, model, work):
+    """Write the operating point of a condition into ``work.answer``; return whether there is one.  Model and work are as of `solve_condition`."""
+    if _from_table(condition, work):
         return True
-    if not solve_condition(shaft_speed, load_y, load_z, model, work):
+    if not solve_condition(condition.shaft_speed, condition.load_y, condition.load_z, model, work):
         return False
     for column in range(work.answer.shape[0]):
         work.answer[column] = work.solved[column]
@@ -186,8 +208,7 @@ def _write_sample(t, y, model, work, interval, previous, row):
 @kernel
 def observe(t, y, model, work, interval, previous, row, memory):
     """Write the sample of state ``y``; parameters as of `bearing_sim.levels.slip.model.observe`."""
-    load_y, load_z = load_at(t, model.drive)
-    if not answer_at(shaft_speed_at(t, model.drive), load_y, load_z, model, work):
+    if not _answer_to(_condition_at(t, model), model, work):
         for column in range(work.answer.shape[0]):
             work.answer[column] = math.nan
     _write_sample(t, y, model, work, interval, previous, row)
@@ -286,13 +307,15 @@ def _settled_speed(shaft_speed, slip, model):
 
 
 @template
-def _linearly(begin, end, fraction):
-    return begin + (end - begin) * fraction
-
-
-@template
-def _covered(inputs, work):
-    return covers(inputs[0], math.hypot(inputs[1], inputs[2]), inputs[3], inputs[4], work.table)
+def _condition_between(begin, end, fraction):
+    """Return the condition at a fraction of an interval in which all inputs change linearly."""
+    return Condition(
+        begin.shaft_speed + (end.shaft_speed - begin.shaft_speed) * fraction,
+        begin.load_y + (end.load_y - begin.load_y) * fraction,
+        begin.load_z + (end.load_z - begin.load_z) * fraction,
+        begin.temperature + (end.temperature - begin.temperature) * fraction,
+        begin.growth + (end.growth - begin.growth) * fraction,
+    )
 
 
 @kernel
@@ -303,7 +326,7 @@ def _follow_inputs(begin, end, duration, model, work, y):
 
     Parameters
     ----------
-    begin, end : shaft speed [rad/s], load y, load z [N], temperature of the films [K] and growth [m]; ``work`` has the answers to both.
+    begin, end : `Condition`; ``work`` has the answers to both.
     duration : [s].
     model : of the level.
     work : `Work`.
@@ -312,20 +335,19 @@ def _follow_inputs(begin, end, duration, model, work, y):
     first_slip, last_slip, parts = work.ways[0, ANSWER.cage_slip], work.answer[ANSWER.cage_slip], 1
     if _covered(begin, work) and _covered(end, work):
         parts += min(int(abs(last_slip - first_slip) / _MUCH), _MOST_PARTS - 1)
-    settled, speed = _settled_speed(begin[0], first_slip, model), begin[0]
+    settled, speed = _settled_speed(begin.shaft_speed, first_slip, model), begin.shaft_speed
     for k in range(1, parts):
-        there = _linearly(begin[0], end[0], k / parts)
-        load_y, load_z = _linearly(begin[1], end[1], k / parts), _linearly(begin[2], end[2], k / parts)
-        if not _from_table(there, load_y, load_z, _linearly(begin[3], end[3], k / parts), _linearly(begin[4], end[4], k / parts), work):
+        there = _condition_between(begin, end, k / parts)
+        if not _from_table(there, work):  # beside a node without an answer
             for column in range(work.ways.shape[1]):
                 work.answer[column] = work.ways[0, column]
-        reached = _settled_speed(there, work.answer[ANSWER.cage_slip], model)
-        _follow(settled, reached, (speed, there), model, work, duration / parts, y)
+        reached = _settled_speed(there.shaft_speed, work.answer[ANSWER.cage_slip], model)
+        _follow(settled, reached, (speed, there.shaft_speed), model, work, duration / parts, y)
         _begin_interval(work)
-        settled, speed = reached, there
+        settled, speed = reached, there.shaft_speed
     if parts > 1:
-        _from_table(end[0], end[1], end[2], end[3], end[4], work)
-    _follow(settled, _settled_speed(end[0], last_slip, model), (speed, end[0]), model, work, duration / parts, y)
+        _from_table(end, work)
+    _follow(settled, _settled_speed(end.shaft_speed, last_slip, model), (speed, end.shaft_speed), model, work, duration / parts, y)
     _begin_interval(work)
 
 
@@ -337,20 +359,15 @@ def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory,
     """
     samples = rows.shape[0]
     interval = duration / samples
-    load_y, load_z = load_at(t, model.drive)
-    shaft_speed = shaft_speed_at(t, model.drive)
-    if not answer_at(shaft_speed, load_y, load_z, model, work):
+    begin, before = _condition_at(t, model), previous
+    if not _answer_to(begin, model, work):
         return NOT_EVALUATED, h
-    films, before = model.lubrication.film_temperature, previous
-    begin = (shaft_speed, load_y, load_z, films, excess_growth(shaft_speed, films, model.lubrication.growth, model.params.mounted))
     _begin_interval(work)
     for k in range(samples):
         time = t + (k + 1) * interval
-        load_y, load_z = load_at(time, model.drive)
-        shaft_speed = shaft_speed_at(time, model.drive)
-        if not answer_at(shaft_speed, load_y, load_z, model, work):
+        end = _condition_at(time, model)
+        if not _answer_to(end, model, work):
             return NOT_EVALUATED, h
-        end = (shaft_speed, load_y, load_z, films, excess_growth(shaft_speed, films, model.lubrication.growth, model.params.mounted))
         _follow_inputs(begin, end, interval, model, work, y)
         begin = end
         counts[COUNT.steps] += 1
@@ -408,25 +425,24 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
     how many instants were reached; the state is that of the last of them.
     """
     lubrication, mounted = model.lubrication, model.params.mounted
-    if not _from_table(inputs[0, 0], inputs[0, 1], inputs[0, 2], inputs[0, 3], 0.0, work):
+    begin, before, now = Condition(inputs[0, 0], inputs[0, 1], inputs[0, 2], inputs[0, 3], 0.0), previous, start
+    if not _from_table(begin, work):
         return 0
-    before, now = previous, start
     _begin_interval(work)
     for k in range(stretches.shape[0]):
         speed, load_y, load_z, temperature = inputs[k + 1, 0], inputs[k + 1, 1], inputs[k + 1, 2], inputs[k + 1, 3]
-        if not _from_table(speed, load_y, load_z, temperature, 0.0, work):
+        end = Condition(speed, load_y, load_z, temperature, 0.0)
+        if not _from_table(end, work):
             return k
         interval = stretches[k]
         now += interval
-        _follow_inputs(
-            (inputs[k, 0], inputs[k, 1], inputs[k, 2], inputs[k, 3], 0.0), (speed, load_y, load_z, temperature, 0.0), interval, model, work, y
-        )
+        _follow_inputs(begin, end, interval, model, work, y)
         counts[COUNT.steps] += 1
         growth = growth_at(mounted, Temperatures(temperature, temperature, temperature, temperature, temperature))
         warmed = _warmed(lubrication, temperature, growth, kinematic_viscosities[k], temperature)
         there = Model(model.params, warmed, Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), model.tolerances)
         _write_sample(now, y, there, work, interval, before, rows[k])
-        before = rows[k]
+        begin, before = end, rows[k]
     return stretches.shape[0]
 
 
@@ -499,20 +515,19 @@ def advance_warm_profile(start, stretches, inputs, y, model, work, counts, previ
     mounted, count = model.params.mounted, model.params.rollers.count
     lubrication = _lubrication_at(inputs[0, 3], heat.temperatures, heat.network.oils, mounted, model.lubrication)
     growth = excess_growth(inputs[0, 0], lubrication.film_temperature, lubrication.growth, mounted)
-    if not _from_table(inputs[0, 0], inputs[0, 1], inputs[0, 2], lubrication.film_temperature, growth, work):
+    begin, before, now = Condition(inputs[0, 0], inputs[0, 1], inputs[0, 2], lubrication.film_temperature, growth), previous, start
+    if not _from_table(begin, work):
         return 0
-    before, now = previous, start
-    begin = (inputs[0, 0], inputs[0, 1], inputs[0, 2], lubrication.film_temperature, growth)
     _begin_interval(work)
     for k in range(stretches.shape[0]):
         speed, load_y, load_z, inlet = inputs[k + 1, 0], inputs[k + 1, 1], inputs[k + 1, 2], inputs[k + 1, 3]
         lubrication = _lubrication_at(inlet, heat.temperatures, heat.network.oils, mounted, lubrication)
         growth = excess_growth(speed, lubrication.film_temperature, lubrication.growth, mounted)
-        if not _from_table(speed, load_y, load_z, lubrication.film_temperature, growth, work):
+        end = Condition(speed, load_y, load_z, lubrication.film_temperature, growth)
+        if not _from_table(end, work):
             return k
         interval = stretches[k]
         now += interval
-        end = (speed, load_y, load_z, lubrication.film_temperature, growth)
         _follow_inputs(begin, end, interval, model, work, y)
         counts[COUNT.steps] += 1
         there = Model(model.params, lubrication, Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), model.tolerances)
@@ -524,8 +539,9 @@ def advance_warm_profile(start, stretches, inputs, y, model, work, counts, previ
             lubrication = _lubrication_at(inlet, heat.temperatures, heat.network.oils, mounted, lubrication)
             heat.seats[0], heat.seats[1], heat.seats[2], heat.seats[3] = seats_at(speed, lubrication.growth, mounted, heat.gaps)
             growth = excess_growth(speed, lubrication.film_temperature, lubrication.growth, mounted)
-            if _from_table(speed, load_y, load_z, lubrication.film_temperature, growth, work):
-                begin = (speed, load_y, load_z, lubrication.film_temperature, growth)
+            warmer = Condition(speed, load_y, load_z, lubrication.film_temperature, growth)
+            if _from_table(warmer, work):
+                begin = warmer
                 _begin_interval(work)
     return stretches.shape[0]
 

@@ -79,7 +79,7 @@ _AN_INSTANT = 1e-6  # of an ideal cage turn
 _SLIPS = np.array([0.0, 1e-3, 4e-3, 0.012, 0.03, 0.06, 0.1, 0.15, 0.2, 0.26, 0.33, 0.4, 0.48, 0.56, 0.64, 0.72, 0.8, 0.88, 0.94, 0.98, 0.995, 0.999])
 CAGE_SLIPS = np.array([-0.1, 0.0, 0.03, 0.1, 0.2, 0.33, 0.48, 0.64])
 """Slips at which a cage's acceleration is part of the answer to an operating point."""
-_PASSED = np.array([-1, 0, 4, 6, 8, 10, 12, 14])  # which of the slips of the search they are, if any
+_PASSED = np.searchsorted(_SLIPS, CAGE_SLIPS)  # which of the slips of the search they are, all but the first
 _SKIDDING = 5  # up to which of them spins are asked how they follow a cage that is far from its balance
 _LONGEST_LAG = 1e4  # s
 _APART = 0.01  # slip by which one of `CAGE_SLIPS` has to be apart from the balance to count
@@ -479,19 +479,20 @@ def _write_accelerations(slip, ideal, sense, model, work, orbit, answer):
     """Write accelerations at `CAGE_SLIPS`, and how spins follow a cage that skids; ``orbit`` holds the spins at ``slip``, and does afterwards."""
     speed, count = orbit.speed[0], CAGE_SLIPS.shape[0]
     _keep_spins(orbit, orbit.found)
-    for i in range(2 * count):  # away from the operating point both ways: spins are sought from those found before
-        k = count - 1 - i if i < count else i - count
-        if i == count:
-            _go_back(speed, orbit)
-        if (CAGE_SLIPS[k] <= slip) != (i < count):
-            continue
+    ahead = 0  # so many of them are not behind the operating point
+    while ahead < count and CAGE_SLIPS[ahead] <= slip:
+        ahead += 1
+    for k in range(ahead - 1, -1, -1):  # away from the operating point: spins are sought from those found before
         drive = orbit.passed[_PASSED[k]] if k > 0 else math.nan
-        if i >= count or not math.isfinite(drive):
+        if not math.isfinite(drive):
             drive = _mean_drive(ideal * (1.0 - CAGE_SLIPS[k]), sense, model, work, orbit, _ROUGH)
         answer[ANSWER.acceleration_lead_10 + k] = drive
-        if k == _SKIDDING - 1:
+    _go_back(speed, orbit)
+    for k in range(ahead, count):
+        if k == _SKIDDING:
             _keep_spins(orbit, orbit.beside)
-        if k == _SKIDDING and slip < CAGE_SLIPS[k - 1]:
+        answer[ANSWER.acceleration_lead_10 + k] = _mean_drive(ideal * (1.0 - CAGE_SLIPS[k]), sense, model, work, orbit, _ROUGH)
+        if k == _SKIDDING and k > ahead:
             inertia, delay = _inertia_and_delay((CAGE_SLIPS[k] - CAGE_SLIPS[k - 1]) * ideal, sense, orbit)
             if math.isfinite(inertia + delay):
                 answer[ANSWER.spin_inertia], answer[ANSWER.spin_delay] = max(inertia, 1.0), max(delay, 0.0)
