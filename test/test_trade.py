@@ -33,6 +33,7 @@ from bearing_sim.studies.trade import (
     trade,
 )
 from bearing_sim.studies.trade import _errors as errors
+from bearing_sim.studies.trade import _mean_slips as mean_slips
 from bearing_sim.studies.trade_course import OUTLINES, bin_edges, built_in, time_of_turns, turned, windows_of
 
 SETTING = Setting("slip", "tolerances x 1", ())
@@ -337,3 +338,13 @@ def test_a_window_begins_in_the_settled_state_of_the_bearing():
     rested = float(run.advance(0.05, samples=50)["cage_slip"].mean())
     start, nodes = _settled_start(_Lowered(run.scene), run.inputs)
     assert float(start["cage_slip"]) == pytest.approx(rested, abs=1e-3) and nodes is None
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_mean_slips_are_exact_however_far_samples_are_apart_and_slip_changes(sense):
+    """A cage that begins to slip, by half in the end, evenly in time, on a shaft that turns evenly."""
+    scene, times = load_scene("deng2017_table1"), np.array([0.0, 0.1, 0.15, 1.0])
+    samples = np.zeros(4, [("cage_angle", float), ("shaft_angle", float)])
+    samples["shaft_angle"] = sense * 1000.0 * times
+    samples["cage_angle"] = 7.0 + sense * 500.0 * (1.0 - scene.bearing.diameter_ratio) * (times - 0.25 * times**2)
+    assert mean_slips(scene, samples) == pytest.approx(100.0 * 0.25 * (times[1:] + times[:-1]), rel=1e-9)

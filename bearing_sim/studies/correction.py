@@ -32,7 +32,7 @@ from bearing_sim.levels.steady.table_builder import Quality, obtain_table, solve
 from bearing_sim.model.params import Life, pack
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.physics.rating_life import rating_life_revolutions
-from bearing_sim.scene.scene import Integration, Scene
+from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies.trade_course import cage_rate
 from bearing_sim.sweep.settling import Outcome, advance_until_settled
@@ -74,7 +74,7 @@ def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> 
     ``other_slip`` : in which ``planar`` settles from more slip; NaN where that was not tried.
     """
     steady, planar = solve_points(scene, np.array(conditions)), scene.at_level("planar")
-    planar = replace(planar, integration=Integration().with_tolerances(_FINER))  # not those of the scene: its other runs share the correction
+    planar = replace(planar, integration=planar.integration.with_tolerances(_FINER))
     life, found, other = pack(planar).life, np.full((len(conditions), len(ANSWER)), math.nan), np.full(len(conditions), math.nan)
     for k, (speed, load, kelvin, angle) in enumerate(conditions):
         inputs = Inputs(speed, load * math.cos(angle), load * math.sin(angle), kelvin)
