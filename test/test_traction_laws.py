@@ -13,8 +13,8 @@ from bearing_sim import SceneError, Simulation, load_scene
 from bearing_sim.model.oil import oil_at
 from bearing_sim.model.params import lubricate, pack
 from bearing_sim.numerics.simd import LANES
-from bearing_sim.physics.contact import CONTACT
-from bearing_sim.physics.traction import kragelskii_coefficients, traction
+from bearing_sim.physics.contact import CONTACT, ROLLING_SPEED_FLOOR
+from bearing_sim.physics.traction import _MOST_CORRECTIONS, STEP, _shear, kragelskii_coefficients, traction
 
 LAWS = {
     "kragelskii": ["lubricant.traction.law=kragelskii"],
@@ -22,6 +22,7 @@ LAWS = {
     "kragelskii falling": ["lubricant.traction={law: kragelskii, mu_0: 0.04, mu_inf: 0.01}"],
     "eyring": ["lubricant.traction.law=eyring"],
     "eyring, thick oil": ["lubricant.traction.law=eyring", "lubricant.oil=mil_l_23699", "lubricant.temperature=20 degC"],
+    "eyring, cold oil": ["lubricant.traction.law=eyring", "lubricant.oil=mil_l_23699", "lubricant.temperature=-30 degC"],
 }
 
 
@@ -96,10 +97,11 @@ def test_slopes_of_every_law_are_finite_differences(name, sliding, load, rolling
     assert found[CONTACT.d_rolling] == pytest.approx(slope("rolling", 1e-3 * rolling), rel=1e-4, abs=1e-6)
 
 
-@pytest.mark.parametrize("name", ["eyring", "eyring, thick oil"])
+@pytest.mark.parametrize("name", ["eyring", "eyring, thick oil", "eyring, cold oil"])
 @pytest.mark.parametrize("ring", [0, 1])
 @pytest.mark.parametrize(
-    ("sliding", "load", "rolling"), [(0.05, 1000.0, 73.0), (1.0, 1000.0, 73.0), (20.0, 300.0, 60.0), (5.0, 2000.0, 10.0), (60.0, 20.0, 90.0)]
+    ("sliding", "load", "rolling"),
+    [(0.05, 1e3, 73.0), (1.0, 1e3, 73.0), (20.0, 300.0, 60.0), (5.0, 2e3, 10.0), (60.0, 20.0, 90.0), (4e-3, 9e4, 1.0), (2e-4, 5e4, 0.01)],
 )
 def test_eyring_traction_solves_its_equations(name, ring, sliding, load, rolling):
     scene, params, _ = LUBRICATIONS[name]
@@ -108,22 +110,35 @@ def test_eyring_traction_solves_its_equations(name, ring, sliding, load, rolling
     radius, modulus = (raceways.inner_curvature_radius, raceways.outer_curvature_radius)[ring], raceways.reduced_modulus
     eta, alpha, beta, k = oil.viscosity, oil.pressure_viscosity, oil.temperature_viscosity, oil.conductivity
     half_width = math.sqrt(8 * load / length * radius / (math.pi * modulus))
-    pressure = load / (2 * half_width * length)
-    film = radius * 3.06 * (eta * rolling / (modulus * radius)) ** 0.69 * (alpha * modulus) ** 0.56 * (load / (modulus * radius * length)) ** -0.10
-    film /= 1 + 0.1 * (1 + 14.8 * math.hypot(sliding / rolling, 0.01) ** 0.83) * (eta * beta * rolling**2 / k) ** 0.64
+    pressure, rolled = load / (2 * half_width * length), math.hypot(rolling, ROLLING_SPEED_FLOOR)
+    film = radius * 3.06 * (eta * rolled / (modulus * radius)) ** 0.69 * (alpha * modulus) ** 0.56 * (load / (modulus * radius * length)) ** -0.10
+    film /= 1 + 0.1 * (1 + 14.8 * math.hypot(sliding / rolled, 0.01) ** 0.83) * (eta * beta * rolled**2 / k) ** 0.64
     z = alpha / (5.1e-9 * (math.log(eta) + 9.67))
     steep = (1 + 5.1e-9 * pressure) ** z  # by which Roelands' law makes both ln eta and its fall with temperature grow
-    thick = eta * math.exp((math.log(eta) + 9.67) * (steep - 1))
+    log_thick = math.log(eta) + (math.log(eta) + 9.67) * (steep - 1)
 
     def residual(stress):
-        heated = stress * sliding * film / (12 * k)
-        sheared = sliding - 8 * stress / (math.pi * modulus) * rolling  # what the surfaces' elastic creep leaves to the film
-        return stress - 5e6 * math.asinh(thick * math.exp(-beta * steep * heated) * sheared / (film * 5e6))
+        heated = beta * steep * stress * sliding * film / (12 * k)
+        sheared = sliding - 8 * stress / (math.pi * modulus) * rolled  # what the surfaces' elastic creep leaves to the film
+        return stress / 5e6 - math.asinh(sheared / (film * 5e6) * math.exp(log_thick - heated))
 
-    stress = brentq(residual, 0, 1e12, xtol=1e-6)
+    stress = brentq(residual, 0, math.pi * modulus * sliding / (8 * rolled), xtol=1e-9, rtol=1e-14)
     expected = 0.075 * math.tanh(stress / (0.075 * pressure)) * load
-    # the compiled law rounds the rolling speed by 0.05 m/s through zero
-    assert contact(name, sliding, load, rolling, ring)[CONTACT.force] == pytest.approx(expected, rel=2e-4)
+    assert contact(name, sliding, load, rolling, ring)[CONTACT.force] == pytest.approx(expected, rel=1e-7)
+
+
+def test_the_shear_stress_of_a_film_is_found_by_few_corrections_whatever_heats_it_and_creeps():
+    random, most = np.random.default_rng(1), 0
+    for _ in range(20_000):
+        contacts = np.zeros((1, len(CONTACT), LANES))
+        slide, thick = 10 ** random.uniform(-8, 2, LANES), 10 ** random.uniform(0, 12, LANES)
+        heated, creep = 10 ** random.uniform(-8, 2.5, LANES), 10 ** random.uniform(-8, 8, LANES) / thick
+        contacts[0, CONTACT.sliding], contacts[0, STEP.thick], contacts[0, STEP.heated], contacts[0, STEP.creep] = slide, thick, heated, creep
+        most = max(most, _shear(contacts, 0, 1))
+        y = contacts[0, STEP.stress]
+        missed = np.sinh(y) * np.exp(heated * y) / thick + creep * y - slide
+        assert np.abs(missed).max() <= 1e-8 * np.abs(slide * (1 + (1 + heated) * y)).max()
+    assert most <= 6 < _MOST_CORRECTIONS
 
 
 @pytest.mark.parametrize("name", ["kragelskii", "kragelskii with mu_0", "eyring"])

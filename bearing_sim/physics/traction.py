@@ -35,7 +35,7 @@ import numpy as np
 
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.elementary import exponential, logarithm
-from bearing_sim.numerics.simd import larger, load, magnitude, smaller, spread, square_root, store, where_positive
+from bearing_sim.numerics.simd import highest, larger, load, magnitude, smaller, spread, square_root, store, where_positive
 from bearing_sim.physics.contact import CONTACT, LOAD_FLOOR, ROLLING_SPEED_FLOOR
 from bearing_sim.physics.film import DOWSON_TOYODA, FilmConstants, film_constants, film_thickness
 
@@ -44,8 +44,9 @@ SPECIAL = 14  # constants of a law that is more than the fitted form
 _STATIC, _DECAY, _RISE = 0, 1, 2  # positions of Kragelskii's mu_0, C and the rate of rise in `TractionConstants.special`
 _ROELANDS_PRESSURE, _ROELANDS_LOG = 5.1e-9, 9.67  # 1/Pa, and -ln of the viscosity 6.3e-5 Pa s: the pole of Roelands' law
 _SMALL_RATIO = 0.01  # assumption: slide-to-roll ratio below which sliding no longer changes the heating of the inlet, for smoothness
-_NEWTON_STEPS = 7
-_SERIES_STEPS = 5  # with the creep; where it matters, the film alone is a bound from above
+_MOST_CORRECTIONS = 12  # of the shear stress; twice as many as any contact was found to need
+_LAST_CORRECTION = 1e-4  # relative; it leaves its cube
+_LARGEST_EXPONENT = 300.0
 _LARGEST_SINH = 1e150  # its square is still a number
 _LEAST_SPAN = 0.1  # of ln eta_0 + 9.67: Roelands' law ends where an oil is as thin as 6.3e-5 Pa s
 
@@ -237,7 +238,7 @@ class EyringRow(NamedTuple):
 
     film: int = 0  # ln h less its powers of u and Q [m]
     inlet: int = 1  # ln of 0.1 L_t^0.64, less its power of u
-    pressure: int = 2  # ln p less 0.5 ln Q
+    pressure: int = 2  # p over the root of Q [Pa/N^0.5]
     exponent: int = 3  # Roelands' Z
     span: int = 4  # ln eta_0 + 9.67
     fluidity: int = 5  # ln (eta_0/tau_E)
@@ -265,7 +266,7 @@ def eyring_constants(oil, curvature_radius, reduced_modulus, length, eyring_stre
     """
     special, log_viscosity = np.zeros(SPECIAL), math.log(oil.viscosity)
     special[ROW.film], special[ROW.inlet] = film_constants(DOWSON_TOYODA, oil, curvature_radius, reduced_modulus, length)
-    special[ROW.pressure] = 0.5 * math.log(math.pi * reduced_modulus / (32 * curvature_radius * length))
+    special[ROW.pressure] = math.sqrt(math.pi * reduced_modulus / (32 * curvature_radius * length))
     span = max(log_viscosity + _ROELANDS_LOG, _LEAST_SPAN)
     special[ROW.exponent] = oil.pressure_viscosity / (_ROELANDS_PRESSURE * span) if pressure_index is None else pressure_index
     special[ROW.span] = span
@@ -277,11 +278,30 @@ def eyring_constants(oil, curvature_radius, reduced_modulus, length, eyring_stre
     return special
 
 
+class EyringStep(NamedTuple):
+    """Rows of a contacts array that hold the steps of the Eyring film; those of the results are free until these are written."""
+
+    log_load: int = CONTACT.log_load
+    log_speed: int = CONTACT.log_speed
+    inverse_speed: int = CONTACT.inverse_speed
+    film: int = CONTACT.b  # h [m]
+    film_by_slide: int = CONTACT.c  # d ln h/d ln |du|
+    film_by_speed: int = CONTACT.decay  # d ln h/d ln u
+    power: int = CONTACT.d  # P of Roelands' law
+    thick: int = CONTACT.d_sliding  # eta/(h tau_E) [s/m]
+    heated: int = CONTACT.d_rolling  # k: fall of ln eta by the oil's own heat, over y
+    creep: int = CONTACT.d_load  # speed that the surfaces take for tau = tau_E [m/s]
+    stress: int = CONTACT.force  # y = tau/tau_E
+
+
+STEP = EyringStep()
+
+
 @template
 def _hyperbolic(y):
     """Return sinh and cosh of lanes from 0 on, sinh to full relative accuracy where it is small."""
     square = y * y
-    rising = exponential(smaller(y, 300.0))
+    rising = exponential(smaller(y, _LARGEST_EXPONENT))
     falling = 1.0 / rising
     series = y * (1.0 + square * (1.0 / 6.0) * (1.0 + square * (1.0 / 20.0) * (1.0 + square * (1.0 / 42.0) * (1.0 + square * (1.0 / 72.0)))))
     return where_positive(1.0 - y, series, 0.5 * (rising - falling)), 0.5 * (rising + falling)
@@ -298,49 +318,110 @@ def eyring_traction(contacts, first, end, scale, special):
     scale : factor on the coefficient.
     special : see `eyring_constants`.
     """
-    law, exponent, span, limiting = DOWSON_TOYODA, special[ROW.exponent], special[ROW.span], special[ROW.limiting]
-    inlet_film = FilmConstants(special[ROW.film], special[ROW.inlet])
+    # Short loops: the processor works on several blocks at once where one long chain of operations would make it wait.
+    _film(contacts, first, end, special)
+    _thicken(contacts, first, end, special)
+    _shear(contacts, first, end)
+    _limit_stress(contacts, first, end, scale, special)
+
+
+@kernel
+def _film(contacts, first, end, special):
+    """Write the thickness of the films and its changes with ln |du| and ln u."""
+    constants = FilmConstants(special[ROW.film], special[ROW.inlet])
+    for block in range(first, end):
+        rolling = load(contacts, block, CONTACT.rolling)
+        square = rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR
+        store(contacts, block, STEP.log_load, logarithm(larger(load(contacts, block, CONTACT.load), LOAD_FLOOR)))
+        store(contacts, block, STEP.log_speed, 0.5 * logarithm(square))
+        store(contacts, block, STEP.inverse_speed, 1.0 / square_root(square))
+    for block in range(first, end):
+        ratio = load(contacts, block, CONTACT.sliding) * load(contacts, block, STEP.inverse_speed)
+        square = ratio * ratio + _SMALL_RATIO * _SMALL_RATIO
+        log_load, log_speed = load(contacts, block, STEP.log_load), load(contacts, block, STEP.log_speed)
+        film, d_ratio, d_speed = film_thickness(exponential, DOWSON_TOYODA, constants, log_speed, log_load, 0.5 * logarithm(square))
+        by_slide = d_ratio * (ratio * ratio / square)
+        store(contacts, block, STEP.film, film)
+        store(contacts, block, STEP.film_by_slide, by_slide)
+        store(contacts, block, STEP.film_by_speed, d_speed - by_slide)
+
+
+@template
+def _piled(normal, special):
+    """Return 1 + 5.1e-9 p at the mean Hertz pressure p of a normal force [N], and tau_E/(Lambda p)."""
+    pressure = special[ROW.pressure] * square_root(larger(normal, LOAD_FLOOR))
+    return 1.0 + _ROELANDS_PRESSURE * pressure, special[ROW.limit] / pressure
+
+
+@kernel
+def _thicken(contacts, first, end, special):
+    """Write what stands before sinh(y) exp(k y) and y in the speed of the film and that of the surfaces' creep, and k."""
+    for block in range(first, end):
+        piled, _ = _piled(load(contacts, block, CONTACT.load), special)
+        store(contacts, block, STEP.power, exponential(special[ROW.exponent] * logarithm(piled)))
+    for block in range(first, end):
+        film, power = load(contacts, block, STEP.film), load(contacts, block, STEP.power)
+        thick = exponential(special[ROW.fluidity] + special[ROW.span] * (power - 1.0)) / film
+        store(contacts, block, STEP.thick, thick)
+        store(contacts, block, STEP.heated, special[ROW.heating] * magnitude(load(contacts, block, CONTACT.sliding)) * film * power)
+        store(contacts, block, STEP.creep, special[ROW.creep] / load(contacts, block, STEP.inverse_speed))
+
+
+@template
+def _stretched(y, thick, heated):
+    """Return sinh(y), cosh(y) and exp(k y)/thick [m/s]."""
+    sinh, cosh = _hyperbolic(y)
+    return sinh, cosh, exponential(smaller(heated * y, _LARGEST_EXPONENT)) / thick
+
+
+@kernel
+def _shear(contacts, first, end):
+    """Write the root y of sinh(y) exp(k y)/thick + creep y = |du|; return by how many corrections.
+
+    Halley's method, from where Newton's first step in the logarithm ends without creep, or from |du|/creep where that is less.  The left side
+    rises ever faster and its first part is log-concave: the denominator of a correction is at least 1/2 above the root and at least 1 below it.
+    """
+    for block in range(first, end):
+        thick, slide = load(contacts, block, STEP.thick), magnitude(load(contacts, block, CONTACT.sliding))
+        sinh = smaller(thick * slide, _LARGEST_SINH)
+        cosh = square_root(1.0 + sinh * sinh)
+        film_alone = logarithm(sinh + cosh) / (1.0 + load(contacts, block, STEP.heated) * sinh / cosh)  # Newton's step from y = 0 in the logarithm
+        store(contacts, block, STEP.stress, smaller(film_alone, slide / load(contacts, block, STEP.creep)))
+    corrections, left = 0, spread(1.0)
+    while highest(left) > 0.0 and corrections < _MOST_CORRECTIONS:
+        corrections, left = corrections + 1, spread(0.0)
+        for block in range(first, end):
+            y, thick, heated = load(contacts, block, STEP.stress), load(contacts, block, STEP.thick), load(contacts, block, STEP.heated)
+            creep, slide = load(contacts, block, STEP.creep), magnitude(load(contacts, block, CONTACT.sliding))
+            sinh, cosh, opened = _stretched(y, thick, heated)
+            slope = 1.0 / ((cosh + heated * sinh) * opened + creep)
+            newton = (sinh * opened + creep * y - slide) * slope
+            step = newton / (1.0 - 0.5 * newton * ((1.0 + heated * heated) * sinh + 2.0 * heated * cosh) * opened * slope)
+            store(contacts, block, STEP.stress, smaller(larger(y - step, 0.0), slide / creep))
+            left = larger(left, magnitude(step) - _LAST_CORRECTION * y)
+    return corrections
+
+
+@kernel
+def _limit_stress(contacts, first, end, scale, special):
+    """Write the tangential forces and their derivatives, from the shear stresses of the films."""
+    span, limiting = special[ROW.span], special[ROW.limiting]
     for block in range(first, end):
         normal, rolling, sliding = load(contacts, block, CONTACT.load), load(contacts, block, CONTACT.rolling), load(contacts, block, CONTACT.sliding)
-        log_load = logarithm(larger(normal, LOAD_FLOOR))
-        log_speed = 0.5 * logarithm(rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR)
-        inverse_speed, slide = exponential(-log_speed), magnitude(sliding)
-        # film, and its changes with ln |du|, ln u and ln Q
-        ratio = slide * inverse_speed
-        square = ratio * ratio + _SMALL_RATIO * _SMALL_RATIO
-        film, d_ratio, d_speed = film_thickness(exponential, law, inlet_film, log_speed, log_load, 0.5 * logarithm(square))
-        h_slide = d_ratio * (ratio * ratio / square)
-        h_speed = d_speed - h_slide
-        # viscosity at the mean pressure
-        pressure = exponential(special[ROW.pressure] + 0.5 * log_load)
-        piled = 1.0 + _ROELANDS_PRESSURE * pressure
-        power = exponential(exponent * logarithm(piled))
-        power_load = 0.5 * exponent * (piled - 1.0) / piled
-        thick = exponential(special[ROW.fluidity] + span * (power - 1.0)) / film  # eta/(h tau_E)
-        # sinh(y) = a exp(-k y): from no stress Newton's method comes up to the root and never passes it
-        a, k = thick * slide, special[ROW.heating] * slide * film * power
-        y = spread(0.0)
-        for _ in range(_NEWTON_STEPS):
-            sinh = smaller(a * exponential(-(k * y)), _LARGEST_SINH)
-            cosh = square_root(1.0 + sinh * sinh)
-            y -= (y - logarithm(sinh + cosh)) / (1.0 + k * sinh / cosh)
-        # sinh(y) exp(k y)/thick + creep y = |du|, which rises ever faster: from above Newton's method comes down to the root
-        creep = special[ROW.creep] / inverse_speed
-        y = smaller(y, slide / creep)
-        for _ in range(_SERIES_STEPS):
-            sinh, cosh = _hyperbolic(y)
-            opened = exponential(smaller(k * y, 300.0)) / thick
-            y = larger(y - (sinh * opened + creep * y - slide) / ((cosh + k * sinh) * opened + creep), 0.0)
-        sinh, cosh = _hyperbolic(y)
-        opened = exponential(smaller(k * y, 300.0)) / thick
-        sheared_slide = sinh * opened  # the film's fraction of |du|
-        stiff = 1.0 / ((cosh + k * sinh) * opened + creep)
-        film_fraction = sheared_slide / larger(slide, 1e-300)
-        y_slide = stiff * (1.0 - film_fraction * (h_slide + k * y * (1.0 + h_slide)))
-        y_speed = -(stiff * (sheared_slide * h_speed * (1.0 + k * y) + creep * y))
-        y_load = stiff * sheared_slide * (span * power * power_load - law.load - k * y * (law.load + power_load))
+        y, creep, power = load(contacts, block, STEP.stress), load(contacts, block, STEP.creep), load(contacts, block, STEP.power)
+        inverse_speed = load(contacts, block, STEP.inverse_speed)
+        heated, thick, slide = load(contacts, block, STEP.heated), load(contacts, block, STEP.thick), magnitude(sliding)
+        by_slide, by_speed = load(contacts, block, STEP.film_by_slide), load(contacts, block, STEP.film_by_speed)
+        piled, limit = _piled(normal, special)
+        power_load = 0.5 * special[ROW.exponent] * (piled - 1.0) / piled
+        sinh, cosh, opened = _stretched(y, thick, heated)
+        sheared_slide = sinh * opened  # the film's part of |du|
+        stiff = 1.0 / ((cosh + heated * sinh) * opened + creep)
+        y_slide = stiff * (1.0 - sheared_slide / larger(slide, 1e-300) * (by_slide + heated * y * (1.0 + by_slide)))
+        y_speed = -(stiff * (sheared_slide * by_speed * (1.0 + heated * y) + creep * y))
+        film_load = DOWSON_TOYODA.load
+        y_load = stiff * sheared_slide * (span * power * power_load - film_load - heated * y * (film_load + power_load))
         # limiting shear stress
-        limit = special[ROW.limit] / pressure
         fade = exponential(-2.0 * (limit * y))
         level = (1.0 - fade) / (1.0 + fade)
         slope = limiting * (1.0 - level * level) * limit
