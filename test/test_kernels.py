@@ -155,7 +155,7 @@ def test_traction_slopes_are_finite_differences():
 @settings(max_examples=300)
 def test_squeezed_roller_is_in_balance(approach, centrifugal, error):
     free = (centrifugal / STIFFNESS) ** 0.9
-    outer, inner_load, slope = squeezed_roller(approach, centrifugal, free * (1.0 + error), STIFFNESS, STRAIGHT_PROFILE)
+    outer, inner_load, slope, _ = squeezed_roller(approach, centrifugal, free * (1.0 + error), 0.0, STIFFNESS, STRAIGHT_PROFILE)
     if approach <= free * (1.0 - 1e-9):
         assert inner_load == 0.0 and outer == pytest.approx(free, rel=1.1e-4)
         return
@@ -172,7 +172,7 @@ def test_an_inner_contact_begins_without_a_jump_although_the_free_penetration_is
     centrifugal = 1200.0
     free = (centrifugal / STIFFNESS) ** 0.9
     approaches = free * (1.0 + np.linspace(-3e-4, 3e-4, 1201))
-    inner = np.array([squeezed_roller(approach, centrifugal, free * (1.0 + error), STIFFNESS, STRAIGHT_PROFILE)[1] for approach in approaches])
+    inner = np.array([squeezed_roller(approach, centrifugal, free * (1.0 + error), 0.0, STIFFNESS, STRAIGHT_PROFILE)[1] for approach in approaches])
     assert (np.diff(inner) >= 0.0).all() and inner[-1] > 0.1
     assert np.diff(inner).max() < 0.002 * inner[-1]
 

@@ -2,6 +2,7 @@
 """Claims about aligned rollers with a profile: the table against sums over slices, and the levels against those that slice the rollers."""
 
 import functools
+import math
 
 import numpy as np
 import pytest
@@ -110,17 +111,22 @@ def test_the_depth_of_a_force_carries_it(name, force):
 
 
 @pytest.mark.parametrize("name", CROWNS)
-@given(st.floats(-1e-5, 6e-5), st.floats(0.0, 2000.0))
-@settings(max_examples=60, deadline=None)
-def test_a_squeezed_roller_with_a_profile_is_in_balance(name, approach, centrifugal):
+@given(st.floats(-1e-5, 6e-5), st.floats(0.0, 2000.0), st.floats(-1e-5, 7e-5) | st.just(math.nan))
+@settings(max_examples=100, deadline=None)
+def test_a_squeezed_roller_with_a_profile_is_in_balance_from_any_guess(name, approach, centrifugal, guess):
     shape = profile(name)
     free = profile_depth(centrifugal, STIFFNESS, shape)
-    outer, inner_load, slope = squeezed_roller(approach, centrifugal, free, STIFFNESS, shape)
+    outer, inner_load, slope, share = squeezed_roller(approach, centrifugal, free, guess, STIFFNESS, shape)
     if approach <= free:
         assert inner_load <= 1e-3 * centrifugal
         return
     assert profile_force(outer, STIFFNESS, shape)[0] == pytest.approx(inner_load + centrifugal, rel=1e-5, abs=1e-5)
     assert profile_force(approach - outer, STIFFNESS, shape)[0] == pytest.approx(inner_load, rel=1e-4, abs=1e-4) and slope >= 0.0
+    if approach - free < 1e-7:
+        return  # the slope changes within the step of a finite difference
+    deeper = squeezed_roller(approach + 1e-9, centrifugal, free, 0.0, STIFFNESS, shape)
+    assert deeper[1] - inner_load == pytest.approx(1e-9 * slope, rel=0.02, abs=2e-3)
+    assert 1e-9 - (deeper[0] - outer) == pytest.approx(1e-9 * share, rel=0.02, abs=1e-11)
 
 
 def test_a_profile_without_drops_is_straight_and_a_deep_contact_forgets_its_profile():

@@ -61,13 +61,15 @@ class LoadRow(NamedTuple):
     outer_penetration: int = 7  # [m]
     inner: int = 8  # Q_i [N]
     outer: int = 9  # Q_e [N]
+    approach: int = 10  # of the two contacts at which the last three were found [m]
+    share: int = 11  # of a further approach, which the inner contact takes
 
 
 LOAD = LoadRow()
 
 
 @fused
-def squeezed_roller(approach, centrifugal, free, stiffness, profile):
+def squeezed_roller(approach, centrifugal, free, guess, stiffness, profile):
     """Balance one roller between the raceways: Q_e = Q_i + F_c, delta_i + delta_e = approach.
 
     Parameters
@@ -75,21 +77,25 @@ def squeezed_roller(approach, centrifugal, free, stiffness, profile):
     approach : R_i + D_w - R_e + ring displacement towards the roller, less what its profile drops where it is highest [m]; negative with clearance.
     centrifugal : F_c [N], not negative.
     free : outer penetration under F_c alone [m], to 1e-4: an inner contact begins exactly where the outer one carries F_c at this approach.
+    guess : inner penetration [m], such as of a position of the ring nearby; where it is not between 0 and the approach, the start is that of
+        straight rollers.
     stiffness : K [N/m^(10/9)].
     profile : `bearing_sim.physics.profile.Profile`.
 
     Returns
     -------
-    outer_penetration [m], inner_load [N], inner_slope [N/m] (dQ_i / d approach)
+    outer_penetration [m], inner_load [N], inner_slope [N/m] (dQ_i / d approach), share (d inner penetration / d approach)
     """
     if approach <= (1.0 - _FREE_ERROR) * free:
-        return free, 0.0, 0.0
+        return free, 0.0, 0.0, 0.0
     if approach <= (1.0 + _FREE_ERROR) * free and profile_force(approach, stiffness, profile)[0] <= centrifugal:
-        return free, 0.0, 0.0
-    position = min(free / approach, 1.0) * (_OUTER_FRACTIONS.shape[0] - 1)
-    index = min(int(position), _OUTER_FRACTIONS.shape[0] - 2)
-    outer = approach * (_OUTER_FRACTIONS[index] + (position - index) * (_OUTER_FRACTIONS[index + 1] - _OUTER_FRACTIONS[index]))
-    inner, inner_load, inner_slope, outer_slope, step = max(approach - outer, _LEAST_INNER * approach), 0.0, 0.0, 0.0, 0.0
+        return free, 0.0, 0.0, 0.0
+    inner, inner_load, inner_slope, outer_slope, step = guess, 0.0, 0.0, 0.0, 0.0
+    if not 0.0 < guess < approach:
+        position = min(free / approach, 1.0) * (_OUTER_FRACTIONS.shape[0] - 1)
+        index = min(int(position), _OUTER_FRACTIONS.shape[0] - 2)
+        outer = approach * (_OUTER_FRACTIONS[index] + (position - index) * (_OUTER_FRACTIONS[index + 1] - _OUTER_FRACTIONS[index]))
+        inner = max(approach - outer, _LEAST_INNER * approach)
     for _ in range(_ROLLER_ITERATIONS):
         outer_load, outer_slope = profile_force(approach - inner, stiffness, profile)
         inner_load, inner_slope = profile_force(inner, stiffness, profile)
@@ -98,7 +104,8 @@ def squeezed_roller(approach, centrifugal, free, stiffness, profile):
             break
         inner = max(inner + step, _LEAST_DESCENT * inner)
     # The step just found is applied to first order: what it leaves is its square.
-    return approach - inner - step, inner_load + inner_slope * step, inner_slope * outer_slope / (outer_slope + inner_slope)
+    share = outer_slope / (outer_slope + inner_slope)
+    return approach - inner - step, inner_load + inner_slope * step, inner_slope * share, share
 
 
 @fused
@@ -109,7 +116,12 @@ def _ring_forces(y, z, load_y, load_z, stiffness, profile, loads):
     for j in range(loads.shape[1]):
         cosine, sine = loads[LOAD.cosine, j], loads[LOAD.sine, j]
         approach = loads[LOAD.squeeze, j] + y * cosine + z * sine
-        outer, inner_load, slope = squeezed_roller(approach, loads[LOAD.centrifugal, j], loads[LOAD.free, j], stiffness, profile)
+        guess = 0.0
+        if profile.crowned:  # a ring nearby tells more than straight rollers
+            known, share = loads[LOAD.approach, j] - loads[LOAD.outer_penetration, j], loads[LOAD.share, j]
+            guess = known + share * (approach - loads[LOAD.approach, j])
+        outer, inner_load, slope, share = squeezed_roller(approach, loads[LOAD.centrifugal, j], loads[LOAD.free, j], guess, stiffness, profile)
+        loads[LOAD.approach, j], loads[LOAD.share, j] = approach, share
         loads[LOAD.outer_penetration, j] = outer
         loads[LOAD.inner, j] = inner_load
         loads[LOAD.outer, j] = inner_load + loads[LOAD.centrifugal, j]

@@ -23,7 +23,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from bearing_sim.numerics.compilation import fused, kernel, template
-from bearing_sim.numerics.elementary import ninth_root
+from bearing_sim.numerics.elementary import ninth_root, power
 from bearing_sim.numerics.simd import floor, gather, larger, load, smaller, square_root, store, where_positive
 from bearing_sim.physics.contact import CONTACT, EXPONENT, TINY
 
@@ -31,6 +31,7 @@ _INTERVALS = 256
 _SLICES = 8192
 _STRAIGHT = 1e-12  # m; a profile that drops by less is straight
 _ITERATIONS = 60
+_LAST_CHANGE = 1e-5  # relative, of a depth; it leaves its square
 
 
 class Profile(NamedTuple):
@@ -159,9 +160,9 @@ def profile_depth(force, stiffness, profile):
     for _ in range(_ITERATIONS):
         found, slope = profile_force(depth, stiffness, profile)
         # in logarithms the law is all but a straight line
-        change = (force / found) ** (found / (depth * slope))
+        change = power(force / found, found / (depth * slope))
         depth *= change
-        if abs(change - 1.0) < 1e-9:
+        if abs(change - 1.0) < _LAST_CHANGE:
             break
     return depth
 
