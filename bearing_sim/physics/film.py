@@ -252,14 +252,25 @@ def resist_rolling_by_rows(row, contacts, middle, crowned, resistance):
         changes are left out of derivatives.
     resistance : `RollingResistance`.
     """
+    # Short loops: the processor works on several blocks at once.  What they pass on stands where the results come to stand.
+    for block in range(contacts.shape[0]):
+        rolling = load(contacts, block, row.rolling)
+        square = rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR
+        store(contacts, block, row.resistance, 0.5 * logarithm(square))
+        store(contacts, block, row.resistance_d_load, logarithm(larger(load(contacts, block, row.load), LOAD_FLOOR)))
+    for block in range(contacts.shape[0]):
+        constants = resistance.inner if block < middle else resistance.outer
+        log_speed, log_load = load(contacts, block, row.resistance), load(contacts, block, row.resistance_d_load)
+        rigid = constants.rigid + 0.5 * (log_speed + log_load)
+        # with r = (F_I/F_E)^10, F = F_I (1 + r)^(-1/10), and its exponents are those of F_E in the proportion r/(1 + r)
+        ratio = exponential(_SHARPNESS * (rigid - constants.elastic - _ELASTIC_SPEED * log_speed - _ELASTIC_LOAD * log_load))
+        store(contacts, block, row.resistance_d_rolling, ratio)
     for block in range(contacts.shape[0]):
         constants = resistance.inner if block < middle else resistance.outer
         rolling, force = load(contacts, block, row.rolling), larger(load(contacts, block, row.load), 0.0)
         square = rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR
-        log_speed, log_load = 0.5 * logarithm(square), logarithm(larger(force, LOAD_FLOOR))
-        rigid = constants.rigid + 0.5 * (log_speed + log_load)
-        # with r = (F_I/F_E)^10, F = F_I (1 + r)^(-1/10), and its exponents are those of F_E in the proportion r/(1 + r)
-        ratio = exponential(_SHARPNESS * (rigid - constants.elastic - _ELASTIC_SPEED * log_speed - _ELASTIC_LOAD * log_load))
+        log_speed, log_load = load(contacts, block, row.resistance), load(contacts, block, row.resistance_d_load)
+        rigid, ratio = constants.rigid + 0.5 * (log_speed + log_load), load(contacts, block, row.resistance_d_rolling)
         elastic, log_less = ratio / (1.0 + ratio), logarithm(1.0 + ratio) / _SHARPNESS
         heat = exponential(constants.heating + 2.0 * _INLET_HEAT_EXPONENT * log_speed)
         cooler, starved = 1.0 / (1.0 + heat), constants.replenishment * square_root(square)
