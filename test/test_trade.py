@@ -157,6 +157,18 @@ def test_a_trade_names_the_levels_that_it_did_not_measure(capsys):
     assert "not measured: spatial (needs slices)" in capsys.readouterr().out
 
 
+def test_a_trade_prints_failed_settings_last_and_no_number_where_there_is_none(capsys):
+    failed = Traded(SETTING, math.nan, NO_ERRORS, "ran out of steps")
+    sliced = measured([(3.0, 0.1)])[0]
+    sliced = sliced._replace(errors=sliced.errors._replace(edge=0.01))
+    found = Trade([failed, *measured([(1.0, 0.1), (2.0, 0.1)]), sliced], [], "planar", Errors(0.01, 0.02, 1e-3, 2e-3, 1e-3, 1e-3), COURSE, {})
+    print_trade("motor", found)
+    printed = capsys.readouterr().out
+    rows = [line for line in printed.splitlines() if line.count("│") > 5]
+    factors = [line.split("│")[4].strip() for line in rows]
+    assert factors == ["3", "2", "1", "-"] and "ran out of steps" in rows[-1] and "nan" not in printed
+
+
 def numeric_turns(times, speeds, end):
     """Return turns of an ideal cage by summing over a million instants."""
     gamma, instants = SCENE.bearing.diameter_ratio, np.linspace(times[0], end, 1_000_001)

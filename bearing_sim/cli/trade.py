@@ -254,10 +254,10 @@ def measured_in_words(course) -> str:
 def print_trade(name, found) -> None:
     """Print all settings of a trade of a scene, the errors of the reference, and what was not measured."""
     rows, has_edges = [], any(not math.isnan(one.errors.edge) for one in found.measured)
-    for row in sorted(rows_of(found), key=lambda row: -row["real_time_factor"]):
-        points = f"{row['slip_error_points']:.3f}", f"{row['largest_slip_error_points']:.3f}"
+    for row in sorted(rows_of(found), key=lambda row: (math.isnan(row["real_time_factor"]), -row["real_time_factor"])):  # failed ones last
+        points = (_unless_nan(row[column], "{:.3f}".format) for column in ("slip_error_points", "largest_slip_error_points"))
         percents = ("load_error", "life_error", "largest_window_life_error", *(("edge_error",) if has_edges else ()))
-        values = in_digits(row["real_time_factor"], 3), *points, *(in_digits(100 * row[column], 2) for column in percents)
+        values = _unless_nan(row["real_time_factor"], in_digits, 3), *points, *(_unless_nan(100 * row[column], in_digits, 2) for column in percents)
         rows.append(("*" if row["on_front"] else "", row["level"], row["setting"], *values, row["failure"]))
     words = ("", "level", "setting")
     numbers = ("x real time", "slip, points", "largest, points", "load, %", "life, %", "of a window, %", *(("edge, %",) if has_edges else ()))
@@ -270,6 +270,10 @@ def print_trade(name, found) -> None:
     )
     for level, reason in found.left_out.items():
         click.echo(f"not measured: {level} ({reason})")
+
+
+def _unless_nan(value, written, *digits) -> str:
+    return "-" if math.isnan(value) else written(value, *digits)
 
 
 def _print_advice(found, factor, error, best) -> None:

@@ -121,7 +121,8 @@ def _ring_forces(y, z, load_y, load_z, stiffness, profile, loads):
             known, share = loads[LOAD.approach, j] - loads[LOAD.outer_penetration, j], loads[LOAD.share, j]
             guess = known + share * (approach - loads[LOAD.approach, j])
         outer, inner_load, slope, share = squeezed_roller(approach, loads[LOAD.centrifugal, j], loads[LOAD.free, j], guess, stiffness, profile)
-        loads[LOAD.approach, j], loads[LOAD.share, j] = approach, share
+        if profile.crowned:
+            loads[LOAD.approach, j], loads[LOAD.share, j] = approach, share
         loads[LOAD.outer_penetration, j] = outer
         loads[LOAD.inner, j] = inner_load
         loads[LOAD.outer, j] = inner_load + loads[LOAD.centrifugal, j]
