@@ -261,8 +261,8 @@ def test_moments_of_roller_loads_give_the_equivalent_loads_of_their_laminae(crow
     oil = OilFactors(0.8, 0.3)
     found = equivalent_loads(moments, oil, life)
     expected = equivalent_lamina_loads(0.0, 0.0, direct(inner, life.laminae, 4), direct(outer, life.laminae, 4.5), oil, life)
-    # a load errs by 5e-4 at most, a life by four times as much
-    assert found[2:] == pytest.approx(expected[2:], rel=1e-5 if spread == 0.0 or crown == "none" else 5e-4)
+    # a load errs by 5e-4 at most, 1e-3 where the profile is lopsided, a life by four times as much
+    assert found[2:] == pytest.approx(expected[2:], rel=1e-5 if spread == 0.0 or crown == "none" else 1e-3 if crown == LOPSIDED else 5e-4)
     assert found.inner == pytest.approx(np.mean(inner**4) ** 0.25) and found.outer == pytest.approx(np.mean(outer**4.5) ** (1 / 4.5))
 
 
