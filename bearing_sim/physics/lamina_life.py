@@ -56,7 +56,7 @@ class Laminae(NamedTuple):
     crown: np.ndarray  # drop of the profile there below its highest lamina, C_k [m], shape (N,)
     highest: float  # drop of that lamina [m]
     risers: np.ndarray  # stress risers f_k, shape (N,)
-    distinct: np.ndarray  # rows drop [m], riser and number of the laminae that differ on an aligned roller, shape (M, 3)
+    mirrored: bool  # whether both halves of the profile are alike
     penetrations: np.ndarray  # ln delta of an aligned roller's contact, at loads in equal steps of ln Q, shape (M,)
     log_least: float  # ln Q of the first
     per_log: float  # steps per unit of ln Q
@@ -104,7 +104,7 @@ def new_laminae(positions, crown, stiffness, inner_rating, outer_rating, rollers
         crown=np.ascontiguousarray(crown - highest, np.float64),
         highest=highest,
         risers=stress_risers(count),
-        distinct=_distinct(crown - highest, stress_risers(count)),
+        mirrored=bool(np.abs(crown - crown[::-1]).max() <= _ALIKE),
         penetrations=penetrations,
         log_least=float(log_loads[0]),
         per_log=float((_POINTS - 1) / (log_loads[-1] - log_loads[0])),
@@ -112,16 +112,6 @@ def new_laminae(positions, crown, stiffness, inner_rating, outer_rating, rollers
         outer_weight=float(outer_weight),
         load_factor=float(0.323 * rollers * count / (1.0 + outer_weight) ** (2.0 / 9.0)),
     )
-
-
-def _distinct(drops, risers):
-    """Return rows drop, riser and number: of one half of the laminae where both are alike, as of most profiles, else of all."""
-    count = len(drops)
-    half = (count + 1) // 2 if np.abs(drops - drops[::-1]).max() <= _ALIKE else count
-    numbers = np.full(half, 2.0 if half < count else 1.0)
-    if half < count and count % 2:
-        numbers[-1] = 1.0  # the middle
-    return np.column_stack([drops[:half], risers[:half], numbers])
 
 
 @kernel
@@ -196,8 +186,10 @@ def equivalent_loads(moments, oil, life):
     (d_1, q_1), (d_2, q_2) = penetration_of(q_1, laminae), penetration_of(q_2, laminae)
     (d_3, q_3), (d_4, q_4) = penetration_of(q_3, laminae), penetration_of(q_4, laminae)
     inner, outer, modified = 0.0, 0.0, 0.0
-    for k in range(laminae.distinct.shape[0]):
-        drop, stiffness, number = laminae.distinct[k, 0], laminae.distinct[k, 1] * laminae.stiffness, laminae.distinct[k, 2]
+    count = laminae.crown.shape[0]
+    for k in range((count + 1) // 2 if laminae.mirrored else count):
+        drop, stiffness = laminae.crown[k], laminae.risers[k] * laminae.stiffness
+        number = 2.0 if laminae.mirrored and 2 * k + 1 < count else 1.0  # of laminae like this one; the middle one is alone
         rotating = w_1 * _fourth(_share(d_1 - drop, stiffness / q_1)) + w_2 * _fourth(_share(d_2 - drop, stiffness / q_2))
         stationary = w_3 * _nine_halves(_share(d_3 - drop, stiffness / q_3)) + w_4 * _nine_halves(_share(d_4 - drop, stiffness / q_4))
         of_inner = _nine_eighths(rotating)
