@@ -38,6 +38,7 @@ _CHECK = 0.04  # times the default tolerances, of the run that estimates the ref
 _FACTORS = (3.0, 1.0, 0.6, 0.3, 0.15, 0.08, 0.03)  # times the default tolerances, to compare: factors of two below the default ones
 _ENOUGH = 1.0  # s of processor time after which a setting is not timed again
 _REPEATS = 3
+_SHORT, _OFTEN = 0.01, 10  # s of processor time below which a run is timed so many times as often
 _MOST_SLICES = 200  # of the settings; edge loads are compared with theirs
 _FIRST_REST, _LONGEST_REST, _RESTS = 20.0, 2000.0, 1e-4  # cage turns in which the start settles, and the change of slip that counts as rest
 _MORE_SOURCES = ("studies/trade_course.py", "studies/correction.py", "estimation/*.py")  # that results depend on
@@ -310,7 +311,8 @@ def measure(scene: Scene, window: Window, temperatures: tuple[float, ...], repea
         if first.takes_profiles:
             first.advance_profile(np.full(1, 1e-6), np.array([first.inputs]))
         results, spent = run(_begun(scene, window, table, start, nodes), window)
-        for _ in range(repeats - 1):
+        more = repeats - 1 if spent > _SHORT else _OFTEN * repeats
+        for _ in range(more):
             if spent > _ENOUGH:
                 break
             spent = min(spent, run(_begun(scene, window, table, start, nodes), window)[1])
