@@ -59,6 +59,8 @@ def test_what_is_kept_is_read_again():
         ("operating.shaft_speed=1000 rpm", True),
         ("operating.radial_load=100 N", True),
         ("lubricant.temperature=60 degC", True),
+        ("table.correction=planar", True),
+        ("table.maximum_speed=46000 rpm", False),
         ("bearing.roller.count=17", False),
         ("bearing.cage.pocket_clearance=0.3 mm", False),
         ("lubricant.mixture_fraction=0.02", False),

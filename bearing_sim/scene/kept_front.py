@@ -5,9 +5,9 @@ A file holds the settings of all courses that were measured for one bearing in o
 stands in this room because the loader reads it to resolve ``level: auto``, and everything that runs a scene stands above the loader; writing is
 beside reading so that the format is in one place.  Nothing here imports the model.
 
-What the errors depend on goes into the name of the file: bearing, lubricant, mounting, support, heat, life and the loads that are no inputs.  What
-a setting changes (level, integration, slices) does not, nor do shaft speed, radial load and oil temperature: a course says between which it was
-measured, and holds for scenes that operate there.
+What the errors depend on goes into the name of the file: bearing, lubricant, mounting, support, heat, life, range and tolerance of the table and the
+loads that are no inputs.  What a setting changes (level, integration, slices, whether the table is corrected) does not, nor do shaft speed, radial
+load and oil temperature: a course says between which it was measured, and holds for scenes that operate there.
 """
 
 import dataclasses
@@ -226,8 +226,10 @@ def front_path(scene) -> Path:
     lubricant.pop("temperature", None)
     operating = dataclasses.asdict(scene.operating)
     held = {name: value for name, value in operating.items() if name not in ("shaft_speed", "radial_load", "load_angle")}
+    table = dataclasses.asdict(scene.table)
+    table.pop("correction")
     blocks = [dataclasses.asdict(getattr(scene, name)) for name in ("mounting", "support", "heat", "dynamics", "life")]
-    digest = hashlib.sha256("\n".join(map(repr, (_program(), machine(), bearing, lubricant, held, *blocks))).encode())
+    digest = hashlib.sha256("\n".join(map(repr, (_program(), machine(), bearing, lubricant, held, table, *blocks))).encode())
     return FOLDER / f"{digest.hexdigest()[:24]}.json"
 
 

@@ -158,9 +158,9 @@ def without_measurement(scene, errors: Mapping[str, float], kept: KeptFront | No
     able = levels_with(asked_for(scene))
     level = found.level if found.level in WHIRLING else "planar" if "planar" in able else [each for each in LEVELS if each in able][-1]
     asked = ", ".join(f"{name} {100.0 * most:.3g} {MEASURED[name].unit}" for name, most in errors.items())
-    command = f"bearing-sim trade {shlex.quote(origin)}"
+    command = f"bearing-sim trade {shlex.quote(origin)}, with the same --set, if any"
     if kept is None or not kept.courses:
-        why = f"no error was measured of this bearing on this machine; measure with: {command}"
+        why = f"no error was measured of this bearing with its oil, mounting and range of tables on this machine; measure with: {command}"
     elif not (front := kept.at(scene)).courses:
         extents = "; ".join(f"{course.name}: {extent_in_words(course.extent)}" for course in kept.courses)
         why = f"errors were measured elsewhere than where the scene operates ({extents}); measure there with: {command}"
