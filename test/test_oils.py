@@ -10,10 +10,11 @@ from bearing_sim import SceneError
 from bearing_sim.model.oil import class_pressure_viscosity, oil_at, pressure_index, shear_strength, specific_heat, thermal_conductivity
 from bearing_sim.model.params import lubricate, mixture_fraction, pack, replenishment
 from bearing_sim.model.thermal_network import oil_flow
+from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.drag import bath_moment, mixture_density, swept_fraction
 from bearing_sim.physics.rating_life import cleanliness
-from bearing_sim.physics.traction import eyring_constants, eyring_traction
+from bearing_sim.physics.traction import thermal_eyring_constants, traction
 from bearing_sim.scene.loader import catalog_names, scene_from_yaml, scene_to_yaml
 from bearing_sim.scene.lubricant import CustomOil
 from bearing_sim.scene.quantity import unit_registry
@@ -207,11 +208,11 @@ def coefficient(name, celsius, slide_to_roll, pressure=0.8e9, rolling=2.5):
     """Return the coefficient of traction in a contact of steel with R = L = 10 mm at a mean pressure [Pa]."""
     of, modulus, size = oil(name), 2.26e11, 0.01
     stress, ratio = shear_strength(of.base, celsius + ZERO)
-    special = eyring_constants(oil_at(of, celsius + ZERO), size, modulus, size, stress, ratio, pressure_index(of))
+    constants = thermal_eyring_constants(1.0, oil_at(of, celsius + ZERO), size, modulus, size, stress, ratio, pressure_index(of))
     load = pressure**2 * 32 * size * size / (math.pi * modulus)
-    contacts = np.zeros((1, len(CONTACT), 4))
-    contacts[0, CONTACT.load], contacts[0, CONTACT.rolling], contacts[0, CONTACT.sliding] = load, rolling, slide_to_roll * rolling
-    eyring_traction(contacts, 0, 1, 1.0, special)
+    contacts = np.zeros((2, len(CONTACT), LANES))
+    contacts[:, CONTACT.load], contacts[:, CONTACT.rolling], contacts[:, CONTACT.sliding] = load, rolling, slide_to_roll * rolling
+    traction(contacts, constants, constants)
     return contacts[0, CONTACT.force, 0] / load
 
 

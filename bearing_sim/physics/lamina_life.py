@@ -130,6 +130,24 @@ def penetration_of(load, laminae):
     return math.exp(log_depth), math.exp(laminae.log_least + place / laminae.per_log)
 
 
+# Powers by products and roots, which cost less than `pow`.
+@template
+def _fourth(x):
+    square = x * x
+    return square * square
+
+
+@template
+def _nine_halves(x):
+    return _fourth(x) * math.sqrt(x)
+
+
+@template
+def _nine_eighths(x):
+    """Return x^(9/8), from power means with `ROTATING_EXPONENT` to those with 9/2."""
+    return x * math.sqrt(math.sqrt(math.sqrt(x)))
+
+
 @kernel
 def add_load_moments(inner, outer, weight, moments):
     """Add the loads of one roller to sums of their powers: 4 to 7 of the inner, 4.5 to 7.5 of the outer load.
@@ -140,7 +158,7 @@ def add_load_moments(inner, outer, weight, moments):
     weight : factor of what is added.
     moments : changed in place, shape (2, MOMENTS).
     """
-    inside, outside = weight * (inner * inner) * (inner * inner), weight * (outer * outer) * (outer * outer) * math.sqrt(outer)
+    inside, outside = weight * _fourth(inner), weight * _nine_halves(outer)
     for k in range(MOMENTS):
         moments[0, k] += inside
         moments[1, k] += outside
@@ -198,24 +216,6 @@ def equivalent_loads(moments, oil, life):
         modified += number * _modified_part(of_inner, stationary, oil, life)
     whole_inner, whole_outer = moments[0, 0] ** (1.0 / ROTATING_EXPONENT), moments[1, 0] ** (1.0 / STATIONARY_EXPONENT)
     return _summed(whole_inner, whole_outer, inner, outer, modified, life)
-
-
-# Powers by products and roots, which take a fifth of the time of `pow`.
-@template
-def _fourth(x):
-    square = x * x
-    return square * square
-
-
-@template
-def _nine_halves(x):
-    return _fourth(x) * math.sqrt(x)
-
-
-@template
-def _nine_eighths(x):
-    """Return x^(9/8), from power means with `ROTATING_EXPONENT` to those with 9/2."""
-    return x * math.sqrt(math.sqrt(math.sqrt(x)))
 
 
 @kernel
@@ -276,8 +276,8 @@ def add_lamina_powers(inner, outer, risers, fraction, inner_means, outer_means):
         rotating, stationary = 0.0, 0.0
         for j in range(rollers):
             q_i, q_e = risers[k] * inner[j, k], risers[k] * outer[j, k]
-            rotating += (q_i * q_i) * (q_i * q_i)
-            stationary += (q_e * q_e) * (q_e * q_e) * math.sqrt(q_e)
+            rotating += _fourth(q_i)
+            stationary += _nine_halves(q_e)
         inner_means[k] += fraction * (rotating / rollers - inner_means[k])
         outer_means[k] += fraction * (stationary / rollers - outer_means[k])
 

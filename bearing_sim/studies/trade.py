@@ -295,7 +295,7 @@ def measure(scene: Scene, window: Window, temperatures: tuple[float, ...], repea
     scene : at the level and with the settings to measure.
     window : of the course.
     temperatures : between which the table of level ``steady`` is [K]; empty at other levels.
-    repeats : runs at most, as long as these are short.
+    repeats : runs at most, as long as these take no more than a second; runs below 10 ms scatter and are repeated ten times as often.
     program : hash of further sources that the result depends on.
 
     Returns
