@@ -137,7 +137,7 @@ def test_the_shear_stress_of_a_film_is_found_by_few_corrections_whatever_heats_i
         most = max(most, _shear(contacts, 0, 1))
         y = contacts[0, STEP.stress]
         missed = np.sinh(y) * np.exp(heated * y) / thick + creep * y - slide
-        assert (np.abs(missed) <= 1e-8 * slide * (1 + (1 + heated) * y)).all()
+        assert (np.abs(missed) <= 1e-7 * slide * (1 + (1 + heated) * y)).all()
     assert most <= 6 < _MOST_CORRECTIONS
 
 
