@@ -19,7 +19,7 @@ from bearing_sim.model.params import pack
 from bearing_sim.model.sample import COLUMN, NODE_OBSERVABLES, RING_TEMPERATURES, flat, joined, new_block, sample_dtype
 from bearing_sim.model.temperatures import given_temperatures, lubricate_scene
 from bearing_sim.numerics.compilation import compiled_for
-from bearing_sim.numerics.time_stepping import COUNT, OK, REASONS, new_counts, new_memory
+from bearing_sim.numerics.time_stepping import COUNT, NEEDS_POINT, NOT_EVALUATED, OK, REASONS, new_counts, new_memory
 from bearing_sim.scene.fidelity import NUMBERS
 from bearing_sim.scene.quantity import Quantity
 from bearing_sim.scene.scene import OPERATING_POINT, Integration, Operating, Scene
@@ -345,7 +345,9 @@ class Simulation:
         self._newest = flat(new_block(1, self._params.rollers.count))[0]
         before = flat(previous)[0]
         self._newest[COLUMN.shaft_angle] = before[COLUMN.shaft_angle]
-        self._level.observe(self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before, self._newest, self._memory)
+        observed = self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before, self._newest, self._memory
+        if self._level.observe(*observed) == NEEDS_POINT and self._level.supply(*observed[2:4]):
+            self._level.observe(*observed)
         self._newest[COLUMN.level] = NUMBERS[self.scene.level]
         self._newest[_MEASURED_COLUMNS] = self.inputs[-len(RING_TEMPERATURES) :]
         self._write_temperatures(self._newest)
@@ -530,6 +532,8 @@ class Simulation:
         status, step = (self._compiled or advance)(*arguments)
         if self._compiled is None:
             self._compiled = _compiled_version(advance, arguments)
+        while status == NEEDS_POINT:
+            status, step = self._compiled(*arguments) if self._level.supply(arguments[7], self._work) else (NOT_EVALUATED, step)
         if status != OK:
             self._work = self._new_work()  # a failed search may have left nonsense to start the next one from
             self._memory = new_memory(state.size)

@@ -33,6 +33,8 @@ class Level(NamedTuple):
     advance_profile : compiled, goes over a whole course of inputs at once; None at a level that marches.
     advance_warm_profile : the same beside a thermal network.
     forget : lets a workspace drop what it remembers of parameters and lubrication; None at a level that remembers nothing.
+    supply : ``(model, work)`` solves for the operating point that compiled code has asked for by the status NEEDS_POINT, and returns whether there
+        is one; None at a level that asks for none.
     """
 
     new_work: Callable
@@ -46,6 +48,7 @@ class Level(NamedTuple):
     advance_profile: Callable | None = None
     advance_warm_profile: Callable | None = None
     forget: Callable | None = None
+    supply: Callable | None = None
 
 
 LEVELS = {
@@ -61,6 +64,7 @@ LEVELS = {
         advance_profile=steady.advance_profile,
         advance_warm_profile=steady.advance_warm_profile,
         forget=steady.forget,
+        supply=steady.supply,
     ),
     "slip": Level(
         slip_state.new_work,

@@ -34,6 +34,7 @@ STEP_BUDGET = 1
 NON_FINITE = 2
 NOT_EVALUATED = 3
 NOT_CONVERGED = 4
+NEEDS_POINT = 5  # no end: a level without steps wants an operating point before it goes on
 
 REASONS = {
     STEP_BUDGET: "the step budget was used up before the end of the interval",

@@ -19,7 +19,10 @@ from bearing_sim.physics.profile import profile_force
 _CENTRING_STIFFNESS = 1e3  # N/m; assumption
 _FIRST_LONGEST_STEP = 2e-5  # m, a few contact penetrations; doubled with each good step, as across a wide play
 _ITERATIONS = 400  # a ring in a wide play rolls from roller to roller before it has found its position
-_RELATIVE_RESIDUAL = 1e-7
+_RELATIVE_RESIDUAL = 1e-6
+# A step that will leave less than the first of these, by the cube of the residual over the square of the one before (quadratic convergence), is taken
+# to first order in all loads and ends the iteration without another evaluation; not where the residual is more than the second.
+_LAST_LEAVES, _LAST_FROM = 1e-6, 0.02
 _FREE_ERROR = 1e-3  # relative, an upper bound of that of a free penetration; within it the force decides whether an inner contact carries
 _ROLLER_ITERATIONS = 40
 _LEAST_DESCENT = 0.1  # of an inner penetration in one step
@@ -63,6 +66,7 @@ class LoadRow(NamedTuple):
     outer: int = 9  # Q_e [N]
     approach: int = 10  # of the two contacts at which the last three were found [m]
     share: int = 11  # of a further approach, which the inner contact takes
+    slope: int = 12  # dQ_i by the approach [N/m]; 0 where the inner contact is open
 
 
 LOAD = LoadRow()
@@ -121,8 +125,7 @@ def _ring_forces(y, z, load_y, load_z, stiffness, profile, loads):
             known, share = loads[LOAD.approach, j] - loads[LOAD.outer_penetration, j], loads[LOAD.share, j]
             guess = known + share * (approach - loads[LOAD.approach, j])
         outer, inner_load, slope, share = squeezed_roller(approach, loads[LOAD.centrifugal, j], loads[LOAD.free, j], guess, stiffness, profile)
-        if profile.crowned:
-            loads[LOAD.approach, j], loads[LOAD.share, j] = approach, share
+        loads[LOAD.approach, j], loads[LOAD.share, j], loads[LOAD.slope, j] = approach, share, slope
         loads[LOAD.outer_penetration, j] = outer
         loads[LOAD.inner, j] = inner_load
         loads[LOAD.outer, j] = inner_load + loads[LOAD.centrifugal, j]
@@ -134,6 +137,19 @@ def _ring_forces(y, z, load_y, load_z, stiffness, profile, loads):
         k_yz += slope * cosine * sine
         k_zz += slope * sine * sine
     return force_y, force_z, k_yy, k_yz, k_zz
+
+
+@fused
+def _deepen(y, z, loads):
+    """Carry penetrations and loads along a displacement of the ring (y, z) [m], to first order."""
+    for j in range(loads.shape[1]):
+        if loads[LOAD.slope, j] == 0.0:
+            continue
+        deeper = y * loads[LOAD.cosine, j] + z * loads[LOAD.sine, j]
+        loads[LOAD.approach, j] += deeper
+        loads[LOAD.outer_penetration, j] += (1.0 - loads[LOAD.share, j]) * deeper
+        loads[LOAD.inner, j] = max(loads[LOAD.inner, j] + loads[LOAD.slope, j] * deeper, 0.0)
+        loads[LOAD.outer, j] = loads[LOAD.inner, j] + loads[LOAD.centrifugal, j]
 
 
 @kernel
@@ -155,8 +171,9 @@ def balance_ring(load_y, load_z, stiffness, profile, loads, ring):
     """
     y, z = ring[0], ring[1]
     force_y, force_z, k_yy, k_yz, k_zz = _ring_forces(y, z, load_y, load_z, stiffness, profile, loads)
-    tolerance = _RELATIVE_RESIDUAL * (math.hypot(load_y, load_z) + 1.0)
-    longest = _FIRST_LONGEST_STEP
+    scale_of_loads = math.hypot(load_y, load_z) + 1.0
+    tolerance = _RELATIVE_RESIDUAL * scale_of_loads
+    longest, before = _FIRST_LONGEST_STEP, 0.0  # no residual before the first
     for _ in range(_ITERATIONS):
         residual = math.hypot(force_y, force_z)
         if residual <= tolerance:
@@ -166,6 +183,11 @@ def balance_ring(load_y, load_z, stiffness, profile, loads, ring):
         step_y = (k_zz * force_y - k_yz * force_z) / determinant
         step_z = (k_yy * force_z - k_yz * force_y) / determinant
         length = math.hypot(step_y, step_z)
+        if residual**3 <= _LAST_LEAVES * scale_of_loads * before**2 and residual <= _LAST_FROM * scale_of_loads and length <= longest:
+            _deepen(step_y, step_z, loads)
+            ring[0], ring[1] = y + step_y, z + step_z
+            return True
+        before = residual
         scale = 1.0 if length <= longest else longest / length
         for _ in range(30):
             next_y, next_z = y + scale * step_y, z + scale * step_z

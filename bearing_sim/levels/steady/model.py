@@ -22,24 +22,13 @@ from bearing_sim.levels.common.power import write_friction_moment
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import OMEGA, THETA
-from bearing_sim.levels.steady.operating_point import (
-    ACCELERATIONS,
-    ANSWER,
-    CREEP,
-    FAILED,
-    March,
-    Orbit,
-    lag_at,
-    march,
-    new_march,
-    new_orbit,
-    solve_point,
-)
+from bearing_sim.levels.steady.marching import march
+from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CREEP, FAILED, Orbit, lag_at, new_orbit, solve_point
 from bearing_sim.levels.steady.table import LookUp, Table, covers, empty_table, look_up, new_look_up
 from bearing_sim.model.params import Lubrication
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel, template
-from bearing_sim.numerics.time_stepping import COUNT, NOT_EVALUATED, OK, STEP_BUDGET
+from bearing_sim.numerics.time_stepping import COUNT, NEEDS_POINT, OK, STEP_BUDGET
 from bearing_sim.physics.growth import Temperatures, excess_growth, growth_at, seats_at
 from bearing_sim.physics.lamina_life import EquivalentLoads
 from bearing_sim.physics.load_balance import LOAD
@@ -62,9 +51,10 @@ class Work(NamedTuple):
     scratch: LookUp
     answer: np.ndarray  # at the newest inputs, shape (len(ANSWER),)
     ways: np.ndarray  # how a cage goes, columns as of the answer, where an interval begins and within it; shape (2, ACCELERATIONS.stop)
-    asked: np.ndarray  # inputs that were last solved for: speed, loads, temperature, shape (4,); see `forget`
-    solved: np.ndarray  # the answer to them, shape (len(ANSWER),)
-    march: March  # for operating points without a periodic state
+    wanted: np.ndarray  # condition whose operating point is wanted: speed, loads y and z, temperature, shape (4,)
+    asked: np.ndarray  # that which was last solved for, likewise; see `forget`
+    solved: np.ndarray  # the answer to it, shape (len(ANSWER),)
+    done: np.ndarray  # samples of the present call that are complete, -1 before it has begun, int64, shape (1,)
     solutions: np.ndarray  # operating points solved so far, and how many of them by marching, and without an end to it, int64, shape (3,)
 
 
@@ -87,9 +77,10 @@ def new_work(params, table: Table | None = None):
         scratch=new_look_up(),
         answer=np.full(len(ANSWER), math.nan),
         ways=np.full((2, ACCELERATIONS.stop), math.nan),
+        wanted=np.full(4, math.nan),
         asked=np.full(4, math.nan),
         solved=np.full(len(ANSWER), math.nan),
-        march=new_march(params.rollers.count),
+        done=np.full(1, -1, np.int64),
         solutions=np.zeros(3, np.int64),
     )
 
@@ -105,8 +96,7 @@ def initial_state(params, work, shaft_speed, load_y, load_z):
     return np.array([0.0, speed, speed])
 
 
-@kernel
-def solve_condition(shaft_speed, load_y, load_z, model, work):
+def solve_condition(shaft_speed: float, load_y: float, load_z: float, model, work: Work, start: float = 0.0, to_standstill: bool = False) -> bool:
     """Solve for an operating point into ``work.solved``, unless it was the last one; return whether it was found.
 
     Parameters
@@ -115,25 +105,33 @@ def solve_condition(shaft_speed, load_y, load_z, model, work):
     load_y, load_z : [N].
     model : of the level, its lubrication that of the condition; its drive goes unused.
     work : `Work`.
+    start : slip at which the cage begins, 0 in ideal rolling.
+    to_standstill : see `bearing_sim.levels.steady.operating_point.scan`.
     """
-    if abs(shaft_speed) < CREEP:
-        shaft_speed = -CREEP if shaft_speed < 0.0 else CREEP
-    asked = work.asked
-    if asked[0] == shaft_speed and asked[1] == load_y and asked[2] == load_z and asked[3] == model.lubrication.temperature:
+    asked, here = work.asked, (shaft_speed, load_y, load_z, model.lubrication.temperature)
+    if not start and tuple(asked) == here:
         return True
-    asked[0] = math.nan
-    constant = Model(model.params, model.lubrication, Drive(0.0, shaft_speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), model.tolerances)
-    status = solve_point(constant, work.bearing, work.orbit, work.solved)
+    asked[:] = math.nan
+    creeps = -CREEP if shaft_speed < 0.0 else CREEP
+    drive = Drive(0.0, shaft_speed if abs(shaft_speed) > CREEP else creeps, 0.0, load_y, 0.0, load_z, 0.0, 0.0)
+    constant = Model(model.params, model.lubrication, drive, model.tolerances)
+    status = solve_point(start, to_standstill or start > 0.0, constant, work.bearing, work.orbit, work.solved)
     work.solutions[0] += 1
     if status == FAILED:
+        marched = march(start, constant, work.solved)
         work.solutions[1] += 1
-        marched = march(constant, work.bearing, work.march, work.solved)
-        if marched == STEP_BUDGET:
-            work.solutions[2] += 1
-        elif marched != OK:
+        work.solutions[2] += marched == STEP_BUDGET
+        if marched not in (OK, STEP_BUDGET):
             return False
-    asked[0], asked[1], asked[2], asked[3] = shaft_speed, load_y, load_z, model.lubrication.temperature
+    if not start:
+        asked[:] = here
     return True
+
+
+def supply(model, work: Work) -> bool:
+    """Solve for the operating point that compiled code has asked for by `NEEDS_POINT`; return whether it was found."""
+    speed, load_y, load_z, _ = work.wanted.tolist()
+    return solve_condition(speed, load_y, load_z, model, work)
 
 
 @template
@@ -160,13 +158,16 @@ def _condition_at(t, model):
     return Condition(speed, load_y, load_z, films, excess_growth(speed, films, model.lubrication.growth, model.params.mounted))
 
 
-@kernel
+@template
 def _answer_to(condition, model, work):
-    """Write the operating point of a condition into ``work.answer``; return whether there is one.  Model and work are as of `solve_condition`."""
+    """Write the operating point of a condition into ``work.answer``; return whether it is known, else it is wanted."""
     if _from_table(condition, work):
         return True
-    if not solve_condition(condition.shaft_speed, condition.load_y, condition.load_z, model, work):
-        return False
+    wanted, asked = work.wanted, work.asked
+    wanted[0], wanted[1], wanted[2], wanted[3] = condition.shaft_speed, condition.load_y, condition.load_z, model.lubrication.temperature
+    for k in range(wanted.shape[0]):
+        if not asked[k] == wanted[k]:
+            return False
     for column in range(work.answer.shape[0]):
         work.answer[column] = work.solved[column]
     return True
@@ -207,11 +208,16 @@ def _write_sample(t, y, model, work, interval, previous, row):
 
 @kernel
 def observe(t, y, model, work, interval, previous, row, memory):
-    """Write the sample of state ``y``; parameters as of `bearing_sim.levels.slip.model.observe`."""
-    if not _answer_to(_condition_at(t, model), model, work):
+    """Write the sample of state ``y``; return OK, or `NEEDS_POINT` where it lacks an operating point.
+
+    Parameters as of `bearing_sim.levels.slip.model.observe`.
+    """
+    known = _answer_to(_condition_at(t, model), model, work)
+    if not known:
         for column in range(work.answer.shape[0]):
             work.answer[column] = math.nan
     _write_sample(t, y, model, work, interval, previous, row)
+    return OK if known else NEEDS_POINT
 
 
 @template
@@ -355,25 +361,26 @@ def _follow_inputs(begin, end, duration, model, work, y):
 def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance sample by sample; parameters and results as in `bearing_sim.levels.common.advance.advance_by`.
 
-    A step is a sample: the inputs change linearly between samples, and so does the speed that the cage follows.
+    A step is a sample: the inputs change linearly between samples, and so does the speed that the cage follows.  Where an operating point is
+    wanted the status is `NEEDS_POINT`: once it is supplied, another call with the same arguments goes on from there.
     """
-    samples = rows.shape[0]
+    samples, done = rows.shape[0], work.done
     interval = duration / samples
-    begin, before = _condition_at(t, model), previous
-    if not _answer_to(begin, model, work):
-        return NOT_EVALUATED, h
-    _begin_interval(work)
-    for k in range(samples):
-        time = t + (k + 1) * interval
-        end = _condition_at(time, model)
+    if done[0] < 0:
+        if not _answer_to(_condition_at(t, model), model, work):
+            return NEEDS_POINT, h
+        _begin_interval(work)
+        done[0] = 0
+    for k in range(done[0], samples):
+        begin, end = _condition_at(t + k * interval, model), _condition_at(t + (k + 1) * interval, model)
         if not _answer_to(end, model, work):
-            return NOT_EVALUATED, h
+            return NEEDS_POINT, h
         _follow_inputs(begin, end, interval, model, work, y)
-        begin = end
         counts[COUNT.steps] += 1
         counts[COUNT.unsettled_points] = work.solutions[2]
-        _write_sample(time, y, model, work, interval, before, rows[k])
-        before = rows[k]
+        _write_sample(t + (k + 1) * interval, y, model, work, interval, previous if k == 0 else rows[k - 1], rows[k])
+        done[0] = k + 1
+    done[0] = -1
     return OK, h
 
 
@@ -546,8 +553,7 @@ def advance_warm_profile(start, stretches, inputs, y, model, work, counts, previ
     return stretches.shape[0]
 
 
-@kernel
-def solve_conditions(conditions, model, work, answers):
+def solve_conditions(conditions: np.ndarray, model, work: Work, answers: np.ndarray) -> None:
     """Solve for operating points one after the other; an answer that was not found is NaN.
 
     Parameters
@@ -557,12 +563,10 @@ def solve_conditions(conditions, model, work, answers):
     work : `Work`, of the calling thread alone.
     answers : result, shape (n, len(ANSWER)).
     """
-    work.asked[0] = math.nan  # the model may be another one
-    for k in range(conditions.shape[0]):
-        speed, load, angle = conditions[k, 0], conditions[k, 1], conditions[k, 2]
+    forget(work)  # the model may be another one
+    for (speed, load, angle), answer in zip(conditions.tolist(), answers):
         found = solve_condition(speed, load * math.cos(angle), load * math.sin(angle), model, work)
-        for column in range(answers.shape[1]):
-            answers[k, column] = work.solved[column] if found else math.nan
+        answer[:] = work.solved if found else math.nan
 
 
 @kernel

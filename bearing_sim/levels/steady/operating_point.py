@@ -8,20 +8,21 @@ spins.  Along the orbit a spin obeys
 
 f the right-hand side of level ``slip``.  It is solved at N nodes a pitch, Z N in all, by backward differences that close upon themselves
 (`bearing_sim.numerics.linear_algebra`) and Newton's method: means over a pitch are found without marching to them.  The cage's speed is held
-constant; its ripple within a pitch moves the mean slip by far less than the error of the differences (`test/test_level_steady.py`
-measures both).
+constant.
 
-**The cage's speed.** Where slip is large, several states may be in balance.  A run from ideal rolling settles in the one whose slip comes
-first: the spins follow the cage within a fraction of its own time, so the cage follows the mean torque until that is zero.  The search
-does the same: from ideal rolling in steps of slip until the mean torque on the cage changes its sign.
+**The cage's speed.** The mean torque on a cage that is held at a slip is its *drive*.  It is scanned from a cage that leads to one that stands
+still.  A cage rests where the drive changes from braking to driving as slip rises; there may be several such balances.  A cage goes from where
+it starts (ideal rolling, or a skid) to the first of them in the sense of its drive: the spins follow the cage within a fraction of its own time.
+
+**How many angles.** The drive, the losses and the equivalent loads are means over a pitch, and what a roller meets on its way may be short: few
+angles alias it.  The point that was found is solved again at twice as many angles, until slip, losses and lives have changed by less than
+`SLIP_CHANGE`, `LOSS_CHANGE` and `LIFE_CHANGE`.  The last changes are the estimate of the error.
 
 **False balances.** Where spins stick and slip within a pitch there may be several spin curves at one speed of the cage, or the differences do not
-resolve the one there is.  The mean torque then scatters with the cage's speed by as much as its own size, and a scatter looks like a change of
-sign: a slip at which the cage is left with a noticeable torque is none at which it rests.
-
-**Marching.** A traction curve that falls steeply (cold oil, a loaded bearing that creeps) makes spins jump: they have no smooth periodic curve.
-There, and where only false balances are found, level ``slip`` is marched until it has settled.  Where spins jump, its way
-there, and so the lag, is up to ten times too short at stock tolerances; the state that it ends in is not (`test/test_level_steady.py`).
+resolve the one there is.  The drive then scatters with the cage's speed by as much as its own size, and a scatter looks like a change of sign: a
+slip at which the cage is left with a noticeable torque is none at which it rests.  There, and where a traction curve that falls steeply (cold oil,
+a loaded bearing that creeps) makes spins jump, so that they have no smooth periodic curve, no point is found
+(`bearing_sim.levels.steady.marching` then runs level ``slip`` until it has settled).
 """
 
 import math
@@ -29,21 +30,34 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.model import DEFAULT_TOLERANCES
 from bearing_sim.levels.common.observation import oil_at_speed
-from bearing_sim.levels.slip.forces import pitch_loads
-from bearing_sim.levels.slip.methods import advance as advance_slip
-from bearing_sim.levels.slip.model import rhs, rhs_and_jacobian
+from bearing_sim.levels.slip.model import rhs_and_jacobian
 from bearing_sim.levels.slip.power import inertia_of_orbits, kinetic_power, slip_powers
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
-from bearing_sim.model.sample import COLUMN, SCALARS, flat, new_block
 from bearing_sim.numerics.compilation import kernel, template
-from bearing_sim.numerics.linear_algebra import ALPHA_0, ARROW, STEPS, backward_difference, solve_cyclic
-from bearing_sim.numerics.time_stepping import CONTROL, OK, STEP_BUDGET, Memory, new_counts, new_memory
+from bearing_sim.numerics.linear_algebra import (
+    ALPHA_0,
+    ALPHA_1,
+    ALPHA_2,
+    ALPHA_3,
+    ARROW,
+    STEPS,
+    back_substitute,
+    backward_difference,
+    decompose,
+    solve_cyclic,
+)
+from bearing_sim.physics.lamina_life import add_load_moments, equivalent_loads
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.pocket import pocket_friction
+from bearing_sim.physics.rating_life import rating_life_revolutions
 
-ANGLES = 11  # N, of a bearing with twelve rollers or more
+ANGLES = 11  # N of the scan, of a bearing with twelve rollers or more
 _FEW_ROLLERS = 1600  # N Z^2 at least: four rollers share the load so unevenly over a pitch that the books miss 9 % at 11 angles, 0.1 % at 100
+_DOUBLINGS = 5  # of the angles at most
+SLIP_CHANGE = (1e-4, 5e-4)  # when the angles were doubled, below which they are enough: absolute, and over the slip
+LOSS_CHANGE, LIFE_CHANGE = 5e-3, 5e-3  # likewise, relative
 _LEAST_SLOPE = 1e-6  # a spin that nothing brakes or drives keeps what it has
 _FALLING = -0.8  # of alpha_0; more of a falling traction curve would reverse Newton's step
 _SHORTER, _LONGER = 0.4, 1.6
@@ -56,78 +70,167 @@ REASONS = {
     STOPPED: "nothing drives the cage",
     FAILED: "no periodic state was found",
 }
-_ITERATIONS = 15
-_CAREFUL_ITERATIONS = 150
-_STUCK, _NEXT_TO_BALANCE = 1e-3, 0.1  # of a bracket, and of the drive at its other end, below which that at an end may have the wrong sign
-_ROUGH, _FINE = 1e-3, 1e-5  # of the spin of rolling
+_ROUGH, _USUAL, _FINE = 4e-3, 1e-4, 1e-5  # last changes of spins, over that of rolling: of a scan, where a balance is narrowed, at the end
 _SLIP_TOLERANCE = 1e-5
+_NARROW = 0.05  # of 0.01 + slip: so near to the balance of an even cage the periodic motion is sought at first
 _LARGEST_LEAD = 0.1  # negative slip; a cage that seems to be driven beyond has spins that were not resolved
 _FLANGED_LEAD = 0.3  # the same where flanges of the inner ring drive the rollers: by their height over the roller's radius at most
 _HALVINGS = 40
+_ITERATIONS = np.array([15, 150])  # of Newton's method, and of the careful one
+_RIPPLE_ITERATIONS = np.array([20, 150])  # the same for the speeds of a cage
+_RIPPLE_TOLERANCE = 0.1  # last change of such a speed, over the tolerance of slip
+_STALLED, _LEAST_FRACTION = 0.8, 1.0 / 16.0  # of the change before, from which on half of a change is taken; the least part of one
+_LIGHTEST, _LIGHTER = 1.0 / 256.0, 4.0  # weights of what accelerates a cage: the first, and the next over the one before
 _LEFT = 1e-2  # of the losses; a cage driven by more at the slip that was found is not in balance
 _LAG_CHANGE = 1e-2  # of the slip
-_SAMPLES = 24  # in a window
-_TURNS = 3.37  # of an ideal cage in the first window, no whole number of pitches
-_WINDOWS = 12  # each twice as long as the one before from the second on
-_AGREED, _AGREED_FLOOR = 2e-3, 5e-5  # of slips of two windows
-_RESTS = 5e-4  # instead of the floor where steps run out: what counts as rest in a run, see `bearing_sim.sweep.settling.OBSERVED`
-_SHORTEST_WINDOW, _CUT_WINDOWS = 0.1, 3  # of the first window, and how many of them are marched, where steps run out
-_FIRST_STEP, _LONGEST_STEP = 1e-6, 1.0  # s
-_AN_INSTANT = 1e-6  # of an ideal cage turn
 
-
-_SLIPS = np.array([0.0, 1e-3, 4e-3, 0.012, 0.03, 0.06, 0.1, 0.15, 0.2, 0.26, 0.33, 0.4, 0.48, 0.56, 0.64, 0.72, 0.8, 0.88, 0.94, 0.98, 0.995, 0.999])
+SCANNED = np.array(
+    [-1.2, -0.9, -0.64, -0.45, -0.3, -0.2, -0.15, -0.1, -0.06, -0.03, -0.012, -4e-3, -1e-3]  # only as far as the cage leads
+    + [0.0, 1e-3, 4e-3, 0.012, 0.03, 0.06, 0.1, 0.15, 0.2, 0.26, 0.33, 0.4, 0.48, 0.56, 0.64, 0.72, 0.8, 0.88, 0.94, 0.98, 0.995, 0.999]
+)
+"""Slips at which the drive of a cage is looked at."""
+ROLLING = int(np.searchsorted(SCANNED, 0.0))
+"""Which of them is that of ideal rolling."""
 CAGE_SLIPS = np.array([-0.1, 0.0, 0.03, 0.1, 0.2, 0.33, 0.48, 0.64])
 """Slips at which a cage's acceleration is part of the answer to an operating point."""
-_PASSED = np.searchsorted(_SLIPS, CAGE_SLIPS)  # which of the slips of the search they are, all but the first
-_SKIDDING = 5  # up to which of them spins are asked how they follow a cage that is far from its balance
+_PASSED = np.searchsorted(SCANNED, CAGE_SLIPS)
+_SKIDDING = int(_PASSED[5])  # where spins are asked how they follow a cage that is far from its balance
+_SLOW, _SLOWEST = 0.7, 0.9  # slips from which on a cage is looked at only where it was braked before, unless to standstill; always
+_AS_SKIDDING = 0.2  # slip from which on a balance is as such
 _LONGEST_LAG = 1e4  # s
 _APART = 0.01  # slip by which one of `CAGE_SLIPS` has to be apart from the balance to count
 
 
-class Orbit(NamedTuple):
-    """State and workspace; M = N Z nodes along the orbit, in the order in which a roller passes them."""
+class Resolution(NamedTuple):
+    """Where each number stands in ``Orbit.resolution``."""
 
-    speed: np.ndarray  # of the cage that the spins belong to [rad/s], shape (1,)
+    first: int = 0  # angles a pitch to begin with
+    angles: int = 1  # at the end
+    slip_change: int = 2  # by the last doubling of the angles
+    loss_change: int = 3  # of the sum of the losses, relative; or by how much the shaft's power misses that sum, if it is more
+    life_change: int = 4  # of the rating lives, relative
+
+
+RESOLUTION = Resolution()
+
+
+class Orbit(NamedTuple):
+    """State and workspace; M = N Z nodes along the orbit, in the order in which a roller passes them, of the finest resolution."""
+
+    speed: np.ndarray  # of the cage that the spins belong to, its mean in time [rad/s], shape (1,)
+    cage: np.ndarray  # the same at each angle, shape (N,)
     spins: np.ndarray  # [rad/s], shape (M,)
     accelerations: np.ndarray  # of the cage at N angles [rad/s^2], shape (N,)
     rates: np.ndarray  # dw/dt [rad/s^2], shape (M,)
     d_spin: np.ndarray  # derivatives of these by the spin itself [1/s], shape (M,)
     drives: np.ndarray  # derivatives of the cage's acceleration by the spins [1/s], shape (M,)
+    d_cage: np.ndarray  # derivatives of the rates by the cage's speed [1/s], shape (M,)
+    damped: np.ndarray  # derivatives of the cage's acceleration by its speed [1/s], shape (N,)
     diagonal: np.ndarray  # of the differences' equations, shape (M,)
     column: np.ndarray  # a right side, and three for the closing of the orbit, shape (M, 1 + 3)
+    columns: np.ndarray  # the same with a column for the cage's speed at each angle, M (1 + N + 3) numbers
+    matrix: np.ndarray  # equations of the cage's speeds, N N numbers
+    order: np.ndarray  # of its rows, int64, shape (N,)
+    right: np.ndarray  # their right side, then the changes of the speeds, shape (N,)
     beside: np.ndarray  # spins at a cage speed nearby, shape (M,)
-    found: np.ndarray  # spins of the operating point, while others are sought, shape (M,)
+    found: np.ndarray  # spins of ideal rolling, while others are sought, shape (M,)
     residual: np.ndarray  # right side of the iteration before, shape (M,)
     reach: np.ndarray  # how far each spin may go in an iteration [rad/s], shape (M,)
+    rings_y: np.ndarray  # where the ring is at each angle [m], from which the search for it starts, shape (N,)
+    rings_z: np.ndarray
     state: np.ndarray  # of level slip, shape (Z + 2,)
     rate: np.ndarray  # shape (Z + 2,)
-    passed: np.ndarray  # mean accelerations at the slips that the search for the operating point has passed, else NaN [rad/s^2]
+    scanned: np.ndarray  # drives at `SCANNED` [rad/s^2], positive where the cage gains speed; NaN where not looked at or not found
+    skid: np.ndarray  # inertia and delay of the spins of a cage that skids, see `AnswerColumn`, shape (2,)
+    before: np.ndarray  # the answer with half as many angles, shape (len(ANSWER),)
+    resolution: np.ndarray  # see `Resolution`, shape (len(RESOLUTION),)
     tolerances: np.ndarray  # of the slip, over 0.01 + slip, and of spins, over the spin of rolling, shape (2,)
 
 
-def new_orbit(count: int, angles: int | None = None, tolerances: tuple[float, float] = (_SLIP_TOLERANCE, _FINE)) -> Orbit:
-    """Return zeroed memory for ``count`` rollers and that many angles a pitch (None: what these rollers need); see `Orbit` for the tolerances."""
-    if angles is None:
-        angles = max(ANGLES, math.ceil(_FEW_ROLLERS / count**2))
-    nodes = count * angles
+def first_angles(count: int) -> int:
+    """Return the angles a pitch with which a bearing of so many rollers begins."""
+    return max(ANGLES, math.ceil(_FEW_ROLLERS / count**2))
+
+
+def new_orbit(
+    count: int, angles: int | None = None, tolerances: tuple[float, float] = (_SLIP_TOLERANCE, _FINE), doublings: int = _DOUBLINGS
+) -> Orbit:
+    """Return zeroed memory for ``count`` rollers.
+
+    Parameters
+    ----------
+    angles : a pitch to begin with; None: what these rollers need.
+    tolerances : see `Orbit`.
+    doublings : how often the angles may be doubled.
+    """
+    angles = first_angles(count) if angles is None else angles
+    most = angles * 2**doublings
+    nodes = count * most
     return Orbit(
         speed=np.ones(1),
+        cage=np.ones(most),
         spins=np.zeros(nodes),
-        accelerations=np.zeros(angles),
+        accelerations=np.zeros(most),
         rates=np.zeros(nodes),
         d_spin=np.zeros(nodes),
         drives=np.zeros(nodes),
+        d_cage=np.zeros(nodes),
+        damped=np.zeros(most),
         diagonal=np.zeros(nodes),
         column=np.zeros((nodes, 1 + STEPS)),
+        columns=np.zeros(nodes * (1 + most + STEPS)),
+        matrix=np.zeros(most * most),
+        order=np.zeros(most, np.int64),
+        right=np.zeros(most),
         beside=np.zeros(nodes),
         found=np.zeros(nodes),
         residual=np.zeros(nodes),
         reach=np.zeros(nodes),
+        rings_y=np.zeros(most),
+        rings_z=np.zeros(most),
         state=np.zeros(count + 2),
         rate=np.zeros(count + 2),
-        passed=np.full(_SLIPS.shape[0], math.nan),
+        scanned=np.full(len(SCANNED), math.nan),
+        skid=np.full(2, math.nan),
+        before=np.full(len(ANSWER), math.nan),
+        resolution=np.array([angles, angles, math.nan, math.nan, math.nan]),
         tolerances=np.array(tolerances),
+    )
+
+
+@template
+def _at_angles(angles, count, orbit):
+    """Return the first part of an orbit's memory, for so many angles a pitch."""
+    nodes = angles * count
+    return Orbit(
+        orbit.speed,
+        orbit.cage[:angles],
+        orbit.spins[:nodes],
+        orbit.accelerations[:angles],
+        orbit.rates[:nodes],
+        orbit.d_spin[:nodes],
+        orbit.drives[:nodes],
+        orbit.d_cage[:nodes],
+        orbit.damped[:angles],
+        orbit.diagonal[:nodes],
+        orbit.column[:nodes],
+        orbit.columns[: nodes * (1 + angles + STEPS)],
+        orbit.matrix[: angles * angles],
+        orbit.order[:angles],
+        orbit.right[:angles],
+        orbit.beside[:nodes],
+        orbit.found[:nodes],
+        orbit.residual[:nodes],
+        orbit.reach[:nodes],
+        orbit.rings_y[:angles],
+        orbit.rings_z[:angles],
+        orbit.state,
+        orbit.rate,
+        orbit.scanned,
+        orbit.skid,
+        orbit.before,
+        orbit.resolution,
+        orbit.tolerances,
     )
 
 
@@ -138,13 +241,17 @@ def roller_at(i, sense, count):
 
 
 @kernel
-def set_state(k, speed, sense, params, orbit):
-    """Write the state of level slip at the k-th angle: node k + N i of the orbit is where roller `roller_at` of i stands."""
-    angles, count, state = orbit.accelerations.shape[0], params.rollers.count, orbit.state
+def _evaluate(k, sense, model, work, orbit):
+    """Evaluate level slip at the k-th angle: node k + N i of the orbit is where roller `roller_at` of i stands; return whether loads balanced."""
+    angles, count, state = orbit.accelerations.shape[0], model.params.rollers.count, orbit.state
     state[THETA] = sense * 2.0 * math.pi * k / (angles * count)
-    state[OMEGA] = speed
+    state[OMEGA] = orbit.cage[k]
     for i in range(count):
         state[SPIN + roller_at(i, sense, count)] = orbit.spins[k + angles * i]
+    work.ring[0], work.ring[1] = orbit.rings_y[k], orbit.rings_z[k]
+    balanced = rhs_and_jacobian(0.0, state, model, work, orbit.rate)
+    orbit.rings_y[k], orbit.rings_z[k] = work.ring[0], work.ring[1]
+    return balanced
 
 
 @kernel
@@ -152,9 +259,8 @@ def _take_jacobian(k, sense, params, work, orbit):
     """Take level slip's derivatives at the k-th angle, and add what its Jacobian leaves out: a pocket presses as its roller is driven."""
     angles, rollers, cage = orbit.accelerations.shape[0], params.rollers, params.cage
     rows, loads, count = work.jacobian.rows, work.loads, params.rollers.count
-    inertia = cage.inertia
-    for j in range(count):
-        inertia += rollers.mass * loads[LOAD.radius, j] * loads[LOAD.radius, j]
+    inertia = inertia_of_orbits(params, loads)
+    orbit.damped[k] = work.jacobian.border[1]
     for i in range(count):
         node, j = k + angles * i, roller_at(i, sense, count)
         radius = loads[LOAD.radius, j]
@@ -163,25 +269,31 @@ def _take_jacobian(k, sense, params, work, orbit):
         driven = rows[ARROW.row, j] / radius  # derivative of the force along the orbit, over the inertia
         orbit.d_spin[node] = rows[ARROW.diagonal, j] - friction * rollers.radius * inertia * driven / rollers.inertia
         orbit.drives[node] = rows[ARROW.row, j] - params.variants.pocket_reaction * friction * rollers.radius * driven
+        orbit.d_cage[node] = rows[ARROW.column, j]
 
 
 @kernel
-def _linearise(speed, sense, model, work, orbit):
-    """Evaluate level slip at all angles; write derivatives, and the residuals into ``orbit.column``; return whether loads balanced."""
+def _linearise(sense, model, work, orbit):
+    """Evaluate level slip at all angles; write derivatives, and the spins' residuals into ``orbit.column``; return whether loads balanced."""
     angles, count, nodes = orbit.accelerations.shape[0], model.params.rollers.count, orbit.spins.shape[0]
     for k in range(angles):
-        set_state(k, speed, sense, model.params, orbit)
-        if not rhs_and_jacobian(0.0, orbit.state, model, work, orbit.rate):
+        if not _evaluate(k, sense, model, work, orbit):
             return False
         orbit.accelerations[k] = orbit.rate[OMEGA]
         for i in range(count):
             orbit.rates[k + angles * i] = orbit.rate[SPIN + roller_at(i, sense, count)]
         _take_jacobian(k, sense, model.params, work, orbit)
-    interval = 2.0 * math.pi / (nodes * sense * speed)  # time from node to node
     for m in range(nodes):
+        interval = _interval(m % angles, sense, orbit)
         orbit.diagonal[m] = max(_LEAST_SLOPE - interval * orbit.d_spin[m], _FALLING * ALPHA_0)
         orbit.column[m, 0] = interval * orbit.rates[m] - backward_difference(orbit.spins, m)
     return True
+
+
+@template
+def _interval(k, sense, orbit):
+    """Return the time from node to node by the cage's speed at the k-th angle [s]."""
+    return 2.0 * math.pi / (orbit.spins.shape[0] * sense * orbit.cage[k])
 
 
 @kernel
@@ -212,28 +324,32 @@ def _adapt_reach(scale, iteration, orbit):
         orbit.diagonal[m] = max(orbit.diagonal[m], _LEAST_SLOPE)
 
 
+@template
+def _rolling_spin(model):
+    """Return the spin of a roller of a cage without slip, without sign [rad/s]."""
+    raceways = model.params.raceways
+    return 0.5 * abs(model.drive.shaft_speed) * (1.0 - raceways.diameter_ratio) * raceways.pitch_radius / model.params.rollers.radius
+
+
 @kernel
-def solve_spins(speed, sense, model, work, orbit, tolerance, iterations, careful):
+def solve_spins(sense, model, work, orbit, tolerance, careful):
     """Find the spin curve by Newton's method from ``orbit.spins`` on; ``orbit.accelerations`` are those of the last iterate but one.
 
     Parameters
     ----------
-    speed : of the cage [rad/s].
     sense : of rotation, 1.0 or -1.0.
     model, work : of level slip, the inputs constant.
     tolerance : longest last change, a fraction of the spin of rolling.
-    iterations : most of them.
-    careful : whether each spin has a reach of its own, which keeps the iteration together on traction curves that rise
-        steeply and are flat beyond, where Newton's leaps from one side to the other.
+    careful : 1 where each spin has a reach of its own, which keeps the iteration together on traction curves that rise
+        steeply and are flat beyond, where Newton's leaps from one side to the other; else 0.
 
     Returns
     -------
     converged : bool
     """
-    nodes = orbit.spins.shape[0]
-    scale = abs(speed) * model.params.raceways.pitch_radius / model.params.rollers.radius
-    for iteration in range(iterations):
-        if not _linearise(speed, sense, model, work, orbit):
+    nodes, scale = orbit.spins.shape[0], _rolling_spin(model)
+    for iteration in range(_ITERATIONS[careful]):
+        if not _linearise(sense, model, work, orbit):
             return False
         if careful:
             _adapt_reach(scale, iteration, orbit)
@@ -297,7 +413,7 @@ def _roll(speed, params, orbit):
     """Let all rollers roll on the outer raceway, the cage at an even speed: nothing is left of the operating point before."""
     orbit.speed[0] = speed
     for k in range(orbit.accelerations.shape[0]):
-        orbit.accelerations[k] = 0.0
+        orbit.cage[k], orbit.accelerations[k] = speed, 0.0
     for m in range(orbit.spins.shape[0]):
         orbit.spins[m] = speed * params.raceways.pitch_radius / params.rollers.radius
 
@@ -306,54 +422,148 @@ def _roll(speed, params, orbit):
 def _mean_drive(speed, sense, model, work, orbit, tolerance):
     """Return the mean acceleration of a cage held at a speed, in its sense [rad/s^2]; NaN where the spins were not found.
 
-    The search for spins starts from those at the cage speed before, in proportion.
+    The search for spins starts from those at the cage speed before, in proportion.  What their last change does to the acceleration is added to
+    first order.
     """
     ratio = speed / orbit.speed[0]
     orbit.speed[0] = speed
+    for k in range(orbit.cage.shape[0]):
+        orbit.cage[k] = speed
     for m in range(orbit.spins.shape[0]):
         orbit.spins[m] *= ratio
-    if not solve_spins(speed, sense, model, work, orbit, tolerance, _ITERATIONS, False):
-        _roll(speed, model.params, orbit)
-        if not solve_spins(speed, sense, model, work, orbit, tolerance, _CAREFUL_ITERATIONS, True):
+    careful = 0
+    while not solve_spins(sense, model, work, orbit, tolerance, careful):
+        if careful:
             return math.nan
+        careful = 1
+        _roll(speed, model.params, orbit)
     total = 0.0
     for k in range(orbit.accelerations.shape[0]):
         total += orbit.accelerations[k]
+    for m in range(orbit.spins.shape[0]):
+        total += orbit.drives[m] * orbit.column[m, 0]
     return sense * total / orbit.accelerations.shape[0]
 
 
-@kernel
-def _bracket(ideal, sense, model, work, orbit):
-    """Go from ideal rolling to where the mean torque changes its sign; return (slip before, drive there, slip after, drive there)."""
-    for i in range(_SLIPS.shape[0]):
-        orbit.passed[i] = math.nan
-    before, drive_before = 0.0, _mean_drive(ideal, sense, model, work, orbit, _ROUGH)
-    orbit.passed[0] = drive_before
-    farthest = _FLANGED_LEAD if model.params.flanges.inner.area > 0.0 else _LARGEST_LEAD
-    away = 1.0 if drive_before < 0.0 else -1.0  # most cages lag, those of slow bearings lead by next to nothing
-    for i in range(1, _SLIPS.shape[0]):
-        slip = away * _SLIPS[i]
-        drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, _ROUGH)
-        if not math.isfinite(drive + drive_before) or slip < -farthest:
-            return math.nan, math.nan, math.nan, math.nan
-        if away > 0.0:
-            orbit.passed[i] = drive
-        if drive * away >= 0.0:
-            return before, drive_before, slip, drive
-        before, drive_before = slip, drive
-    return before, drive_before, math.inf, 0.0
+@template
+def _write_cage_columns(sense, orbit, columns):
+    """Write what a change of the cage's speed at each angle does to the spins' equations, as right sides behind the first."""
+    angles = orbit.accelerations.shape[0]
+    for m in range(orbit.spins.shape[0]):
+        here = m % angles
+        for k in range(angles):
+            columns[m, 1 + k] = 0.0
+        columns[m, 0] = orbit.column[m, 0]
+        columns[m, 1 + here] = _interval(here, sense, orbit) * (orbit.d_cage[m] - orbit.rates[m] / orbit.cage[here])
+
+
+@template
+def _write_cage_equations(weight, sense, orbit, columns, matrix):
+    """Write the equations of the cage's speeds, the spins' eliminated by the solutions in ``columns``; ``weight`` as of `_ripple`."""
+    angles, nodes = orbit.accelerations.shape[0], orbit.spins.shape[0]
+    for k in range(angles):
+        interval = weight * _interval(k, sense, orbit)
+        for other in range(angles):
+            matrix[k, other] = 0.0
+        matrix[k, k] += ALPHA_0 - interval * (orbit.damped[k] - orbit.accelerations[k] / orbit.cage[k])
+        matrix[k, (k - 1) % angles] += ALPHA_1
+        matrix[k, (k - 2) % angles] += ALPHA_2
+        matrix[k, (k - 3) % angles] += ALPHA_3
+        orbit.right[k] = interval * orbit.accelerations[k] - backward_difference(orbit.cage, k)
+        for m in range(k, nodes, angles):
+            felt = interval * orbit.drives[m]
+            orbit.right[k] += felt * columns[m, 0]
+            for other in range(angles):
+                matrix[k, other] -= felt * columns[m, 1 + other]
 
 
 @kernel
-def _narrow(low, drive_low, high, drive_high, ideal, sense, model, work, orbit):
-    """Return the slip between two at which the cage is in balance, by the Illinois rule; NaN where spins were not found."""
+def _ripple(weight, careful, sense, model, work, orbit):
+    """Find the periodic motion of cage and spins by Newton's method from ``orbit`` on; return whether it was found.
+
+    Unknown are the cage's speeds at the angles of a pitch, besides the spins: omega domega/dtheta = weight alpha, by the same differences.  What the
+    speeds do to the spins is eliminated by a right side for each.  Where changes do not shrink, half of them is taken.
+
+    Parameters
+    ----------
+    weight : 1; less for a cage that is more inert by as much, and so ripples less.
+    careful : as of `solve_spins`.
+    """
+    angles, nodes = orbit.accelerations.shape[0], orbit.spins.shape[0]
+    columns, matrix = orbit.columns.reshape((nodes, 1 + angles + STEPS)), orbit.matrix.reshape((angles, angles))
+    fraction, before, scale = 1.0, math.inf, _rolling_spin(model)
+    for iteration in range(_RIPPLE_ITERATIONS[careful]):
+        if not _linearise(sense, model, work, orbit):
+            return False
+        if careful:
+            _adapt_reach(scale, iteration, orbit)
+        _write_cage_columns(sense, orbit, columns)
+        if not solve_cyclic(orbit.diagonal, columns):
+            return False
+        _write_cage_equations(weight, sense, orbit, columns, matrix)
+        if not decompose(angles, matrix, orbit.order):
+            return False
+        back_substitute(angles, matrix, orbit.order, orbit.right)
+        spin_change, cage_change = 0.0, 0.0
+        for m in range(nodes):
+            for k in range(angles):
+                columns[m, 0] += columns[m, 1 + k] * orbit.right[k]
+            if careful:
+                columns[m, 0] = min(max(columns[m, 0], -orbit.reach[m]), orbit.reach[m])
+            spin_change = max(spin_change, abs(columns[m, 0]) / scale)
+        for k in range(angles):
+            cage_change = max(cage_change, abs(orbit.right[k] / orbit.speed[0]))
+        largest = max(spin_change, cage_change)
+        if not math.isfinite(largest):
+            return False
+        alternates = _STALLED * before < largest < _LONGEST_CHANGE
+        fraction = max(0.5 * fraction, _LEAST_FRACTION) if alternates else min(2.0 * fraction, 1.0)
+        taken, before = min(fraction, _LONGEST_CHANGE / max(largest, 1e-300)), largest
+        for m in range(nodes):
+            orbit.spins[m] += taken * columns[m, 0]
+        passing = 0.0
+        for k in range(angles):
+            orbit.cage[k] += taken * orbit.right[k]
+            if not sense * orbit.cage[k] > 0.0:
+                return False
+            passing += 1.0 / (angles * orbit.cage[k])
+        orbit.speed[0] = 1.0 / passing
+        if spin_change <= orbit.tolerances[1] and cage_change <= _RIPPLE_TOLERANCE * orbit.tolerances[0]:
+            return True
+    return False
+
+
+@kernel
+def _lighten(sense, model, work, orbit):
+    """Find the periodic motion of cage and spins as that of a cage that becomes ever less inert, from the balance of an even one on; return whether."""
+    weight, careful = _LIGHTEST, 0
+    while True:
+        if _ripple(weight, careful, sense, model, work, orbit):
+            if weight == 1.0:
+                return True
+            weight, careful = min(_LIGHTER * weight, 1.0), 0
+        elif careful:
+            return False
+        else:
+            careful = 1
+
+
+@kernel
+def _narrow(within, low, drive_low, high, drive_high, ideal, sense, model, work, orbit):
+    """Return the slip between two at which the cage is in balance, by the Illinois rule; NaN where spins were not found.
+
+    Parameters
+    ----------
+    within : how near, over 0.01 + slip.
+    low, drive_low, high, drive_high : slips, and the drives there.
+    """
     slip, slope = high, (drive_high - drive_low) / (high - low)
     for _ in range(_HALVINGS):
         slip = low - drive_low * (high - low) / (drive_high - drive_low)
-        drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, orbit.tolerances[1])
+        drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, _USUAL)
         if not math.isfinite(drive):
             return math.nan
-        if min(abs(drive / slope), abs(high - low)) < orbit.tolerances[0] * (1e-2 + abs(slip)):
+        if min(abs(drive / slope), abs(high - low)) < within * (1e-2 + abs(slip)):
             return slip
         if drive * drive_high > 0.0:
             drive_low *= 0.5
@@ -364,28 +574,18 @@ def _narrow(low, drive_low, high, drive_high, ideal, sense, model, work, orbit):
 
 
 @kernel
-def _beyond_an_end(slip, low, drive_low, high, drive_high, ideal, sense, model, work, orbit):
-    """Return the slip of the balance where the search for it has stuck at an end of its bracket, else the same slip.
-
-    Brackets ask for spins to a thousandth only, so that a drive next to a balance may have the wrong sign there, and the balance is on the other side
-    of that end.  Only a drive that was small and still is counts as such: where spins stick and slip within a pitch drives scatter.
-
-    Parameters
-    ----------
-    slip : found by `_narrow`.
-    low, drive_low, high, drive_high : as of `_bracket`.
-    """
-    for i in range(1, _SLIPS.shape[0] - 1):
-        end, outwards = math.copysign(_SLIPS[i], high), 1 if abs(high) == _SLIPS[i] else -1
-        if (end != low and end != high) or abs(slip - end) > _STUCK * abs(high - low):
-            continue
-        beyond = math.copysign(_SLIPS[i + outwards], high)
-        drive_beyond = _mean_drive(ideal * (1.0 - beyond), sense, model, work, orbit, orbit.tolerances[1])
-        drive_end = _mean_drive(ideal * (1.0 - end), sense, model, work, orbit, orbit.tolerances[1])
-        roughly = drive_high if end == high else drive_low
-        if drive_end * drive_beyond < 0.0 and max(abs(drive_end), abs(roughly)) < _NEXT_TO_BALANCE * abs(drive_beyond):
-            return _narrow(beyond, drive_beyond, end, drive_end, ideal, sense, model, work, orbit)
-    return slip
+def _settle(low, high, ideal, sense, model, work, orbit):
+    """Find the periodic motion of cage and spins between two of `SCANNED`; return whether it was found."""
+    scanned = orbit.scanned
+    for attempt in range(2):
+        _keep_spins(orbit.found, orbit.spins)
+        orbit.speed[0] = ideal
+        within = orbit.tolerances[0] if attempt else _NARROW
+        if not math.isfinite(_narrow(within, SCANNED[low], scanned[low], SCANNED[high], scanned[high], ideal, sense, model, work, orbit)):
+            return False
+        if _lighten(sense, model, work, orbit) if attempt else _ripple(1.0, 0, sense, model, work, orbit):
+            return True
+    return False
 
 
 @kernel
@@ -434,17 +634,77 @@ def _inertia_and_delay(faster, sense, orbit):
 
 
 @template
-def _keep_spins(orbit, kept):
-    for m in range(orbit.spins.shape[0]):
-        kept[m] = orbit.spins[m]
+def _keep_spins(spins, kept):
+    for m in range(spins.shape[0]):
+        kept[m] = spins[m]
 
 
-@template
-def _go_back(speed, orbit):
-    """Let the orbit hold the spins in ``found`` again, which belong to a cage speed."""
-    orbit.speed[0] = speed
-    for m in range(orbit.spins.shape[0]):
-        orbit.spins[m] = orbit.found[m]
+@kernel
+def scan(to_standstill, model, work, orbit):
+    """Look at the drives of cages from one that leads to one that stands still; write them, and how spins follow a cage that skids.
+
+    Parameters
+    ----------
+    to_standstill : whether to look at slow cages, too, where one that slips by two thirds is driven.
+    model : of level slip; inputs constant, the shaft not slower than `CREEP`.
+    work : of level slip.
+    orbit : `Orbit` of the resolution that is wanted; ``scanned`` and ``skid`` are written.
+    """
+    params, shaft_speed, scanned = model.params, model.drive.shaft_speed, orbit.scanned
+    sense, ideal = 1.0 if shaft_speed > 0.0 else -1.0, 0.5 * shaft_speed * (1.0 - params.raceways.diameter_ratio)
+    for k in range(orbit.cage.shape[0]):
+        orbit.rings_y[k], orbit.rings_z[k] = 0.0, 0.0
+    scanned[:] = math.nan
+    orbit.skid[:] = math.nan
+    _roll(ideal, params, orbit)
+    farthest = _FLANGED_LEAD if params.flanges.inner.area > 0.0 else _LARGEST_LEAD
+    if params.cage.guidance.turning > 0.0:
+        farthest = -SCANNED[0]
+    for i in range(ROLLING, SCANNED.shape[0] + ROLLING):
+        k = i if i < SCANNED.shape[0] else SCANNED.shape[0] - 1 - i + ROLLING  # lags first, then leads
+        if k < ROLLING:
+            leads = scanned[ROLLING] > 0.0 and scanned[k + 1] > 0.0 and SCANNED[k] >= -farthest
+            if k != _PASSED[0] and not leads:
+                continue
+            if k == ROLLING - 1 or not leads:
+                orbit.speed[0] = ideal
+                _keep_spins(orbit.found, orbit.spins)
+        elif SCANNED[k] > (_SLOWEST if to_standstill else _SLOW) and not scanned[k - 1] < 0.0:
+            continue  # what brakes a cage goes with its speed
+        scanned[k] = _mean_drive(ideal * (1.0 - SCANNED[k]), sense, model, work, orbit, _ROUGH)
+        if k == ROLLING:
+            _keep_spins(orbit.spins, orbit.found)
+        elif k == _SKIDDING - 1:
+            _keep_spins(orbit.spins, orbit.beside)
+        elif k == _SKIDDING:
+            inertia, delay = _inertia_and_delay((SCANNED[k] - SCANNED[k - 1]) * ideal, sense, orbit)
+            orbit.skid[0], orbit.skid[1] = max(inertia, 1.0), max(delay, 0.0)
+
+
+@kernel
+def _between(start, scanned):
+    """Return between which of `SCANNED` a cage comes to rest: the last at which it is braked, the first at which it is driven.
+
+    The first is -1 where it is not known, the second `SCANNED.shape[0]` where the cage slows down until it stands.
+
+    Parameters
+    ----------
+    start : slip at which the cage begins; the nearest one that was looked at counts.
+    scanned : drives, see `scan`.
+    """
+    near, most = ROLLING, SCANNED.shape[0]
+    for i in range(most):
+        if math.isfinite(scanned[i]) and abs(SCANNED[i] - start) < abs(SCANNED[near] - start):
+            near = i
+    if scanned[near] < 0.0:
+        for i in range(near + 1, most):
+            if not scanned[i] < 0.0:
+                return (i - 1, i) if scanned[i] >= 0.0 else (-1, i)
+        return most - 1, most
+    for i in range(near - 1, -1, -1):
+        if not scanned[i] >= 0.0:
+            return (i, i + 1) if scanned[i] < 0.0 and scanned[i + 1] >= 0.0 else (-1, i)
+    return -1, 0
 
 
 @kernel
@@ -475,225 +735,167 @@ def lag_at(behind, ideal, answer):
 
 
 @kernel
-def _write_accelerations(slip, ideal, sense, model, work, orbit, answer):
-    """Write accelerations at `CAGE_SLIPS`, and how spins follow a cage that skids; ``orbit`` holds the spins at ``slip``, and does afterwards."""
-    speed, count = orbit.speed[0], CAGE_SLIPS.shape[0]
-    _keep_spins(orbit, orbit.found)
-    ahead = 0  # so many of them are not behind the operating point
-    while ahead < count and CAGE_SLIPS[ahead] <= slip:
-        ahead += 1
-    for k in range(ahead - 1, -1, -1):  # away from the operating point: spins are sought from those found before
-        drive = orbit.passed[_PASSED[k]] if k > 0 else math.nan
-        if not math.isfinite(drive):
-            drive = _mean_drive(ideal * (1.0 - CAGE_SLIPS[k]), sense, model, work, orbit, _ROUGH)
-        answer[ANSWER.acceleration_lead_10 + k] = drive
-    _go_back(speed, orbit)
-    for k in range(ahead, count):
-        if k == _SKIDDING:
-            _keep_spins(orbit, orbit.beside)
-        answer[ANSWER.acceleration_lead_10 + k] = _mean_drive(ideal * (1.0 - CAGE_SLIPS[k]), sense, model, work, orbit, _ROUGH)
-        if k == _SKIDDING and k > ahead:
-            inertia, delay = _inertia_and_delay((CAGE_SLIPS[k] - CAGE_SLIPS[k - 1]) * ideal, sense, orbit)
-            if math.isfinite(inertia + delay):
-                answer[ANSWER.spin_inertia], answer[ANSWER.spin_delay] = max(inertia, 1.0), max(delay, 0.0)
-    _go_back(speed, orbit)
-    for k in range(count):
-        answer[ANSWER.acceleration_lead_10 + k] /= answer[ANSWER.spin_inertia]
-
-
-@kernel
-def _write_lag(slip, ideal, sense, model, work, orbit, answer):
-    """Write how a cage goes to an operating point, NaN where it leads away from it; ``orbit`` holds its spins, and does so afterwards."""
+def _write_way(slip, ideal, sense, model, work, orbit, answer):
+    """Write how a cage goes to an operating point, NaN where it leads away from it; ``orbit`` holds its spins."""
     change = _LAG_CHANGE * max(abs(slip), 1e-3) * ideal
     speed = ideal * (1.0 - slip)
-    above = _mean_drive(speed + change, sense, model, work, orbit, _FINE)
-    _keep_spins(orbit, orbit.beside)
-    below = _mean_drive(speed - change, sense, model, work, orbit, _FINE)
+    above = _mean_drive(speed + change, sense, model, work, orbit, _USUAL)
+    _keep_spins(orbit.spins, orbit.beside)
+    below = _mean_drive(speed - change, sense, model, work, orbit, _USUAL)
     slope = sense * (above - below) / (2.0 * change)
     inertia, delay = _inertia_and_delay(2.0 * change, sense, orbit)
     if not math.isfinite(slope + inertia) or not slope < 0.0:
         return
     answer[ANSWER.lag] = -inertia / slope
     answer[ANSWER.spin_inertia], answer[ANSWER.spin_delay] = max(inertia, 1.0), max(delay, 0.0)
-    _write_accelerations(slip, ideal, sense, model, work, orbit, answer)
+    if slip < _AS_SKIDDING and math.isfinite(orbit.skid[0] + orbit.skid[1]):
+        answer[ANSWER.spin_inertia], answer[ANSWER.spin_delay] = orbit.skid[0], orbit.skid[1]
+    for k in range(CAGE_SLIPS.shape[0]):
+        answer[ANSWER.acceleration_lead_10 + k] = orbit.scanned[_PASSED[k]] / answer[ANSWER.spin_inertia]
 
 
 @kernel
-def _write_powers(speed, sense, model, work, orbit, answer):
-    """Write powers, means over a pitch, in which cage and rollers store nothing: what they seem to is an error of the differences."""
-    angles, rate = orbit.accelerations.shape[0], orbit.rate
+def _write_means(sense, model, work, orbit, answer):
+    """Write powers and equivalent loads, means in time over a pitch; return the power left to drive the cage [W]."""
+    angles, rate, params, moments = orbit.accelerations.shape[0], orbit.rate, model.params, work.load_moments
     for column in range(ANSWER.shaft_power, ANSWER.flange_power + 1):
         answer[column] = 0.0
+    moments[:] = 0.0
+    left, count = 0.0, params.rollers.count
     for k in range(angles):
-        set_state(k, speed, sense, model.params, orbit)
-        rhs(0.0, orbit.state, model, work, rate)
-        powers = slip_powers(speed, rate[OMEGA], orbit.state[SPIN:], model.drive.shaft_speed, model, work)
-        answer[ANSWER.shaft_power] += (powers.shaft - kinetic_power(orbit.state, rate, model, work)) / angles
-        answer[ANSWER.inner_sliding_power] += powers.inner_sliding / angles
-        answer[ANSWER.outer_sliding_power] += powers.outer_sliding / angles
-        answer[ANSWER.inner_rolling_power] += powers.inner_rolling / angles
-        answer[ANSWER.outer_rolling_power] += powers.outer_rolling / angles
-        answer[ANSWER.churning_power] += powers.churning / angles
-        answer[ANSWER.windage_power] += powers.windage / angles
-        answer[ANSWER.land_power] += powers.land / angles
-        answer[ANSWER.pocket_power] += powers.pocket / angles
-        answer[ANSWER.damping_power] += powers.damping / angles
-        answer[ANSWER.seal_power] += powers.seal / angles
-        answer[ANSWER.flange_power] += powers.flange / angles
+        _evaluate(k, sense, model, work, orbit)
+        cage_speed = orbit.cage[k]
+        part = orbit.speed[0] / (cage_speed * angles)  # of the time
+        powers = slip_powers(cage_speed, rate[OMEGA], orbit.state[SPIN:], model.drive.shaft_speed, model, work)
+        answer[ANSWER.shaft_power] += part * (powers.shaft - kinetic_power(orbit.state, rate, model, work))
+        answer[ANSWER.inner_sliding_power] += part * powers.inner_sliding
+        answer[ANSWER.outer_sliding_power] += part * powers.outer_sliding
+        answer[ANSWER.inner_rolling_power] += part * powers.inner_rolling
+        answer[ANSWER.outer_rolling_power] += part * powers.outer_rolling
+        answer[ANSWER.churning_power] += part * powers.churning
+        answer[ANSWER.windage_power] += part * powers.windage
+        answer[ANSWER.land_power] += part * powers.land
+        answer[ANSWER.pocket_power] += part * powers.pocket
+        answer[ANSWER.damping_power] += part * powers.damping
+        answer[ANSWER.seal_power] += part * powers.seal
+        answer[ANSWER.flange_power] += part * powers.flange
+        left += part * rate[OMEGA]
+        for j in range(count):
+            add_load_moments(work.loads[LOAD.inner, j], work.loads[LOAD.outer, j], part / count, moments)
+    loads = equivalent_loads(moments, oil_at_speed(model.drive.shaft_speed, model), params.life)
+    answer[ANSWER.inner_equivalent_load], answer[ANSWER.outer_equivalent_load] = loads.inner, loads.outer
+    answer[ANSWER.inner_lamina_load], answer[ANSWER.outer_lamina_load] = loads.inner_lamina, loads.outer_lamina
+    answer[ANSWER.reference_modification_factor] = loads.reference_modification_factor
+    return abs(left * orbit.speed[0]) * inertia_of_orbits(params, work.loads)
+
+
+@template
+def _double(orbit, nodes, angles):
+    """Let spins and cage be known at twice as many angles, those in between in the middle of their neighbours; so many nodes and angles at present."""
+    _put_between(orbit.spins, nodes)
+    _put_between(orbit.cage, angles)
+    _put_between(orbit.rings_y, angles)
+    _put_between(orbit.rings_z, angles)
 
 
 @kernel
-def solve_point(model, work, orbit, answer):
+def _put_between(values, count):
+    """Spread a periodic sequence to every other place, and put the means of neighbours between."""
+    first = values[0]
+    for back in range(count):
+        m = count - 1 - back
+        after = first if back == 0 else values[m + 1]
+        values[2 * m + 1] = 0.5 * (values[m] + after)
+        values[2 * m] = values[m]
+
+
+@kernel
+def _relative(value, before):
+    """Return by how much a value differs from the one before, relative; 0 where both are 0."""
+    return abs(value - before) / max(abs(before), 1e-300) if value != before else 0.0
+
+
+@kernel
+def _changes(orbit, answer, life):
+    """Write by how much the last doubling of the angles has changed an answer, and return the largest of these over what is allowed."""
+    before, resolution = orbit.before, orbit.resolution
+    lost = _losses(answer)
+    resolution[RESOLUTION.slip_change] = abs(answer[ANSWER.cage_slip] - before[ANSWER.cage_slip])
+    resolution[RESOLUTION.loss_change] = max(_relative(lost, _losses(before)), _relative(answer[ANSWER.shaft_power], lost))
+    resolution[RESOLUTION.life_change] = max(
+        _relative(_rate(answer, ANSWER.inner_equivalent_load, life), _rate(before, ANSWER.inner_equivalent_load, life)),
+        _relative(_rate(answer, ANSWER.inner_lamina_load, life), _rate(before, ANSWER.inner_lamina_load, life)),
+    )
+    return max(
+        resolution[RESOLUTION.slip_change] / (SLIP_CHANGE[0] + SLIP_CHANGE[1] * abs(answer[ANSWER.cage_slip])),
+        resolution[RESOLUTION.loss_change] / LOSS_CHANGE,
+        resolution[RESOLUTION.life_change] / LIFE_CHANGE,
+    )
+
+
+@kernel
+def _rate(answer, column, life):
+    """Return the inverse of a life, of equivalent loads from a column on [1/revolutions]."""
+    return 1.0 / rating_life_revolutions(answer[column], answer[column + 1], life)
+
+
+@kernel
+def solve_point(start, to_standstill, model, work, orbit, answer):
     """Find the periodic state that the bearing settles in under the model's inputs at the time 0.
 
     Parameters
     ----------
+    start : slip at which the cage begins: 0 in ideal rolling, 1 where it stands.
+    to_standstill : as of `scan`.
     model : of level slip; inputs constant, the shaft not slower than `CREEP`.
     work : of level slip.
-    orbit : `bearing_sim.levels.steady.operating_point.Orbit`; keeps the state that was found, and the cage's accelerations in it.
+    orbit : `Orbit`; keeps the state that was found, the drives of the scan, and how fine the state is resolved.
     answer : result, shape (len(ANSWER),); NaN where no state was found.
 
     Returns
     -------
     status : see `REASONS`.
     """
-    shaft_speed = model.drive.shaft_speed
-    sense = 1.0 if shaft_speed > 0.0 else -1.0
-    ideal = 0.5 * shaft_speed * (1.0 - model.params.raceways.diameter_ratio)
-    work.ring[0], work.ring[1] = 0.0, 0.0
-    for column in range(answer.shape[0]):
-        answer[column] = math.nan
-    _roll(ideal, model.params, orbit)
-    slip, drive, beyond, drive_beyond = _bracket(ideal, sense, model, work, orbit)
-    status = SETTLED
-    if math.isinf(beyond):
-        status = STOPPED
-    elif math.isfinite(slip):
-        low, high = slip, beyond
-        slip = _narrow(low, drive, high, drive_beyond, ideal, sense, model, work, orbit)
-        slip = _beyond_an_end(slip, low, drive, high, drive_beyond, ideal, sense, model, work, orbit)
-    if not math.isfinite(slip):
-        return FAILED
-    _write_lag(slip, ideal, sense, model, work, orbit, answer)
-    speed = ideal * (1.0 - slip)
-    left = _mean_drive(speed, sense, model, work, orbit, orbit.tolerances[1])
-    if not math.isfinite(left):
-        return FAILED
-    answer[ANSWER.cage_slip] = slip if status == SETTLED else 1.0
-    _write_powers(speed, sense, model, work, orbit, answer)
-    driving = abs(left * speed) * inertia_of_orbits(model.params, work.loads)
-    if status == SETTLED and driving > _LEFT * _losses(answer):
+    params, shaft_speed, resolution = model.params, model.drive.shaft_speed, orbit.resolution
+    sense, ideal = 1.0 if shaft_speed > 0.0 else -1.0, 0.5 * shaft_speed * (1.0 - params.raceways.diameter_ratio)
+    count, allowed = params.rollers.count, min(model.tolerances.relative / DEFAULT_TOLERANCES.relative, 1.0)
+    angles, most = int(resolution[RESOLUTION.first]), orbit.accelerations.shape[0]
+    slip, status = math.nan, FAILED
+    orbit.before[:] = math.nan
+    while True:
+        view = _at_angles(angles, count, orbit)
         for column in range(answer.shape[0]):
             answer[column] = math.nan
-        return FAILED
-    loads = pitch_loads(0.0, speed, model.drive.load_y, model.drive.load_z, oil_at_speed(shaft_speed, model), model.params, work)
-    answer[ANSWER.inner_equivalent_load], answer[ANSWER.outer_equivalent_load] = loads.inner, loads.outer
-    answer[ANSWER.inner_lamina_load], answer[ANSWER.outer_lamina_load] = loads.inner_lamina, loads.outer_lamina
-    answer[ANSWER.reference_modification_factor] = loads.reference_modification_factor
-    return status
-
-
-_BUDGET = np.int64(60_000)  # steps of a window; a Python number would be a literal type, and with it a second compilation of the march
-
-
-class March(NamedTuple):
-    """Memory of a march."""
-
-    state: np.ndarray  # of level slip, shape (Z + 2,)
-    memory: Memory
-    counts: np.ndarray
-    rows: np.ndarray  # flat samples, shape (24, ...)
-
-
-def new_march(count: int) -> March:
-    """Return memory for ``count`` rollers."""
-    return March(np.zeros(count + 2), new_memory(count + 2), new_counts(), flat(new_block(_SAMPLES, count)))
-
-
-@kernel
-def _forget_spins(row, count):
-    """Let the next sample take its powers from its instant alone: nothing was sampled where its interval begins."""
-    for j in range(count):
-        row[SCALARS + COLUMN.roller_spin * count + j] = math.nan
-
-
-@kernel
-def march(model, work, memory, answer):
-    """March from ideal rolling until two windows agree; write the means over the last.
-
-    The lag is the area between the cage's speed and its end, over their first distance.  Where spins jump all the time a window runs out of steps.
-    It ends there, and so do the next ones; the march has settled if two of them agree as far as slip rests in any run.
-
-    Parameters
-    ----------
-    model : of level slip; inputs constant.
-    work : of level slip.
-    memory : `March`.
-    answer : result, shape (len(ANSWER),).
-
-    Returns
-    -------
-    status : OK, or STEP_BUDGET where the answer has not settled; anything else means that there is none.
-    """
-    params, y, rows = model.params, memory.state, memory.rows
-    shaft_speed = model.drive.shaft_speed
-    ideal = 0.5 * shaft_speed * (1.0 - params.raceways.diameter_ratio)
-    for i in range(y.shape[0]):
-        y[i] = ideal * params.raceways.pitch_radius / params.rollers.radius
-    y[THETA], y[OMEGA] = 0.0, ideal
-    for i in range(memory.counts.shape[0]):
-        memory.counts[i] = 0
-    work.ring[0], work.ring[1] = 0.0, 0.0
-    time, window, step, before = 0.0, _TURNS * math.tau / abs(ideal), _FIRST_STEP, math.inf
-    mean, turned, status, filled, cut, shortest = ideal, 0.0, OK, rows.shape[0], 0, _SHORTEST_WINDOW * window
-    _forget_spins(rows[rows.shape[0] - 1], params.rollers.count)
-    for _ in range(_WINDOWS):
-        angle = y[THETA]
-        status, step = advance_slip(
-            False, time, window, y, step, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
-        )
-        if status != OK and status != STEP_BUDGET:
-            return status
-        marched = window if status == OK else memory.memory.control[CONTROL.time] - time
-        if marched < shortest:
+        if status == SETTLED and not _ripple(1.0, 0, sense, model, work, view):
+            status = FAILED
+        elif status == SETTLED:
+            slip = 1.0 - view.speed[0] / ideal
+        if status == FAILED:
+            scan(to_standstill, model, work, view)
+            low, high = _between(start, orbit.scanned)
+            if low < 0:
+                return FAILED
+            status, slip = STOPPED, SCANNED[SCANNED.shape[0] - 1]
+            if high < SCANNED.shape[0]:
+                status = SETTLED
+                if not _settle(low, high, ideal, sense, model, work, view):
+                    return FAILED
+                slip = 1.0 - view.speed[0] / ideal
+        if status == STOPPED:
+            _mean_drive(ideal * (1.0 - slip), sense, model, work, view, _ROUGH)
+        answer[ANSWER.cage_slip] = slip if status == SETTLED else 1.0
+        left = _write_means(sense, model, work, view, answer)
+        if not math.isfinite(left) or (status == SETTLED and left > _LEFT * _losses(answer)):
+            for column in range(answer.shape[0]):
+                answer[column] = math.nan
+            return FAILED
+        resolution[RESOLUTION.angles] = angles
+        enough = _changes(orbit, answer, params.life) <= allowed
+        if enough or 2 * angles > most:
             break
-        time += marched
-        turned, filled = y[THETA], int(rows.shape[0] * marched / window)
-        mean = (y[THETA] - angle) / marched
-        slipped = 1.0 - mean / ideal
-        if abs(slipped - before) < (_AGREED_FLOOR if status == OK else _RESTS) + _AGREED * abs(slipped):
-            status = OK
-            break
-        before = slipped
-        if status == OK:
-            window *= 2.0
-            continue
-        cut += 1
-        if cut == _CUT_WINDOWS:
-            break
-        window = marched
-        _forget_spins(rows[rows.shape[0] - 1], params.rollers.count)
-    if status == STEP_BUDGET and time == 0.0:
-        mean = y[OMEGA]
-        instant = _AN_INSTANT * window
-        again, step = advance_slip(
-            False, time, instant, y, _FIRST_STEP, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
-        )
-        if again != OK:
-            return again
-    answer[ANSWER.cage_slip] = 1.0 - mean / ideal
-    away = ideal - mean
-    lag = (turned - mean * time) / away if abs(away) > 1e-6 * abs(ideal) else 0.0
-    answer[ANSWER.lag] = min(max(lag, 0.0), time)
-    answer[ANSWER.spin_inertia], answer[ANSWER.spin_delay] = 1.0, 0.0  # in this lag
-    for k in range(CAGE_SLIPS.shape[0]):
-        answer[ANSWER.acceleration_lead_10 + k] = math.nan
-    for column in range(ANSWER.inner_equivalent_load, answer.shape[0]):
-        source = COLUMN.inner_equivalent_load + column - ANSWER.inner_equivalent_load
-        if column >= ANSWER.shaft_power:
-            source = COLUMN.shaft_power + column - ANSWER.shaft_power
-        total = 0.0
-        for k in range(filled):
-            total += rows[k, source]
-        answer[column] = total / filled
+        for column in range(answer.shape[0]):
+            orbit.before[column] = answer[column]
+        _double(orbit, angles * count, angles)
+        angles *= 2
+    _write_way(slip, ideal, sense, model, work, view, answer)
     return status
