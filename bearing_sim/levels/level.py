@@ -71,7 +71,7 @@ LEVELS = {
         slip.initial_state,
         state_transfer.slip_state_at,
         slip.observe,
-        "rosenbrock2",
+        "tr_bdf2",
         slip_methods.advance,
         "pocket play, radial vibration, cage whirl, tilt and skew",
     ),

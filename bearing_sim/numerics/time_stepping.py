@@ -105,7 +105,7 @@ def new_memory(size: int) -> Memory:
 # accepted one, and its growth is damped (_GAIN), because the error of a step with impacts scatters by a factor of ten from one step
 # to the next.
 _AIM, _GAIN = 0.24, 0.2
-_LARGEST_GROWTH, _LARGEST_SHRINK, _SHRINK_UNSOLVED = 4.0, 0.2, 0.1
+_LARGEST_GROWTH, _LARGEST_SHRINK, _SHRINK_UNSOLVED = 4.0, 0.2, 0.3
 
 
 @kernel
@@ -133,7 +133,7 @@ def _accept(error, order, end, y, result, control):
 
 @kernel
 def _reject(error, order, control):
-    """Shorten the step so that its error comes near the aim, or to a tenth where there is no error to go by."""
+    """Shorten the step so that its error comes near the aim, or to three tenths where there is no error to go by."""
     step = control[CONTROL.step]
     if math.isfinite(error):
         control[CONTROL.next_step] = max(step * max(_LARGEST_SHRINK, (_AIM / error) ** (1.0 / order)), SMALLEST_STEP)

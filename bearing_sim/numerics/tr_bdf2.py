@@ -68,7 +68,7 @@ def tr_bdf2_attempt(
         predict(known, shift, slope if stage == 0 else error, model, work, result)
         outcome = solve_implicit(
             rhs_and_jacobian, factor, solve, correction_norm, restrain,
-            t + (h if stage else 2.0 * shift), known, shift, _ENOUGH, result, rate, change, model, work, counts,
+            t + (h if stage else 2.0 * shift), known, shift, _ENOUGH, result, rate, change, scratch[0], model, work, counts,
         )  # fmt: skip
         if outcome != OK:
             return outcome

@@ -95,7 +95,7 @@ class Integration:
     """
 
     absolute_tolerance: AbsoluteTolerance = field(default_factory=AbsoluteTolerance)
-    relative_tolerance: quantity("", "error allowed in a step in a speed, relative to ideal rolling", 1e-12, 1.0, "%") = 0.03
+    relative_tolerance: quantity("", "error allowed in a step in a speed, relative to ideal rolling", 1e-12, 1.0, "%") = 0.01
     maximum_step: quantity("s", "longest step", 1e-9, 1.0, "us") = 1e-2
     first_step: quantity("s", "first step", 1e-12, 1.0, "us") = 1e-5
     fixed_step: quantity("s", "step without error control, for hard real time", 1e-9, 1e-2, "us") | None = None

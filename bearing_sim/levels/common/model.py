@@ -13,7 +13,7 @@ HALF_PITCH = 1.0 / (2.0 + 1.0 / (3.0 + GOLDEN))  # 0.4393
 QUARTER_PITCH = 1.0 / (3.0 + GOLDEN)  # 0.2764
 FIFTH_PITCH = 1.0 / (4.0 + GOLDEN)  # 0.2165
 POSITION_WEIGHT = 0.25  # of positions in the norm of a correction (assumption): contacts leave less of a correction than tractions do
-_PLAY_SPEED = 10.0  # m/s, of the pockets, where play has half its weight in the norm of a correction (assumption)
+_PLAY_WEIGHT, _PLAY_SPEED = 10.0, 0.8  # of play in the norm of a correction at rest, and speed of the pockets where it has half of it [m/s] (assumption)
 _SLOWEST = 1e-3  # rad/s; what a cage at rest counts as (assumption)
 # The raceways' stiffness changes with every passing roller, which excites the ring where it oscillates n/2 times in a passing, n = 1 to 6.  Each
 # entry has (n/2)^2, the relative difference of squared frequencies within which the longest step is shorter, and the shortest step as a part of
@@ -115,14 +115,17 @@ def ring_step(cage_speed, params, stiffness):
 
 @template
 def play_weight(cage_speed, pitch_radius):
-    """Return the weight of play in the norm of a correction: the faster pockets and rollers go round, the larger are the forces between them.
+    """Return the weight of play in the norm of a correction.
+
+    The film of a pocket is a spring: what an iteration leaves of a roller's play is a force, and friction with it, that nothing else needs.  The faster
+    pockets and rollers go round, the larger are the forces between them, and the less it counts.
 
     Parameters
     ----------
     cage_speed : [rad/s].
     pitch_radius : [m].
     """
-    return 1.0 / (1.0 + abs(cage_speed) * pitch_radius / _PLAY_SPEED)
+    return _PLAY_WEIGHT / (1.0 + abs(cage_speed) * pitch_radius / _PLAY_SPEED)
 
 
 class Tolerances(NamedTuple):
@@ -135,7 +138,7 @@ class Tolerances(NamedTuple):
 
 
 # The defaults of `bearing_sim.scene.scene.Integration`: tables and operating points do not depend on how a scene integrates.
-DEFAULT_TOLERANCES = Tolerances(position=2.5e-6, play=5e-6, speed=1e-2, relative=0.03)
+DEFAULT_TOLERANCES = Tolerances(position=2.5e-6, play=5e-6, speed=1e-2, relative=0.01)
 
 
 class Model(NamedTuple):

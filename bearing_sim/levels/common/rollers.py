@@ -308,8 +308,8 @@ def restrain_rollers(row, contact, runs, y, change, params, rows, contacts):
         depth = contacts[outer, contact.penetration, lane]
         touching = _up_to_touching(depth, change[radii + j] - rows[block, row.slope, lane] * change[angles + j])
         rolling = min(
-            _up_to_rolling(contact, contacts, block, lane, -orbit - spin),
-            _up_to_rolling(contact, contacts, outer, lane, spin - orbit),
+            slides_up_to_rolling(contact, contacts, block, lane, -orbit - spin),
+            slides_up_to_rolling(contact, contacts, outer, lane, spin - orbit),
         )
         if touching < 1.0:
             _shorten(y, change, radii + j, touching)
@@ -357,7 +357,7 @@ def _up_to_touching(depth, deepens):
 
 
 @template
-def _up_to_rolling(contact, contacts, block, lane, slides):
+def slides_up_to_rolling(contact, contacts, block, lane, slides):
     """Return the fraction of a change of a sliding speed [m/s] that leads from a flat part of the law to pure rolling; 1 where it does not."""
     sliding = contacts[block, contact.sliding, lane]
     if sliding * (sliding + slides) >= 0.0:

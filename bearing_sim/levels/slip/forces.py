@@ -15,11 +15,10 @@ friction on the cage (0 with ``pocket_reaction: false``), F_R the resistance to 
 import math
 
 from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
-from bearing_sim.levels.common.rollers import drag
+from bearing_sim.levels.common.rollers import drag, slides_up_to_rolling
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import ARROW
-from bearing_sim.numerics.rosenbrock2 import GAMMA
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.drag import mixture_torque, roller_drag
@@ -31,7 +30,6 @@ from bearing_sim.physics.pocket import FRICTION_SPIN, pocket_friction
 from bearing_sim.physics.profile import profile_depth, profile_force
 from bearing_sim.physics.raceway import contour_at
 
-_STICKING = 2.0 / GAMMA  # c of `hold_sticking_contacts`
 _PITCH_POSITIONS = 10  # cage angles over one roller pitch for the equivalent loads
 
 
@@ -158,9 +156,10 @@ def equations(t, y, model, work, rate, with_jacobian):
     reaction = 0.0
     for j in range(rollers.count):
         # The pocket supplies what keeps the roller with the cage, and its friction brakes the spin (Deng 2017, eq. 13).
-        pocket = abs(tangential[j] - rollers.mass * loads[LOAD.radius, j] * cage_acceleration)
-        spin = y[SPIN + j]
-        brake = pocket * pocket_friction(spin, cage.pocket_friction)
+        radius, spin = loads[LOAD.radius, j], y[SPIN + j]
+        driven = tangential[j] - rollers.mass * radius * cage_acceleration
+        pocket, friction = abs(driven), pocket_friction(spin, cage.pocket_friction)
+        brake = pocket * friction
         reaction += roller_radius * brake
         block, lane = j // LANES, j % LANES
         turning = contacts[block, CONTACT.force, lane] - contacts[blocks + block, CONTACT.force, lane]
@@ -172,8 +171,10 @@ def equations(t, y, model, work, rate, with_jacobian):
         if with_jacobian:
             smooth = math.sqrt(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
             d_brake = cage.pocket_friction * pocket * FRICTION_SPIN * FRICTION_SPIN / (smooth * smooth * smooth)
+            d_driven = jacobian[ARROW.row, j] * (1.0 / radius - rollers.mass * radius / inertia)
+            d_brake += friction * (d_driven if driven > 0.0 else -d_driven)  # a pocket presses as its roller is driven
             jacobian[ARROW.diagonal, j] -= roller_radius * d_brake / rollers.inertia
-            jacobian[ARROW.row, j] /= inertia
+            jacobian[ARROW.row, j] = (jacobian[ARROW.row, j] - params.variants.pocket_reaction * roller_radius * d_brake) / inertia
     rate[OMEGA] = cage_acceleration - params.variants.pocket_reaction * reaction / inertia
     if with_jacobian:
         border[0] = 1.0
@@ -182,42 +183,18 @@ def equations(t, y, model, work, rate, with_jacobian):
 
 
 @fused
-def hold_sticking_contacts(model, work):
-    """Make the Jacobian of `equations` steeper for contacts that stick but for sliding within the tolerance of speeds.
-
-    A film that hardly rolls (a shaft that stops, thick oil) drags with its full strength at almost any sliding: T by du is all but a jump.
-    On its flat ends the tangent knows nothing of the jump, and linearly implicit steps leap from one end to the other.  There the slope becomes
-    dT/ddu + c (T/du - dT/ddu) with c = 2/gamma: a long step of `bearing_sim.numerics.rosenbrock2` from du = s against a constant
-    force T then has k_1 = -s gamma c^-1 gamma^-2 = -s/2, k_2 = -s/2 and ends at du = 0.  Where T is proportional to du nothing changes, and the
-    method's order needs no exact Jacobian.
+def up_to_rolling(j, orbit, spin, contacts):
+    """Return the fraction of a correction of a roller's speeds that leads from a flat part of a law of traction to pure rolling; 1 where it does not.
 
     Parameters
     ----------
-    model, work : of the level; `equations` has been evaluated with its Jacobian.
+    j : roller.
+    orbit, spin : corrections of its orbital and its surface speed [m/s].
+    contacts : of the state before the correction.
     """
-    rollers, loads, contacts, jacobian = model.params.rollers, work.loads, work.contacts, work.jacobian.rows
-    blocks, inertia, held = contacts.shape[0] // 2, model.params.cage.inertia, 0.0
-    for j in range(rollers.count):
-        radius, block, lane = loads[LOAD.radius, j], j // LANES, j % LANES
-        inertia += rollers.mass * radius * radius
-        inner = _excess_slope(contacts, block, lane, model.tolerances.speed)
-        outer = _excess_slope(contacts, blocks + block, lane, model.tolerances.speed)
-        held += radius * radius * (inner + outer)
-        jacobian[ARROW.diagonal, j] -= rollers.radius * rollers.radius * (inner + outer) / rollers.inertia
-        jacobian[ARROW.column, j] -= rollers.radius * radius * (inner - outer) / rollers.inertia
-        work.sticking[j] = rollers.radius * radius * (inner - outer)
-    for j in range(rollers.count):
-        jacobian[ARROW.row, j] -= work.sticking[j] / inertia
-    work.jacobian.border[1] -= held / inertia
-
-
-@kernel
-def _excess_slope(contacts, block, lane, tolerance):
-    """Return c (T/du - dT/ddu) of a contact that slides by less than the tolerance [N s/m], see `hold_sticking_contacts`; 0 of others."""
-    sliding = contacts[block, CONTACT.sliding, lane]
-    if abs(sliding) >= tolerance or sliding == 0.0:
-        return 0.0
-    return _STICKING * max(contacts[block, CONTACT.force, lane] / sliding - contacts[block, CONTACT.d_sliding, lane], 0.0)
+    blocks, block, lane = contacts.shape[0] // 2, j // LANES, j % LANES
+    inner = slides_up_to_rolling(CONTACT, contacts, block, lane, -orbit - spin)
+    return min(inner, slides_up_to_rolling(CONTACT, contacts, blocks + block, lane, spin - orbit))
 
 
 @kernel

@@ -7,14 +7,26 @@ Parameters and results are those of `bearing_sim.levels.common.advance.advance_b
 import math
 
 from bearing_sim.levels.common.advance import advance_by
-from bearing_sim.levels.slip.model import error_norm, factor, keep_nothing, observe, rhs, rhs_and_step_jacobian, solve, step_limit
+from bearing_sim.levels.slip.model import (
+    correction_norm,
+    error_norm,
+    factor,
+    keep_nothing,
+    observe,
+    predict,
+    restrain,
+    rhs,
+    rhs_and_jacobian,
+    solve,
+    step_limit,
+)
 from bearing_sim.numerics.compilation import kernel, template
-from bearing_sim.numerics.rosenbrock2 import ERROR_ORDER, rosenbrock2_attempt
+from bearing_sim.numerics.tr_bdf2 import ERROR_ORDER, tr_bdf2_attempt
 
 
 @template
 def _attempt(t, y, h, model, work, memory, counts):
-    return rosenbrock2_attempt(rhs, rhs_and_step_jacobian, factor, solve, t, y, h, model, work, memory, counts)
+    return tr_bdf2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, correction_norm, restrain, t, y, h, model, work, memory, counts)
 
 
 @kernel

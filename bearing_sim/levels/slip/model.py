@@ -15,13 +15,16 @@ import numpy as np
 from bearing_sim.levels.common.model import HALF_PITCH, inner_growth, load_at, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import observe_course, oil_at_speed
 from bearing_sim.levels.common.power import write_friction_moment, write_powers
-from bearing_sim.levels.slip.forces import equations, hold_sticking_contacts, largest_axial_share, pitch_loads
+from bearing_sim.levels.slip.forces import equations, largest_axial_share, pitch_loads, up_to_rolling
 from bearing_sim.levels.slip.power import slip_powers, surplus_power
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.linear_algebra import factor_shifted, solve_factored
 from bearing_sim.physics.load_balance import LOAD
+
+_CAGE_WEIGHT = 10.0  # slip is a small part of the cage's speed (assumption)
+_CORRECTION_WEIGHT = 1.0 / 3.0  # most of the error of a spin is gone within a step (assumption)
 
 
 def initial_state(params, work, shaft_speed, load_y, load_z):
@@ -33,39 +36,42 @@ def initial_state(params, work, shaft_speed, load_y, load_z):
     return state
 
 
-@fused
+@kernel
 def rhs(t, y, model, work, rate):
     """Write dy/dt into ``rate``; return False where the loads did not balance."""
     return equations(t, y, model, work, rate, False)
 
 
-@kernel
+@fused
 def rhs_and_jacobian(t, y, model, work, rate):
     """Write dy/dt into ``rate`` and its Jacobian by y into ``work.jacobian``.
 
-    The change of loads with cage angle and speed is left out: it is slow, and the integrator's order does not need it.
+    The change of loads with cage angle and speed is left out: it is slow.
     """
     return equations(t, y, model, work, rate, True)
-
-
-@fused
-def rhs_and_step_jacobian(t, y, model, work, rate):
-    """Write dy/dt into ``rate`` and into ``work.jacobian`` the matrix for a step: the Jacobian, steeper where contacts stick."""
-    if not equations(t, y, model, work, rate, True):
-        return False
-    hold_sticking_contacts(model, work)
-    return True
 
 
 @template
 def error_norm(t, y, change, model):
     """Return the largest ratio of any state's change to its tolerance.
 
-    Spins count by the speed of the roller's surface.  The cage's angle is not weighed, because nothing restores it.
+    Spins count by the speed of the roller's surface, the cage by `_CAGE_WEIGHT` times the speed of its pockets.  The cage's angle is not weighed,
+    because nothing restores it.
     """
+    return _largest_ratio(t, y, change, model)
+
+
+@template
+def correction_norm(t, y, change, model):
+    """Return `error_norm` of an iteration's correction, times `_CORRECTION_WEIGHT`."""
+    return _CORRECTION_WEIGHT * _largest_ratio(t, y, change, model)
+
+
+@fused
+def _largest_ratio(t, y, change, model):
     raceways, rollers = model.params.raceways, model.params.rollers
     scale = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
-    largest = abs(change[OMEGA]) * scale
+    largest = _CAGE_WEIGHT * abs(change[OMEGA]) * scale
     spin_scale = scale * rollers.radius / raceways.pitch_radius
     for j in range(rollers.count):
         ratio = abs(change[SPIN + j]) * spin_scale
@@ -134,6 +140,24 @@ def factor(shift, work):
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
     solve_factored(work.factored, x)
+
+
+@fused
+def predict(known, shift, slope, model, work, guess):
+    """Write a first guess of the solution of guess = known + shift f(guess): spins are stiff, and more likely to stay than to go on."""
+    for i in range(known.shape[0]):
+        guess[i] = known[i]
+    guess[THETA] += shift * known[OMEGA]
+
+
+@fused
+def restrain(y, change, model, work):
+    """Shorten the corrections of spins that lead from a flat part of a law of traction across pure rolling; see `up_to_rolling`."""
+    rollers = model.params.rollers
+    for j in range(rollers.count):
+        part = up_to_rolling(j, work.loads[LOAD.radius, j] * change[OMEGA], rollers.radius * change[SPIN + j], work.contacts)
+        y[SPIN + j] -= (1.0 - part) * change[SPIN + j]
+        change[SPIN + j] *= part
 
 
 @kernel

@@ -25,7 +25,6 @@ class Work(NamedTuple):
     ring: np.ndarray  # ring centre (y, z) [m], shape (2,); start of the next search
     contacts: np.ndarray  # rows `bearing_sim.physics.contact.CONTACT`, those with the inner raceway first
     tangential: np.ndarray  # all forces along the orbit on each roller but the pocket's [N], shape (Z,)
-    sticking: np.ndarray  # steps of the computation, shape (Z,)
     flanges: np.ndarray  # on each roller: force along the orbit [N] and torque on its spin [N m] of the inner ring's, then of the outer's, (4, Z)
     growth: np.ndarray  # of the inner raceway at present [m], shape (1,)
     pitch: np.ndarray  # rows cosine and sine of 2 pi j/Z, and the angle in intervals of the contour table, shape (3, Z)
@@ -43,7 +42,6 @@ def new_work(params):
         ring=np.zeros(2),
         contacts=new_blocks(2 * blocks_of(count), len(CONTACT)),
         tangential=np.zeros(count),
-        sticking=np.zeros(count),
         flanges=np.zeros((4, count)),
         growth=np.zeros(1),
         pitch=np.array([np.cos(angles), np.sin(angles), params.raceways.contour.shape[0] * np.arange(count) / count]),

@@ -50,7 +50,6 @@ from bearing_sim.numerics.linear_algebra import (
 )
 from bearing_sim.physics.lamina_life import add_load_moments, equivalent_loads
 from bearing_sim.physics.load_balance import LOAD
-from bearing_sim.physics.pocket import pocket_friction
 from bearing_sim.physics.rating_life import rating_life_revolutions
 
 ANGLES = 11  # N of the scan, of a bearing with twelve rollers or more
@@ -255,34 +254,17 @@ def _evaluate(k, sense, model, work, orbit):
 
 
 @kernel
-def _take_jacobian(k, sense, params, work, orbit):
-    """Take level slip's derivatives at the k-th angle, and add what its Jacobian leaves out: a pocket presses as its roller is driven."""
-    angles, rollers, cage = orbit.accelerations.shape[0], params.rollers, params.cage
-    rows, loads, count = work.jacobian.rows, work.loads, params.rollers.count
-    inertia = inertia_of_orbits(params, loads)
-    orbit.damped[k] = work.jacobian.border[1]
-    for i in range(count):
-        node, j = k + angles * i, roller_at(i, sense, count)
-        radius = loads[LOAD.radius, j]
-        pressed = work.tangential[j] > rollers.mass * radius * orbit.accelerations[k]
-        friction = pocket_friction(orbit.state[SPIN + j], cage.pocket_friction) * (1.0 if pressed else -1.0)
-        driven = rows[ARROW.row, j] / radius  # derivative of the force along the orbit, over the inertia
-        orbit.d_spin[node] = rows[ARROW.diagonal, j] - friction * rollers.radius * inertia * driven / rollers.inertia
-        orbit.drives[node] = rows[ARROW.row, j] - params.variants.pocket_reaction * friction * rollers.radius * driven
-        orbit.d_cage[node] = rows[ARROW.column, j]
-
-
-@kernel
 def _linearise(sense, model, work, orbit):
     """Evaluate level slip at all angles; write derivatives, and the spins' residuals into ``orbit.column``; return whether loads balanced."""
-    angles, count, nodes = orbit.accelerations.shape[0], model.params.rollers.count, orbit.spins.shape[0]
+    angles, count, nodes, rows = orbit.accelerations.shape[0], model.params.rollers.count, orbit.spins.shape[0], work.jacobian.rows
     for k in range(angles):
         if not _evaluate(k, sense, model, work, orbit):
             return False
-        orbit.accelerations[k] = orbit.rate[OMEGA]
+        orbit.accelerations[k], orbit.damped[k] = orbit.rate[OMEGA], work.jacobian.border[1]
         for i in range(count):
-            orbit.rates[k + angles * i] = orbit.rate[SPIN + roller_at(i, sense, count)]
-        _take_jacobian(k, sense, model.params, work, orbit)
+            node, j = k + angles * i, roller_at(i, sense, count)
+            orbit.rates[node] = orbit.rate[SPIN + j]
+            orbit.drives[node], orbit.d_cage[node], orbit.d_spin[node] = rows[ARROW.row, j], rows[ARROW.column, j], rows[ARROW.diagonal, j]
     for m in range(nodes):
         interval = _interval(m % angles, sense, orbit)
         orbit.diagonal[m] = max(_LEAST_SLOPE - interval * orbit.d_spin[m], _FALLING * ALPHA_0)
