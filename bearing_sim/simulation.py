@@ -2,13 +2,16 @@
 """Simulation: owns time, state and workspace of one bearing; ``advance`` returns a block of samples."""
 
 import math
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.levels.common.model import Drive, Model, Tolerances
+from bearing_sim.levels.common.observation import TALLY
+from bearing_sim.levels.common.state_transfer import start_means
 from bearing_sim.levels.common.thermal_state import THERMAL, ThermalState
 from bearing_sim.levels.level import LEVELS
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
@@ -26,6 +29,9 @@ from bearing_sim.scene.scene import OPERATING_POINT, Integration, Operating, Sce
 from bearing_sim.scene.uncertainty import quantities
 
 _MEASURED_COLUMNS = slice(COLUMN.inner_ring_temperature_measured, COLUMN.outer_ring_temperature_measured + 1)
+# What a workspace remembers of the past; everything else in it is found again at the next evaluation.
+_REMEMBERED = ("tally", "load_moments", "last_moments", "lamina_powers", "lamina_last", "lamina_turn", "ring_stiffness")
+_NO_MEANS: Mapping[str, np.ndarray] = MappingProxyType({})
 _LONGEST_CALL = 2.0  # intervals of the thermal network
 _FOUND_AGAIN = ("_dtype", "_level", "_compiled")  # attributes of a simulation that are code, or the same for all of their kind
 _OWNS_ITS_DATA = 0x4  # flag of an array, which its type does not depend on
@@ -273,9 +279,11 @@ class Simulation:
         self._take_temperatures()
         before = new_block(1, self._params.rollers.count)
         if start is None:
-            self._begin(self._level.initial_state(self._params, self._work, *self.inputs[:3]), before)
+            rolling = 0.5 * self.inputs.shaft_speed * (1.0 - self._params.raceways.diameter_ratio)
+            self._begin(self._level.initial_state(self._params, self._work, *self.inputs[:3]), before, rolling)
         else:
-            self._begin(self._level.state_at(self._params, self._work, self._at_present_speed(start)), before)
+            sample = self._at_present_speed(start)
+            self._begin(self._level.state_at(self._params, self._work, sample), before, float(sample["cage_speed"]))
 
     def _at_present_speed(self, sample: np.void) -> np.void:
         """Return a sample with the speeds that its bearing has with the same slip at the present speed of the shaft."""
@@ -312,7 +320,8 @@ class Simulation:
         before = other._newest.copy().view(other._dtype)
         for name in ("roller_spin", "roller_rotation"):  # of a level that does not follow them
             before[name] = np.nan_to_num(before[name])
-        self._begin(self._level.state_at(self._params, self._work, other.sample), before)
+        means = {name: getattr(other._work, name) for name in other._remembered} if other._level.takes_steps else {}
+        self._begin(self._level.state_at(self._params, self._work, other.sample), before, float(other.sample["cage_speed"]), other.sample, means)
 
     def resume(self, sample: np.void) -> None:
         """Continue from a recorded sample: its inputs, positions and speeds (see `take_over`).
@@ -334,10 +343,20 @@ class Simulation:
         self._take_temperatures()
         for name in ("roller_spin", "roller_rotation"):  # of a level that does not follow them
             before[name] = np.nan_to_num(before[name])
-        self._begin(self._level.state_at(self._params, self._work, before[0]), before)
+        self._begin(self._level.state_at(self._params, self._work, before[0]), before, float(sample["cage_speed"]), sample)
 
-    def _begin(self, state: np.ndarray, previous: np.ndarray) -> None:
-        """Take a state as the present one; sums over time continue from the sample before."""
+    def _begin(
+        self, state: np.ndarray, previous: np.ndarray, cage_speed: float, sample: np.void | None = None, means: Mapping[str, np.ndarray] = _NO_MEANS
+    ) -> None:  # fmt: skip
+        """Take a state as the present one.
+
+        Parameters
+        ----------
+        previous : block of one sample, from which sums over time continue.
+        cage_speed : of the state [rad/s].
+        sample : where running means of loads continue; those of quasi-static balance where absent.
+        means : running means that continue as they are, by their names in a workspace.
+        """
         self._state = state
         self._compiled = None  # the code of `advance`, from its first call on: the types of its arguments stay
         self._memory = new_memory(state.size)
@@ -345,7 +364,14 @@ class Simulation:
         self._newest = flat(new_block(1, self._params.rollers.count))[0]
         before = flat(previous)[0]
         self._newest[COLUMN.shaft_angle] = before[COLUMN.shaft_angle]
-        observed = self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before, self._newest, self._memory
+        model, work = self._model(self.inputs, 1.0), self._work
+        self._remembered = tuple(name for name in _REMEMBERED if hasattr(work, name))
+        if self._level.takes_steps:
+            start_means(model, work, cage_speed, sample)
+        self._restore(means)
+        work.tally[:] = 0.0
+        work.tally[TALLY.damage] = before[COLUMN.damage]
+        observed = self.time, state, model, work, 0.0, before, self._newest, self._memory
         if self._level.observe(*observed) == NEEDS_POINT and self._level.supply(*observed[2:4]):
             self._level.observe(*observed)
         self._newest[COLUMN.level] = NUMBERS[self.scene.level]
@@ -418,6 +444,15 @@ class Simulation:
         self._take_temperatures()
         self._write_temperatures(self._newest)
 
+    def _remember(self) -> dict[str, np.ndarray]:
+        """Return copies of what the workspace remembers of the past."""
+        return {name: getattr(self._work, name).copy() for name in self._remembered}
+
+    def _restore(self, remembered: Mapping[str, np.ndarray]) -> None:
+        for name in self._remembered:
+            if name in remembered:
+                getattr(self._work, name)[:] = remembered[name]
+
     def _new_work(self):
         return self._level.new_work(self._params, *self._tables)
 
@@ -483,7 +518,7 @@ class Simulation:
 
     def _advance_in_parts(self, duration: float, end: Inputs, samples: int) -> np.ndarray:
         """Advance by calls in which temperatures hardly change, so that losses follow them; on an error return to where the first began."""
-        before, thermal = dict(self.__dict__), self._thermal.copy()
+        before, thermal, remembered = dict(self.__dict__), self._thermal.copy(), self._remember()
         interval, longest, start = duration / samples, _LONGEST_CALL * self.scene.heat.interval, self.inputs
         parts = math.ceil(interval / longest * (1.0 - 1e-9))  # of the time between two samples
         together = max(int(longest / interval * (1.0 + 1e-9)), 1)  # samples of a call
@@ -503,6 +538,7 @@ class Simulation:
             self._thermal = thermal
             self._take_temperatures()
             self._work = self._new_work()
+            self._restore(remembered)
             raise
         return joined(blocks)
 
@@ -511,7 +547,7 @@ class Simulation:
             self._follow_inputs(end)
         block = new_block(samples, self._params.rollers.count)
         rows = flat(block)
-        state = self._state.copy()
+        state, remembered = self._state.copy(), self._remember()
         integration = self.scene.integration
         advance = self._level.advance
         arguments = (
@@ -536,6 +572,7 @@ class Simulation:
             status, step = self._compiled(*arguments) if self._level.supply(arguments[7], self._work) else (NOT_EVALUATED, step)
         if status != OK:
             self._work = self._new_work()  # a failed search may have left nonsense to start the next one from
+            self._restore(remembered)
             self._memory = new_memory(state.size)
             self._step = float(integration.first_step)
             raise IntegrationError(

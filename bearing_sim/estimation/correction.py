@@ -42,7 +42,7 @@ LIFE_EXPONENT = 4.0
 STATES_APART = 0.01 * BY_NAME["table_states"].high
 """Slips of two states differ by more."""
 _SLOWEST = 0.1  # of the largest speed; slower points are corrected as these
-_FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)
+_FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.outer_load_maximum + 1)
 _POWERS = slice(ANSWER.shaft_power, len(ANSWER))
 _LEAST_POWER = 1e-9  # W; of a shaft that puts in less no share is taken
 _SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES = (1.0, 2.0), (0.5, 1.0), (0.35, 0.7)  # from the best of which a search starts

@@ -73,6 +73,8 @@ OBSERVABLES = (
     Observable("lnm", "h", "modified rating life L_nm = a_1 a_ISO L10 (ISO 281)"),
     Observable("l10r", "h", "basic reference rating life L10r, by laminae (ISO/TS 16281)"),
     Observable("lnmr", "h", "modified reference rating life L_nmr, with a_ISO lamina by lamina (ISO/TS 16281)"),
+    Observable("inner_load_maximum", "N", "largest normal force between any roller and the inner raceway since the sample before"),
+    Observable("outer_load_maximum", "N", "largest normal force between any roller and the outer raceway since the sample before"),
     Observable("equivalent_load", "N", "dynamic and static equivalent load of the bearing, P = P_0 = F_r"),
     Observable("reference_load", "N", "dynamic equivalent reference load P_ref, under which L10 would be L10r (ISO/TS 16281)"),
     Observable("viscosity_ratio", "", "viscosity ratio kappa (ISO 281)"),

@@ -14,7 +14,7 @@ correction_norm : the same of an iteration's correction, in which a level may we
 restrain : ``(y, change, model, work)`` shortens the part of an iteration's correction that has carried ``y`` too far for its equations to be linear,
     in both.
 step_limit : ``(t, y, model, work)`` returns the longest sensible step [s].
-step_taken : ``(h, y, model, work)`` is called after each accepted step.
+step_taken : ``(t, h, y, model, work)`` is called after each accepted step of length h, which ended at t.
 attempt : ``(t, y, h, model, work, memory, counts)`` computes a step of ``h`` [s] from (t, y): a method bound to the kernels above, such as
     `bearing_sim.numerics.tr_bdf2.tr_bdf2_attempt`.  It leaves the result in row 1 of ``memory.scratch`` and the error estimate in row 2, and
     returns a status.
@@ -241,7 +241,7 @@ def advance_in_steps(
                 _accept_part(y, result, control)
             else:
                 _accept(error, error_order, end, y, result, control)
-            step_taken(step, y, model, work)
+            step_taken(now + step, step, y, model, work)
             continue
         if outcome == OK and not finite:
             outcome = NON_FINITE

@@ -166,12 +166,6 @@ def add_load_moments(inner, outer, weight, moments):
         outside *= outer
 
 
-def single_load_moments(inner, outer):
-    """Return the moments of rollers that all have the same loads, shape (2, MOMENTS); see `add_load_moments`."""
-    order = np.arange(MOMENTS)
-    return np.stack([float(inner) ** (ROTATING_EXPONENT + order), float(outer) ** (STATIONARY_EXPONENT + order)])
-
-
 @kernel
 def _gauss_loads(moments):
     """Return two loads and their parts of the weight that have the same four moments: load, weight, load, weight."""
@@ -199,23 +193,45 @@ def equivalent_loads(moments, oil, life):
     life : `bearing_sim.model.params.Life`.
     """
     laminae = life.laminae
-    q_1, w_1, q_2, w_2 = _gauss_loads(moments[0])
-    q_3, w_3, q_4, w_4 = _gauss_loads(moments[1])
-    (d_1, q_1), (d_2, q_2) = penetration_of(q_1, laminae), penetration_of(q_2, laminae)
-    (d_3, q_3), (d_4, q_4) = penetration_of(q_3, laminae), penetration_of(q_4, laminae)
+    inside, outside = _aligned_rollers(moments[0], laminae), _aligned_rollers(moments[1], laminae)
     inner, outer, modified = 0.0, 0.0, 0.0
     count = laminae.crown.shape[0]
     for k in range((count + 1) // 2 if laminae.mirrored else count):
-        drop, stiffness = laminae.crown[k], laminae.risers[k] * laminae.stiffness
         number = 2.0 if laminae.mirrored and 2 * k + 1 < count else 1.0  # of laminae like this one; the middle one is alone
-        rotating = w_1 * _fourth(_share(d_1 - drop, stiffness / q_1)) + w_2 * _fourth(_share(d_2 - drop, stiffness / q_2))
-        stationary = w_3 * _nine_halves(_share(d_3 - drop, stiffness / q_3)) + w_4 * _nine_halves(_share(d_4 - drop, stiffness / q_4))
+        rotating, stationary = _lamina_means(k, inside, outside, laminae)
         of_inner = _nine_eighths(rotating)
         inner += number * of_inner
         outer += number * stationary
         modified += number * _modified_part(of_inner, stationary, oil, life)
     whole_inner, whole_outer = moments[0, 0] ** (1.0 / ROTATING_EXPONENT), moments[1, 0] ** (1.0 / STATIONARY_EXPONENT)
     return _summed(whole_inner, whole_outer, inner, outer, modified, life)
+
+
+@template
+def _aligned_rollers(moments, laminae):
+    """Return penetration, load and weight of both loads that stand for the moments of a ring's."""
+    load_1, weight_1, load_2, weight_2 = _gauss_loads(moments)
+    (depth_1, load_1), (depth_2, load_2) = penetration_of(load_1, laminae), penetration_of(load_2, laminae)
+    return depth_1, load_1, weight_1, depth_2, load_2, weight_2
+
+
+@template
+def _lamina_means(k, inside, outside, laminae):
+    """Return the means over rollers and time of the powers 4 and 4.5 of a lamina's loads on both rings, given `_aligned_rollers` of each."""
+    drop, stiffness = laminae.crown[k], laminae.risers[k] * laminae.stiffness
+    d_1, q_1, w_1, d_2, q_2, w_2 = inside
+    d_3, q_3, w_3, d_4, q_4, w_4 = outside
+    rotating = w_1 * _fourth(_share(d_1 - drop, stiffness / q_1)) + w_2 * _fourth(_share(d_2 - drop, stiffness / q_2))
+    stationary = w_3 * _nine_halves(_share(d_3 - drop, stiffness / q_3)) + w_4 * _nine_halves(_share(d_4 - drop, stiffness / q_4))
+    return rotating, stationary
+
+
+@kernel
+def write_lamina_means(moments, laminae, inner_means, outer_means):
+    """Write the means of `add_lamina_powers` that aligned rollers have, by moments of their loads (see `add_load_moments`)."""
+    inside, outside = _aligned_rollers(moments[0], laminae), _aligned_rollers(moments[1], laminae)
+    for k in range(laminae.crown.shape[0]):
+        inner_means[k], outer_means[k] = _lamina_means(k, inside, outside, laminae)
 
 
 @kernel

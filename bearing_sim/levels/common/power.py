@@ -86,8 +86,7 @@ def step_powers(rhs, state_powers, t, y, model, work, memory):
 
 @kernel
 def write_powers(powers, row):
-    """Write `Powers` into a flat sample (see `bearing_sim.model.sample.flat`), which has its shaft speed."""
-    row[COLUMN.shaft_power] = powers.shaft
+    """Write the losses into a flat sample (see `bearing_sim.model.sample.flat`)."""
     row[COLUMN.inner_sliding_power] = powers.inner_sliding
     row[COLUMN.outer_sliding_power] = powers.outer_sliding
     row[COLUMN.inner_rolling_power] = powers.inner_rolling
@@ -100,14 +99,6 @@ def write_powers(powers, row):
     row[COLUMN.seal_power] = powers.seal
     row[COLUMN.flange_power] = powers.flange
     row[COLUMN.support_power] = powers.support
-    write_friction_moment(row)
-
-
-@kernel
-def write_friction_moment(row):
-    """Write the frictional moment, shaft power over shaft speed [N m], into a flat sample that has both; NaN at rest."""
-    speed = row[COLUMN.shaft_speed]
-    row[COLUMN.friction_moment] = row[COLUMN.shaft_power] / speed if speed != 0.0 else math.nan
 
 
 @kernel

@@ -18,10 +18,11 @@ from bearing_sim.levels.slip import model as slip
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads, pitch_loads
 from bearing_sim.levels.spatial import state as spatial
+from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.growth import cold_growth, total_growth
-from bearing_sim.physics.lamina_life import single_load_moments
+from bearing_sim.physics.lamina_life import MOMENTS, write_lamina_means
 from bearing_sim.physics.load_balance import LOAD
-from bearing_sim.physics.rating_life import OilFactors
+from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, OilFactors
 from bearing_sim.scene.fidelity import NUMBERS, WHIRLING
 
 _VIBRATING = tuple(NUMBERS[level] for level in WHIRLING)
@@ -36,15 +37,13 @@ def rolling_state(at, params, work, shaft_speed, load_y, load_z):
     ----------
     at : module of the level's state, of ``planar`` or ``spatial``.
     params : of the bearing.
-    work : the level's workspace; its running means start here too.
+    work : the level's workspace.
     shaft_speed, load_y, load_z : conditions [rad/s, N].
     """
     count = params.rollers.count
     balance, rolling = slip_state.new_work(params), slip.initial_state(params, None, shaft_speed, load_y, load_z)
     cage_speed = rolling[slip_state.OMEGA]
     balance.growth[0] = total_growth(shaft_speed, cold_growth(params.mounted))  # growth by heat, unknown here, comes with the first step
-    pitch_loads(0.0, cage_speed, load_y, load_z, OilFactors(1.0, 1.0), params, balance)  # for the moments, which no oil changes
-    work.load_moments[:] = work.last_moments[:] = balance.load_moments
     balance_loads(0.0, cage_speed, load_y, load_z, params, balance)
     state, rollers = _new_state(at, params)
     state[at.RING_Y], state[at.RING_Z] = balance.ring
@@ -54,6 +53,38 @@ def rolling_state(at, params, work, shaft_speed, load_y, load_z):
     rollers[at.PHI_SPEED] = cage_speed
     rollers[at.SPIN] = rolling[slip_state.SPIN :]
     return state, balance.growth[0]
+
+
+def start_means(model, work, cage_speed, sample=None):
+    """Let the running means of the loads start in quasi-static balance, without its vibration.
+
+    Parameters
+    ----------
+    model : of the level; its drive has the conditions.
+    work : the level's workspace, changed.
+    cage_speed : [rad/s].
+    sample : scales the means so that the equivalent loads are those of this sample; as they are where absent.
+    """
+    params, drive, balance = model.params, model.drive, slip_state.new_work(model.params)
+    balance.growth[0] = total_growth(drive.shaft_speed, model.lubrication.growth)
+    equivalent = pitch_loads(0.0, cage_speed, drive.load_y, drive.load_z, OilFactors(1.0, 1.0), params, balance)
+    moments, laminae = balance.load_moments, np.zeros((2, len(params.life.laminae.positions)))
+    write_lamina_means(moments, params.life.laminae, *laminae)
+    if sample is not None:
+        _scale(moments, laminae, equivalent, sample)
+    work.load_moments[:] = work.last_moments[:] = moments
+    if hasattr(work, "lamina_powers"):
+        work.lamina_powers[:] = work.lamina_last[:] = laminae[:, :, None] / LANES
+
+
+def _scale(moments, laminae, equivalent, sample):
+    """Scale moments and means of laminae so that the equivalent loads are those of a sample."""
+    wanted = [float(sample[f"{ring}_{kind}_load"]) for kind in ("equivalent", "lamina") for ring in ("inner", "outer")]
+    for ring, exponent in enumerate((ROTATING_EXPONENT, STATIONARY_EXPONENT)):
+        if equivalent[ring] > 0.0 and wanted[ring] > 0.0:
+            moments[ring] *= (wanted[ring] / equivalent[ring]) ** (exponent + np.arange(MOMENTS))
+        if equivalent[2 + ring] > 0.0 and wanted[2 + ring] > 0.0:
+            laminae[ring] *= (wanted[2 + ring] / equivalent[2 + ring]) ** exponent
 
 
 def first_cage_centre(params, ring_y, ring_z):
@@ -99,9 +130,6 @@ def spatial_state_at(params, work, sample) -> np.ndarray:
 
 def _dynamic_state_at(at, params, work, sample):
     """Return a state without tilts and its part of the rollers, shape (BLOCK, Z); ``at`` as of `rolling_state`.
-
-    The running means of the rollers' loads continue from the sample, as if all rollers had its equivalent loads; those of laminae start with
-    the first step.
     """
     state, rollers = _new_state(at, params)
     state[at.RING_Y], state[at.RING_Z] = sample["ring_y"], sample["ring_z"]
@@ -111,7 +139,6 @@ def _dynamic_state_at(at, params, work, sample):
     state[at.THETA], state[at.OMEGA] = sample["cage_angle"], sample["cage_speed"]
     rollers[at.R], rollers[at.PHI] = sample["roller_radius"], _roller_angles(sample)
     rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], _spins(params, sample)
-    work.load_moments[:] = work.last_moments[:] = single_load_moments(sample["inner_equivalent_load"], sample["outer_equivalent_load"])
     if sample["level"] in _VIBRATING:
         resume_support(params, state, sample)
     else:

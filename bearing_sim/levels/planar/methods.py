@@ -8,7 +8,6 @@ import math
 
 from bearing_sim.levels.common.advance import advance_by
 from bearing_sim.levels.planar.model import (
-    average_loads,
     correction_norm,
     error_norm,
     factor,
@@ -18,6 +17,7 @@ from bearing_sim.levels.planar.model import (
     rhs_and_jacobian,
     solve,
     step_limit,
+    sum_up,
 )
 from bearing_sim.levels.planar.predictor import predict
 from bearing_sim.numerics.compilation import kernel, template
@@ -34,6 +34,6 @@ def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory,
     """Advance with error control, or ``fixed`` in steps of ``maximum_step`` [s] without it."""
     memory.derivative_time[0] = math.nan  # inputs may have changed
     return advance_by(
-        _attempt, ERROR_ORDER, error_norm, step_limit, average_loads, observe, fixed,
+        _attempt, ERROR_ORDER, error_norm, step_limit, sum_up, observe, fixed,
         t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
     )  # fmt: skip

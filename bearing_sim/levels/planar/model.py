@@ -9,7 +9,7 @@ import math
 
 from bearing_sim.levels.common.flanges import observe_flanges
 from bearing_sim.levels.common.model import POSITION_WEIGHT, orbital_speed_tolerance, play_weight, ring_step, shaft_speed_at
-from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
+from bearing_sim.levels.common.observation import average_moments, count_damage, observe_course, observe_rest, oil_at_speed, turn_is_over
 from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
@@ -133,16 +133,19 @@ def step_limit(t, y, model, work):
 
 
 @fused
-def average_loads(h, y, model, work):
-    """Take the loads of a step of length ``h`` [s], and the stiffness at its end, into the running means over a cage turn.
+def sum_up(t, h, y, model, work):
+    """Take the loads of a step of length ``h`` [s], and the stiffness at its end, into the running means over a cage turn, and count damage.
 
     A step leaves the loads of its last iterate but one, and only a micrometre away a load may be another altogether.
     """
     count, turned = model.params.rollers.count, h * y[OMEGA]
     carry_forces(y, count, work)
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
-    average_moments(fraction, work.rollers, ROLLER.present, work.contacts, CONTACT.load, count, work.load_moments, work.last_moments)
+    average_moments(fraction, work.rollers, ROLLER.present, work.contacts, CONTACT.load, count, work.load_moments, work.last_moments, work.tally)
     average_stiffness(ROLLER, CONTACT, fraction, work.rollers, work.contacts, work.ring_stiffness)
+    if turn_is_over(t, h, model, work.tally):
+        oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
+        count_damage(t, equivalent_loads(work.load_moments, oil, model.params.life), oil, model, work.tally)
 
 
 @kernel
@@ -158,7 +161,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
     rows, count = work.rollers, model.params.rollers.count
     oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
     equivalent = equivalent_loads(work.load_moments, oil, model.params.life)
-    observe_course(t, y[THETA], y[OMEGA], equivalent, oil, model, interval, previous, row)
+    observe_course(t, y[THETA], y[OMEGA], equivalent, oil, model, interval, previous, work.tally, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
     observe_support(y, y[RING_Y], y[RING_Z], model.params.support, row)
@@ -167,3 +170,4 @@ def observe(t, y, model, work, interval, previous, row, memory):
     if model.params.flanges.on:
         observe_flanges(ROLLER, CONTACT.load, count, model.params.flanges, rows, work.contacts, row)
     observe_rollers(ROLLER, CONTACT.load, count, interval, rows, work.contacts, previous, row)
+    observe_rest(interval, previous, model.params, work.tally, row)

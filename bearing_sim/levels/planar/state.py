@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.common.flanges import PLANE_ROWS
+from bearing_sim.levels.common.observation import Tally
 from bearing_sim.levels.common.rollers import StateRuns
 from bearing_sim.levels.common.support import new_support
 from bearing_sim.numerics.compilation import fused
@@ -119,6 +120,7 @@ class Work(NamedTuple):
     # of roller loads, running means over a cage turn, see `bearing_sim.physics.lamina_life.add_load_moments`, shape (2, MOMENTS)
     load_moments: np.ndarray
     last_moments: np.ndarray  # those powers at the end of the last step, shape (2, MOMENTS)
+    tally: np.ndarray  # sums over time, see `bearing_sim.levels.common.observation.Tally`
 
 
 def new_work(params):
@@ -140,6 +142,7 @@ def new_work(params):
         np.zeros(3),
         np.zeros((2, MOMENTS)),
         np.zeros((2, MOMENTS)),
+        np.zeros(len(Tally._fields)),
     )
 
 

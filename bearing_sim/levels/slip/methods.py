@@ -11,7 +11,6 @@ from bearing_sim.levels.slip.model import (
     correction_norm,
     error_norm,
     factor,
-    keep_nothing,
     observe,
     predict,
     restrain,
@@ -19,6 +18,7 @@ from bearing_sim.levels.slip.model import (
     rhs_and_jacobian,
     solve,
     step_limit,
+    sum_up,
 )
 from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.tr_bdf2 import ERROR_ORDER, tr_bdf2_attempt
@@ -34,6 +34,6 @@ def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory,
     """Advance with error control, or ``fixed`` in steps of ``maximum_step`` [s] without it."""
     memory.derivative_time[0] = math.nan  # inputs may have changed
     return advance_by(
-        _attempt, ERROR_ORDER, error_norm, step_limit, keep_nothing, observe, fixed,
+        _attempt, ERROR_ORDER, error_norm, step_limit, sum_up, observe, fixed,
         t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
     )  # fmt: skip

@@ -12,15 +12,16 @@ import math
 
 import numpy as np
 
-from bearing_sim.levels.common.model import HALF_PITCH, inner_growth, load_at, orbital_speed_tolerance, pitch_step, shaft_speed_at
-from bearing_sim.levels.common.observation import observe_course, oil_at_speed
-from bearing_sim.levels.common.power import write_friction_moment, write_powers
-from bearing_sim.levels.slip.forces import equations, largest_axial_share, pitch_loads, up_to_rolling
-from bearing_sim.levels.slip.power import slip_powers, surplus_power
+from bearing_sim.levels.common.model import HALF_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.observation import TALLY, count_damage, fade_moment, observe_course, observe_rest, oil_at_speed, turn_is_over
+from bearing_sim.levels.common.power import write_powers
+from bearing_sim.levels.slip.forces import equations, largest_axial_share, up_to_rolling
+from bearing_sim.levels.slip.power import slip_powers
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.linear_algebra import factor_shifted, solve_factored
+from bearing_sim.physics.lamina_life import MOMENTS, add_load_moments, equivalent_loads
 from bearing_sim.physics.load_balance import LOAD
 
 _CAGE_WEIGHT = 10.0  # slip is a small part of the cage's speed (assumption)
@@ -92,21 +93,17 @@ def observe(t, y, model, work, interval, previous, row, memory):
 
     Parameters
     ----------
-    interval : time since the previous sample [s]; damage and angles accumulate over it.
+    interval : time since the previous sample [s]; angles accumulate over it.
     previous, row : flat samples, shape (SCALARS + runs * Z,); see `bearing_sim.model.sample.flat`.
     memory : of the method, see `bearing_sim.numerics.time_stepping.Memory`.
     """
     params, loads, rate = model.params, work.loads, memory.scratch[0]
     count, cage_speed = params.rollers.count, y[OMEGA]
-    load_y, load_z = load_at(t, model.drive)
-    work.growth[0] = inner_growth(shaft_speed_at(t, model.drive), model)
     oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
-    equivalent = pitch_loads(y[THETA], cage_speed, load_y, load_z, oil, params, work)
-    observe_course(t, y[THETA], cage_speed, equivalent, oil, model, interval, previous, row)
+    equivalent = equivalent_loads(work.load_moments, oil, params.life)
+    observe_course(t, y[THETA], cage_speed, equivalent, oil, model, interval, previous, work.tally, row)
     rhs(t, y, model, work, rate)
     write_powers(slip_powers(cage_speed, rate[OMEGA], y[SPIN:], shaft_speed_at(t, model.drive), model, work), row)
-    row[COLUMN.shaft_power] -= surplus_power(y, rate, interval, previous, model, work)
-    write_friction_moment(row)
     if params.flanges.on:
         row[COLUMN.inner_flange_force], row[COLUMN.outer_flange_force] = 0.0, 0.0
         for j in range(count):
@@ -128,6 +125,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
         row[first + COLUMN.orbital_speed * count] = cage_speed
         drive_force = params.rollers.mass * loads[LOAD.radius, j] * rate[OMEGA]
         row[first + COLUMN.pocket_force * count] = drive_force - work.tangential[j]
+    observe_rest(interval, previous, params, work.tally, row)
 
 
 @template
@@ -161,5 +159,18 @@ def restrain(y, change, model, work):
 
 
 @kernel
-def keep_nothing(h, y, model, work):
-    """Keep nothing from step to step."""
+def sum_up(t, h, y, model, work):
+    """Take the loads of a step of length ``h`` [s] into the running means over a cage turn and into the largest, and count damage."""
+    loads, now, tally, count = work.loads, work.present_moments, work.tally, model.params.rollers.count
+    now[:] = 0.0
+    for j in range(count):
+        inner, outer = loads[LOAD.inner, j], loads[LOAD.outer, j]
+        add_load_moments(inner, outer, 1.0 / count, now)
+        tally[TALLY.inner_load], tally[TALLY.outer_load] = max(tally[TALLY.inner_load], inner), max(tally[TALLY.outer_load], outer)
+    fraction = 1.0 - math.exp(-abs(h * y[OMEGA]) / (2.0 * math.pi))
+    for ring in range(2):
+        for k in range(MOMENTS):
+            fade_moment(work.load_moments[ring], work.last_moments[ring], k, fraction, now[ring, k])
+    if turn_is_over(t, h, model, tally):
+        oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
+        count_damage(t, equivalent_loads(work.load_moments, oil, model.params.life), oil, model, tally)

@@ -4,19 +4,10 @@
 Rollers are locked to their pockets and everything radial is quasi-static: nothing is damped, no land is eccentric, and the
 kinetic energy of the balance is that of rotation: of the cage, the orbiting rollers and their spins.  The normal forces that lean, by the
 contour's slope and the ring's displacement, exchange it with the elastic energy of the contacts and the work of the load, without loss.
-
-**The shaft's power.**  Spins follow stiff tractions.  A spin that is off by the little that the tolerances allow turns the tractions of both
-raceways against each other: the shaft's power P errs by as much as the power J_r w w' that the spin takes up, while the losses hardly
-change; where rollers stick, so it does by what the cage and the orbiting rollers take up.  A sample therefore has P - E' + (E - E_0)/(t - t_0), E the
-kinetic energy and E_0 that of the sample before: the same balance, with what was taken up in the mean since that sample in place of what seems to be
-taken up at the instant.
 """
-
-import math
 
 from bearing_sim.levels.common.power import Powers, rolling_power, seal_power, shaft_traction_power, sliding_power, windage_powers
 from bearing_sim.levels.slip.state import OMEGA, SPIN
-from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.land import land_torque
@@ -88,32 +79,6 @@ def kinetic_power(y, rate, model, work):
     for j in range(rollers.count):
         power += rollers.inertia * y[SPIN + j] * rate[SPIN + j]
     return power
-
-
-@kernel
-def surplus_power(y, rate, interval, previous, model, work):
-    """Return by how much more power cage, orbits and spins take up at an instant than they did in the mean since the sample before [W].
-
-    Parameters
-    ----------
-    y, rate : state, and its derivative, just evaluated into ``work``.
-    interval : time since the previous sample [s].
-    previous : flat sample, see `bearing_sim.model.sample.flat`.
-    model, work : of the level.
-
-    Returns
-    -------
-    power : 0 where no time has passed, or the sample before has no spins.
-    """
-    if not interval > 0.0:
-        return 0.0
-    rollers, count = model.params.rollers, model.params.rollers.count
-    before, first = previous[COLUMN.cage_speed], SCALARS + COLUMN.roller_spin * count
-    gained = 0.5 * inertia_of_orbits(model.params, work.loads) * (y[OMEGA] * y[OMEGA] - before * before)
-    for j in range(count):
-        gained += 0.5 * rollers.inertia * (y[SPIN + j] * y[SPIN + j] - previous[first + j] * previous[first + j])
-    power = kinetic_power(y, rate, model, work) - gained / interval
-    return 0.0 if math.isnan(power) else power
 
 
 @kernel

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.observation import Tally
 from bearing_sim.numerics.linear_algebra import Arrow, new_arrow
 from bearing_sim.numerics.simd import blocks_of, new_blocks
 from bearing_sim.physics.contact import CONTACT
@@ -28,7 +29,11 @@ class Work(NamedTuple):
     flanges: np.ndarray  # on each roller: force along the orbit [N] and torque on its spin [N m] of the inner ring's, then of the outer's, (4, Z)
     growth: np.ndarray  # of the inner raceway at present [m], shape (1,)
     pitch: np.ndarray  # rows cosine and sine of 2 pi j/Z, and the angle in intervals of the contour table, shape (3, Z)
-    load_moments: np.ndarray  # of roller loads over a pitch, see `bearing_sim.physics.lamina_life.add_load_moments`, shape (2, MOMENTS)
+    # of roller loads, running means over a cage turn, see `bearing_sim.physics.lamina_life.add_load_moments`, shape (2, MOMENTS)
+    load_moments: np.ndarray
+    last_moments: np.ndarray  # those powers at the end of the last step, likewise
+    present_moments: np.ndarray  # and of the present one
+    tally: np.ndarray  # sums over time, see `bearing_sim.levels.common.observation.Tally`
     jacobian: Arrow
     factored: Arrow  # of I - gamma h J
 
@@ -46,6 +51,9 @@ def new_work(params):
         growth=np.zeros(1),
         pitch=np.array([np.cos(angles), np.sin(angles), params.raceways.contour.shape[0] * np.arange(count) / count]),
         load_moments=np.zeros((2, MOMENTS)),
+        last_moments=np.zeros((2, MOMENTS)),
+        present_moments=np.zeros((2, MOMENTS)),
+        tally=np.zeros(len(Tally._fields)),
         jacobian=new_arrow(count),
         factored=new_arrow(count),
     )

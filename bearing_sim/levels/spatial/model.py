@@ -12,7 +12,7 @@ import numpy as np
 
 from bearing_sim.levels.common.flanges import largest_corner, observe_flanges
 from bearing_sim.levels.common.model import FIFTH_PITCH, POSITION_WEIGHT, orbital_speed_tolerance, play_weight, ring_step, shaft_speed_at
-from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
+from bearing_sim.levels.common.observation import average_moments, count_damage, observe_course, observe_rest, oil_at_speed, turn_is_over
 from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
 from bearing_sim.levels.common.slice_balance import balance, roller_tilts
@@ -216,17 +216,28 @@ def step_limit(t, y, model, work):
 
 
 @fused
-def average_loads(h, y, model, work):
-    """Take the loads of a step of length ``h`` [s], and the stiffness at its end, into the running means over a cage turn.
+def sum_up(t, h, y, model, work):
+    """Take the loads of a step of length ``h`` [s], and the stiffness at its end, into the running means over a cage turn, and count damage.
 
     A step leaves the loads of its last iterate but one, and only a micrometre away a load may be another altogether.
     """
     count, turned = model.params.rollers.count, h * y[OMEGA]
     carry_forces(y, count, work)
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
-    average_moments(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_moments, work.last_moments)
+    average_moments(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_moments, work.last_moments, work.tally)
     average_stiffness(ROLLER, SLICED, fraction, work.rollers, work.contacts, work.ring_stiffness)
     average_laminae(abs(turned), _LAMINA_INTERVAL * 2.0 * math.pi / count, model.params, work)
+    if turn_is_over(t, h, model, work.tally):
+        oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
+        count_damage(t, _equivalent_loads(oil, model.params.life, work), oil, model, work.tally)
+
+
+@kernel
+def _equivalent_loads(oil, life, work):
+    """Return the `bearing_sim.physics.lamina_life.EquivalentLoads` of the running means."""
+    inner, outer = work.load_moments[0, 0] ** (1.0 / ROTATING_EXPONENT), work.load_moments[1, 0] ** (1.0 / STATIONARY_EXPONENT)
+    sum_lamina_powers(work)
+    return equivalent_lamina_loads(inner, outer, work.lamina_means[0], work.lamina_means[1], oil, life)
 
 
 @kernel
@@ -246,11 +257,9 @@ def observe(t, y, model, work, interval, previous, row, memory):
     """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.model.observe`."""
     powers = _powers(t, y, model, work, memory)
     rows, count = work.rollers, model.params.rollers.count
-    inner, outer = work.load_moments[0, 0] ** (1.0 / ROTATING_EXPONENT), work.load_moments[1, 0] ** (1.0 / STATIONARY_EXPONENT)
     oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
-    sum_lamina_powers(work)
-    equivalent = equivalent_lamina_loads(inner, outer, work.lamina_means[0], work.lamina_means[1], oil, model.params.life)
-    observe_course(t, y[THETA], y[OMEGA], equivalent, oil, model, interval, previous, row)
+    equivalent = _equivalent_loads(oil, model.params.life, work)
+    observe_course(t, y[THETA], y[OMEGA], equivalent, oil, model, interval, previous, work.tally, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
     observe_support(y, y[RING_Y], y[RING_Z], model.params.support, row)
@@ -268,3 +277,4 @@ def observe(t, y, model, work, interval, previous, row, memory):
         first, block, lane = SCALARS + j, j // LANES, j % LANES
         row[first + COLUMN.roller_tilt * count] = rows[block, ROLLER.tilt, lane]
         row[first + COLUMN.roller_skew * count] = rows[block, ROLLER.skew, lane]
+    observe_rest(interval, previous, model.params, work.tally, row)

@@ -375,9 +375,8 @@ def damped_power(block, contacts, points, first_points, count, stiffness, dampin
 def average_laminae(turned, interval, params, work):
     """Include the laminae's loads, with stress risers, in their running means to the exponents of both rings (ISO/TS 16281).
 
-    The means are those of `bearing_sim.physics.lamina_life.add_lamina_powers`, each the sum over the lanes of ``work.lamina_powers``.  The first
-    instant starts them.  After that the end of a step counts if the cage has turned by ``interval`` since the last one that did, because all short
-    steps would cost too much.  That angle counts by the mean of the powers at both its ends, see `average_moments` in
+    The means are those of `bearing_sim.physics.lamina_life.add_lamina_powers`, each the sum over the lanes of ``work.lamina_powers``.  The
+    end of a step counts if the cage has turned by ``interval`` since the last one that did, because all short steps would cost too much.  That angle counts by the mean of the powers at both its ends, see `average_moments` in
     `bearing_sim.levels.common.observation`.  Laminae are as many as the scene wants for its life, whatever the number of slices that carry the
     roller: their loads follow from its penetration and lean.
 
@@ -390,20 +389,15 @@ def average_laminae(turned, interval, params, work):
     powers, now, last = work.lamina_powers, work.lamina_now, work.lamina_last
     number = powers.shape[1]
     work.lamina_turn[0] += turned
-    started = spread(0.0)
-    for k in range(number):  # the end laminae of a crowned roller may never be loaded
-        started += load(powers, INNER, k) + load(powers, OUTER, k)
-    has_started = total(started) > 0.0
-    if has_started and not work.lamina_turn[0] >= interval:
+    if not work.lamina_turn[0] >= interval:
         return
-    weight = 1.0 - math.exp(-work.lamina_turn[0] / (2.0 * math.pi)) if has_started else 1.0
-    before = last if has_started else now
+    weight = 1.0 - math.exp(-work.lamina_turn[0] / (2.0 * math.pi))
     work.lamina_turn[0] = 0.0
     _write_lamina_powers(params, work)
     for ring in (INNER, OUTER):
         for k in range(number):
             mean, present = load(powers, ring, k), load(now, ring, k)
-            store(powers, ring, k, mean + weight * (0.5 * (load(before, ring, k) + present) - mean))
+            store(powers, ring, k, mean + weight * (0.5 * (load(last, ring, k) + present) - mean))
             store(last, ring, k, present)
 
 

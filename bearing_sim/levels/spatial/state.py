@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.common.flanges import ROWS as FLANGE_ROWS
+from bearing_sim.levels.common.observation import Tally
 from bearing_sim.levels.common.rollers import StateRuns
 from bearing_sim.levels.common.support import new_support
 from bearing_sim.numerics.compilation import fused
@@ -200,6 +201,7 @@ class Work(NamedTuple):
     ring_stiffness: np.ndarray  # as at level ``planar``, shape (3,)
     load_moments: np.ndarray  # as at level ``planar``, shape (2, MOMENTS)
     last_moments: np.ndarray  # likewise
+    tally: np.ndarray  # likewise
     lamina_powers: np.ndarray  # by lanes, see `bearing_sim.levels.spatial.slices.average_laminae`, shape (2, laminae, LANES)
     lamina_now: np.ndarray  # powers at one instant, likewise
     lamina_last: np.ndarray  # powers at the last instant that counted, likewise
@@ -231,6 +233,7 @@ def new_work(params):
         ring_stiffness=np.zeros(3),
         load_moments=np.zeros((2, MOMENTS)),
         last_moments=np.zeros((2, MOMENTS)),
+        tally=np.zeros(len(Tally._fields)),
         lamina_powers=new_blocks(2, len(params.life.laminae.positions)),
         lamina_now=new_blocks(2, len(params.life.laminae.positions)),
         lamina_last=new_blocks(2, len(params.life.laminae.positions)),

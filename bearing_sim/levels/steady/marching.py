@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from bearing_sim.levels.common.state_transfer import start_means
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.methods import advance
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
@@ -50,6 +51,7 @@ def march(start: float, model, answer: np.ndarray) -> int:
     work, memory, counts = slip_state.new_work(params), new_memory(count + 2), new_counts()
     y = np.full(count + 2, first * params.raceways.pitch_radius / params.rollers.radius)
     y[THETA], y[OMEGA] = 0.0, first
+    start_means(model, work, first)
     block = new_block(_SAMPLES, count)
     rows, previous = flat(block), flat(new_block(1, count))[0]
     _forget_spins(previous, count)
@@ -95,7 +97,8 @@ def march(start: float, model, answer: np.ndarray) -> int:
     answer[ANSWER.cage_slip], answer[ANSWER.lag] = 1.0 - mean / ideal, min(max(lag, 0.0), time)
     answer[ANSWER.spin_inertia], answer[ANSWER.spin_delay] = 1.0, 0.0  # in this lag
     for name in _MEANS:
-        answer[getattr(ANSWER, name)] = block[name][: max(filled, 1)].mean()
+        taken = block[name][: max(filled, 1)]
+        answer[getattr(ANSWER, name)] = taken.max() if name.endswith("_maximum") else taken.mean()
     return status
 
 

@@ -17,8 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.common.model import Drive, Model, inner_growth, load_at, shaft_speed_at
-from bearing_sim.levels.common.observation import observe_course, oil_at_speed
-from bearing_sim.levels.common.power import write_friction_moment
+from bearing_sim.levels.common.observation import TALLY, Tally, damage_rate, mean_rate, observe_course, observe_rest, oil_at_speed
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import OMEGA, THETA
@@ -55,6 +54,7 @@ class Work(NamedTuple):
     asked: np.ndarray  # that which was last solved for, likewise; see `forget`
     solved: np.ndarray  # the answer to it, shape (len(ANSWER),)
     done: np.ndarray  # samples of the present call that are complete, -1 before it has begun, int64, shape (1,)
+    tally: np.ndarray  # sums over time, see `bearing_sim.levels.common.observation.Tally`
     solutions: np.ndarray  # operating points solved so far, and how many of them by marching, and without an end to it, int64, shape (3,)
 
 
@@ -81,6 +81,7 @@ def new_work(params, table: Table | None = None):
         asked=np.full(4, math.nan),
         solved=np.full(len(ANSWER), math.nan),
         done=np.full(1, -1, np.int64),
+        tally=np.zeros(len(Tally._fields)),
         solutions=np.zeros(3, np.int64),
     )
 
@@ -185,10 +186,17 @@ def _write_sample(t, y, model, work, interval, previous, row):
         answer[ANSWER.outer_lamina_load],
         answer[ANSWER.reference_modification_factor],
     )
-    observe_course(t, cage_angle, cage_speed, equivalent, oil_at_speed(shaft_speed_at(t, model.drive), model), model, interval, previous, row)
+    shaft_speed, tally = shaft_speed_at(t, model.drive), work.tally
+    oil = oil_at_speed(shaft_speed, model)
+    rate = damage_rate(t, equivalent, oil, model)
+    if interval > 0.0:
+        turned = 0.5 * abs(shaft_speed + previous[COLUMN.shaft_speed]) * interval
+        tally[TALLY.damage] += turned * mean_rate(tally[TALLY.rate], rate)
+    tally[TALLY.rate] = rate
+    tally[TALLY.inner_load], tally[TALLY.outer_load] = answer[ANSWER.inner_load_maximum], answer[ANSWER.outer_load_maximum]
+    observe_course(t, cage_angle, cage_speed, equivalent, oil, model, interval, previous, tally, row)
     for column in range(ANSWER.flange_power - ANSWER.shaft_power + 1):
         row[COLUMN.shaft_power + column] = answer[ANSWER.shaft_power + column]
-    write_friction_moment(row)
     load_y, load_z = load_at(t, model.drive)
     work.bearing.growth[0] = inner_growth(shaft_speed_at(t, model.drive), model)
     balance_loads(cage_angle, cage_speed, load_y, load_z, params, work.bearing)
@@ -204,6 +212,7 @@ def _write_sample(t, y, model, work, interval, previous, row):
         row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
         row[first + COLUMN.orbital_speed * count] = cage_speed
         row[first + COLUMN.pocket_force * count] = math.nan
+    observe_rest(interval, previous, params, tally, row)
 
 
 @kernel

@@ -371,18 +371,20 @@ class AnswerColumn(NamedTuple):
     inner_lamina_load: int = 14  # the same by laminae
     outer_lamina_load: int = 15
     reference_modification_factor: int = 16  # a_ISO of all laminae together
-    shaft_power: int = 17  # from here on means in time [W]; the order is that of `bearing_sim.levels.common.power.Powers`
-    inner_sliding_power: int = 18
-    outer_sliding_power: int = 19
-    inner_rolling_power: int = 20
-    outer_rolling_power: int = 21
-    churning_power: int = 22
-    windage_power: int = 23
-    land_power: int = 24
-    pocket_power: int = 25
-    damping_power: int = 26
-    seal_power: int = 27
-    flange_power: int = 28
+    inner_load_maximum: int = 17  # largest of any roller [N]
+    outer_load_maximum: int = 18
+    shaft_power: int = 19  # from here on means in time [W]; the order is that of `bearing_sim.levels.common.power.Powers`
+    inner_sliding_power: int = 20
+    outer_sliding_power: int = 21
+    inner_rolling_power: int = 22
+    outer_rolling_power: int = 23
+    churning_power: int = 24
+    windage_power: int = 25
+    land_power: int = 26
+    pocket_power: int = 27
+    damping_power: int = 28
+    seal_power: int = 29
+    flange_power: int = 30
 
 
 ANSWER = AnswerColumn()
@@ -743,6 +745,7 @@ def _write_means(sense, model, work, orbit, answer):
     for column in range(ANSWER.shaft_power, ANSWER.flange_power + 1):
         answer[column] = 0.0
     moments[:] = 0.0
+    answer[ANSWER.inner_load_maximum] = answer[ANSWER.outer_load_maximum] = 0.0
     left, count = 0.0, params.rollers.count
     for k in range(angles):
         _evaluate(k, sense, model, work, orbit)
@@ -763,7 +766,10 @@ def _write_means(sense, model, work, orbit, answer):
         answer[ANSWER.flange_power] += part * powers.flange
         left += part * rate[OMEGA]
         for j in range(count):
-            add_load_moments(work.loads[LOAD.inner, j], work.loads[LOAD.outer, j], part / count, moments)
+            inner, outer = work.loads[LOAD.inner, j], work.loads[LOAD.outer, j]
+            add_load_moments(inner, outer, part / count, moments)
+            answer[ANSWER.inner_load_maximum] = max(answer[ANSWER.inner_load_maximum], inner)
+            answer[ANSWER.outer_load_maximum] = max(answer[ANSWER.outer_load_maximum], outer)
     loads = equivalent_loads(moments, oil_at_speed(model.drive.shaft_speed, model), params.life)
     answer[ANSWER.inner_equivalent_load], answer[ANSWER.outer_equivalent_load] = loads.inner, loads.outer
     answer[ANSWER.inner_lamina_load], answer[ANSWER.outer_lamina_load] = loads.inner_lamina, loads.outer_lamina
@@ -879,5 +885,6 @@ def solve_point(start, to_standstill, model, work, orbit, answer):
             orbit.before[column] = answer[column]
         _double(orbit, angles * count, angles)
         angles *= 2
+    answer[ANSWER.shaft_power] = _losses(answer)  # the same, after the check, as of a sample
     _write_way(slip, ideal, sense, model, work, view, answer)
     return status
