@@ -78,18 +78,19 @@ def back_substitute(n, matrix, order, x):
 
 
 class Arrow(NamedTuple):
-    """An arrow matrix of position, speed and Z scalars; or the factorisation of I - shift * J."""
+    """An arrow matrix of position, speed and Z scalars, which may also follow the derivative of the speed; or the factorisation of I - shift * J."""
 
     border: np.ndarray  # d(position')/d(speed) and d(speed')/d(speed), shape (2,); factored: times shift, inverse Schur complement
-    rows: np.ndarray  # rows `ARROW`, shape (3, Z)
+    rows: np.ndarray  # rows `ARROW`, shape (4, Z)
 
 
 class ArrowRow(NamedTuple):
     """Rows of `Arrow.rows`."""
 
     diagonal: int = 0  # d(scalar')/d(scalar); factored: its inverse
-    column: int = 1  # d(scalar')/d(speed); factored: times shift
+    column: int = 1  # d(scalar')/d(speed) at the same speed'; factored: times shift, and pulled
     row: int = 2  # d(speed')/d(scalar); factored: times shift and inverse diagonal
+    pulled: int = 3  # d(scalar')/d(speed')
 
 
 ARROW = ArrowRow()
@@ -110,11 +111,13 @@ def factor_shifted(jacobian, shift, factored):
         pivot = 1.0 - shift * given[ARROW.diagonal, j]
         regular = regular and abs(pivot) > 0.0
         inverse = 1.0 / pivot
-        column = shift * given[ARROW.column, j]
+        # by the equation of the speed, shift d(speed') is what the speed changes by less its right side
+        column = shift * given[ARROW.column, j] + given[ARROW.pulled, j]
         row = shift * given[ARROW.row, j] * inverse
         result[ARROW.diagonal, j] = inverse
         result[ARROW.column, j] = column
         result[ARROW.row, j] = row
+        result[ARROW.pulled, j] = given[ARROW.pulled, j]
         schur -= row * column
     factored.border[0] = shift * jacobian.border[0]
     factored.border[1] = 1.0 / schur
@@ -127,6 +130,7 @@ def solve_factored(factored, x):
     rows = factored.rows
     total = x[1]
     for j in range(rows.shape[1]):
+        x[2 + j] -= rows[ARROW.pulled, j] * x[1]
         total += rows[ARROW.row, j] * x[2 + j]
     speed = factored.border[1] * total
     x[0] += factored.border[0] * speed

@@ -4,23 +4,32 @@
 With F_j the sum of all forces along the orbit on roller j but its pocket's, r_j its distance from the outer ring's centre, M_c the torque on
 the cage body and S = J_c + sum m_r r_j^2,
 
-    omega_c' = [M_c + sum r_j F_j - B]/S,    P_j = F_j - m_r r_j (M_c + sum r_j F_j)/S,
+    omega_c' = [M_c + sum r_j F_j - B]/S,    L_j = F_j - m_r r_j (M_c + sum r_j F_j)/S,
     J_r w_j' = R_w (T_i - T_e - F_Ri - F_Re) + M_f - R_w mu |P_j|,
 
-P_j what the pocket takes from the roller, mu its coefficient of friction (Deng 2017, eq. 13), B = R_w sum mu |P_j| the reaction of pocket
-friction on the cage (0 with ``pocket_reaction: false``), F_R the resistance to rolling, M_f the torque of the flanges (0 without).  Deng
-2017, eq. 14 to 16, are the equations of the free roller, ring and cage from which these follow.
+L_j what a pocket without play would take from the roller, P_j what it takes (below), mu its coefficient of friction (Deng 2017, eq. 13),
+B = R_w sum mu |P_j| the reaction of pocket friction on the cage (0 with ``pocket_reaction: false``), F_R the resistance to rolling, M_f the torque
+of the flanges (0 without).  Deng 2017, eq. 14 to 16, are the equations of the free roller, ring and cage from which these follow.
+
+**Play of the pockets.**  Under load the tractions are so stiff that rollers would have to creep against each other to keep in step with the cage: the
+ring's displacement and the contour make one faster and the next slower.  What they are apart in a loaded zone is a few micrometres, which pockets
+with play do not feel.  With the time T in which a roller gains or loses on the cage, the stiffness d of its tractions against its orbital speed, the
+film's damping c and spring k and the play e of a pocket, a roller moves by x = |L_j| T/(d + c + k T) and its pocket feels of L_j the part
+
+    rho_j = z/(z + d) + [1 - z/(z + d)] x/(x + e),    z = c + k T.
+
+What all rollers together give the cage is not changed: P_j = rho_j L_j + (1 - rho_j) sum (1 - rho) L/sum (1 - rho).  *Assumption*: T = 1/(2 omega_c).
 """
 
 import math
 
 from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import drag, slides_up_to_rolling
-from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
+from bearing_sim.levels.slip.state import OMEGA, POCKET, SPIN, THETA
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import ARROW
 from bearing_sim.numerics.simd import LANES
-from bearing_sim.physics.contact import CONTACT
+from bearing_sim.physics.contact import CONTACT, TINY
 from bearing_sim.physics.drag import mixture_torque, roller_drag
 from bearing_sim.physics.flange import axial_share, flange_friction, rub, shear
 from bearing_sim.physics.lamina_life import MOMENTS, add_load_moments, equivalent_loads
@@ -31,6 +40,7 @@ from bearing_sim.physics.profile import profile_depth, profile_force
 from bearing_sim.physics.raceway import contour_at
 
 _PITCH_POSITIONS, _MOST_PITCH_POSITIONS = 20, 320  # cage angles over one roller pitch for the equivalent loads, at first and at most
+_RELIEF_TIME, _SLOWEST = 0.5, 1e-3  # time in which a roller gains or loses on the cage, times the cage speed, and least such speed [rad/s] (assumptions)
 _MOMENT_CHANGE = 0.01  # by which twice as many may change the fourth power of a load; a life then changes by a per cent
 
 
@@ -114,7 +124,7 @@ def _cage_torque(cage_speed, shaft_speed, model):
 @fused
 def equations(t, y, model, work, rate, with_jacobian):
     """Evaluate the right-hand side, and the Jacobian where asked; return False where the loads did not balance."""
-    params, drive, loads, tangential = model.params, model.drive, work.loads, work.tangential
+    params, drive, loads, tangential, pockets = model.params, model.drive, work.loads, work.tangential, work.pockets
     rollers, cage = params.rollers, params.cage
     cage_speed, shaft_speed = y[OMEGA], shaft_speed_at(t, drive)
     work.growth[0] = inner_growth(shaft_speed, model)
@@ -144,6 +154,7 @@ def equations(t, y, model, work, rate, with_jacobian):
             jacobian[ARROW.row, j] = radius * (inner_d_spin + outer_d_spin)
             jacobian[ARROW.column, j] = roller_radius * (inner_d_cage - outer_d_cage) / rollers.inertia
             jacobian[ARROW.diagonal, j] = roller_radius * (inner_d_spin - outer_d_spin) / rollers.inertia
+            pockets[POCKET.d_cage, j] = inner_d_cage + outer_d_cage - d_churning
     resistance = model.lubrication.rolling_resistance.on
     if resistance:
         resisted, d_resisted = _push_rollers(inner_radius, params, work, with_jacobian)
@@ -153,13 +164,13 @@ def equations(t, y, model, work, rate, with_jacobian):
         rubbed, d_rubbed = _rub_on_flanges(y, shaft_speed, model, work, with_jacobian)
         torque, d_torque = torque + rubbed, d_torque + d_rubbed
     cage_acceleration = torque / inertia
+    shared = press_pockets(cage_speed, cage_acceleration, params, work)
     rate[THETA] = cage_speed
     reaction = 0.0
     for j in range(rollers.count):
         # The pocket supplies what keeps the roller with the cage, and its friction brakes the spin (Deng 2017, eq. 13).
-        radius, spin = loads[LOAD.radius, j], y[SPIN + j]
-        driven = tangential[j] - rollers.mass * radius * cage_acceleration
-        pocket, friction = abs(driven), pocket_friction(spin, cage.pocket_friction)
+        radius, spin, pressed = loads[LOAD.radius, j], y[SPIN + j], pockets[POCKET.force, j]
+        pocket, friction = abs(pressed), pocket_friction(spin, cage.pocket_friction)
         brake = pocket * friction
         reaction += roller_radius * brake
         block, lane = j // LANES, j % LANES
@@ -172,8 +183,12 @@ def equations(t, y, model, work, rate, with_jacobian):
         if with_jacobian:
             smooth = math.sqrt(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
             d_brake = cage.pocket_friction * pocket * FRICTION_SPIN * FRICTION_SPIN / (smooth * smooth * smooth)
-            d_driven = jacobian[ARROW.row, j] * (1.0 / radius - rollers.mass * radius / inertia)
-            d_brake += friction * (d_driven if driven > 0.0 else -d_driven)  # a pocket presses as its roller is driven
+            # a pocket presses as its roller is driven, and as cage and rollers are accelerated
+            felt, per_pressing = pockets[POCKET.felt_change, j], friction if pressed > 0.0 else -friction
+            d_brake += per_pressing * felt * jacobian[ARROW.row, j] / radius
+            pulled = (1.0 - felt) * shared - felt * rollers.mass * radius
+            jacobian[ARROW.pulled, j] = -roller_radius * per_pressing * pulled / rollers.inertia
+            jacobian[ARROW.column, j] -= roller_radius * per_pressing * felt * pockets[POCKET.d_cage, j] / rollers.inertia
             jacobian[ARROW.diagonal, j] -= roller_radius * d_brake / rollers.inertia
             jacobian[ARROW.row, j] = (jacobian[ARROW.row, j] - params.variants.pocket_reaction * roller_radius * d_brake) / inertia
     rate[OMEGA] = cage_acceleration - params.variants.pocket_reaction * reaction / inertia
@@ -229,6 +244,37 @@ def _average_pitch(offset, positions, cage_angle, cage_speed, load_y, load_z, pa
         balance_loads(cage_angle - turned, cage_speed, load_y, load_z, params, work)
         for j in range(count):
             add_load_moments(work.loads[LOAD.inner, j], work.loads[LOAD.outer, j], 1.0 / (positions * count), moments)
+
+
+@fused
+def press_pockets(cage_speed, acceleration, params, work):
+    """Write what each pocket takes from its roller into ``work.pockets`` (see the module).
+
+    Returns
+    -------
+    by how much what pockets share changes with the acceleration of the cage [N s^2/rad].
+    """
+    cage, rollers, contacts, loads, pockets = params.cage, params.rollers, work.contacts, work.loads, work.pockets
+    blocks, time = contacts.shape[0] // 2, _RELIEF_TIME / max(abs(cage_speed), _SLOWEST)
+    film, relieved, sharing = cage.pocket_damping + cage.pocket_stiffness * time, 0.0, 0.0
+    for j in range(rollers.count):
+        block, lane = j // LANES, j % LANES
+        driven = work.tangential[j] - rollers.mass * loads[LOAD.radius, j] * acceleration
+        inner, outer = max(contacts[block, CONTACT.d_sliding, lane], 0.0), max(contacts[blocks + block, CONTACT.d_sliding, lane], 0.0)
+        stiffness = film + 4.0 * inner * outer / (inner + outer + TINY)  # of rollers whose spin follows
+        soft, moved = film / stiffness, abs(driven) * time
+        at_wall = moved / (moved + cage.pocket_clearance * stiffness + TINY)
+        felt = soft + (1.0 - soft) * at_wall
+        pockets[POCKET.force, j], pockets[POCKET.felt, j] = felt * driven, felt
+        pockets[POCKET.felt_change, j] = soft + (1.0 - soft) * at_wall * (2.0 - at_wall)
+        relieved += (1.0 - felt) * driven
+        sharing += 1.0 - felt
+    sharing += TINY
+    for j in range(rollers.count):
+        pockets[POCKET.force, j] += (1.0 - pockets[POCKET.felt, j]) * relieved / sharing
+    # together they drive the cage, and the rollers that feel them
+    radius = params.raceways.pitch_radius
+    return (cage.inertia / radius + rollers.mass * radius * (rollers.count - sharing)) / sharing
 
 
 @kernel

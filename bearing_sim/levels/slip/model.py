@@ -17,7 +17,7 @@ from bearing_sim.levels.common.observation import TALLY, count_damage, fade_mome
 from bearing_sim.levels.common.power import write_powers
 from bearing_sim.levels.slip.forces import equations, largest_axial_share, up_to_rolling
 from bearing_sim.levels.slip.power import slip_powers
-from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
+from bearing_sim.levels.slip.state import OMEGA, POCKET, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.linear_algebra import factor_shifted, solve_factored
@@ -103,7 +103,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
     equivalent = equivalent_loads(work.load_moments, oil, params.life)
     observe_course(t, y[THETA], cage_speed, equivalent, oil, model, interval, previous, work.tally, row)
     rhs(t, y, model, work, rate)
-    write_powers(slip_powers(cage_speed, rate[OMEGA], y[SPIN:], shaft_speed_at(t, model.drive), model, work), row)
+    write_powers(slip_powers(cage_speed, y[SPIN:], shaft_speed_at(t, model.drive), model, work), row)
     if params.flanges.on:
         row[COLUMN.inner_flange_force], row[COLUMN.outer_flange_force] = 0.0, 0.0
         for j in range(count):
@@ -123,8 +123,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
         row[first + COLUMN.inner_load * count] = loads[LOAD.inner, j]
         row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
         row[first + COLUMN.orbital_speed * count] = cage_speed
-        drive_force = params.rollers.mass * loads[LOAD.radius, j] * rate[OMEGA]
-        row[first + COLUMN.pocket_force * count] = drive_force - work.tangential[j]
+        row[first + COLUMN.pocket_force * count] = -work.pockets[POCKET.force, j]
     observe_rest(interval, previous, params, work.tally, row)
 
 

@@ -7,7 +7,7 @@ contour's slope and the ring's displacement, exchange it with the elastic energy
 """
 
 from bearing_sim.levels.common.power import Powers, rolling_power, seal_power, shaft_traction_power, sliding_power, windage_powers
-from bearing_sim.levels.slip.state import OMEGA, SPIN
+from bearing_sim.levels.slip.state import OMEGA, POCKET, SPIN
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.land import land_torque
@@ -16,12 +16,12 @@ from bearing_sim.physics.pocket import pocket_friction
 
 
 @kernel
-def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
+def slip_powers(cage_speed, spins, shaft_speed, model, work):
     """Return `bearing_sim.levels.common.power.Powers` of a state.
 
     Parameters
     ----------
-    cage_speed, cage_acceleration : [rad/s, rad/s^2].
+    cage_speed : [rad/s].
     spins : of the rollers [rad/s], shape (Z,).
     shaft_speed : [rad/s].
     model, work : of the level; the right-hand side at that state has been evaluated into ``work``.
@@ -39,8 +39,7 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
     for j in range(count):
         radius = loads[LOAD.radius, j]
         churning += drag * radius * cage_speed
-        force = abs(rollers.mass * radius * cage_acceleration - work.tangential[j])
-        pocket += force * pocket_friction(spins[j], cage.pocket_friction) * rollers.radius * (spins[j] + params.variants.pocket_reaction * cage_speed)
+        pocket += abs(work.pockets[POCKET.force, j]) * pocket_friction(spins[j], cage.pocket_friction) * rollers.radius * (spins[j] + params.variants.pocket_reaction * cage_speed)
     return Powers(
         shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + work.growth[0])
         + bore

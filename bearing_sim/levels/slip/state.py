@@ -19,6 +19,18 @@ from bearing_sim.physics.load_balance import LOAD
 THETA, OMEGA, SPIN = 0, 1, 2
 
 
+class PocketRow(NamedTuple):
+    """Rows of ``Work.pockets``, see `bearing_sim.levels.slip.forces.press_pockets`."""
+
+    force: int = 0  # that each takes from its roller along the orbit [N]
+    felt: int = 1  # part that it feels of the force without play
+    felt_change: int = 2  # and of a change of that force
+    d_cage: int = 3  # derivative of the other forces on the roller by the cage's speed [N s/rad]
+
+
+POCKET = PocketRow()
+
+
 class Work(NamedTuple):
     """Memory that the level writes while it computes."""
 
@@ -26,6 +38,7 @@ class Work(NamedTuple):
     ring: np.ndarray  # ring centre (y, z) [m], shape (2,); start of the next search
     contacts: np.ndarray  # rows `bearing_sim.physics.contact.CONTACT`, those with the inner raceway first
     tangential: np.ndarray  # all forces along the orbit on each roller but the pocket's [N], shape (Z,)
+    pockets: np.ndarray  # rows `POCKET`, shape (4, Z)
     flanges: np.ndarray  # on each roller: force along the orbit [N] and torque on its spin [N m] of the inner ring's, then of the outer's, (4, Z)
     growth: np.ndarray  # of the inner raceway at present [m], shape (1,)
     pitch: np.ndarray  # rows cosine and sine of 2 pi j/Z, and the angle in intervals of the contour table, shape (3, Z)
@@ -47,6 +60,7 @@ def new_work(params):
         ring=np.zeros(2),
         contacts=new_blocks(2 * blocks_of(count), len(CONTACT)),
         tangential=np.zeros(count),
+        pockets=np.zeros((len(POCKET), count)),
         flanges=np.zeros((4, count)),
         growth=np.zeros(1),
         pitch=np.array([np.cos(angles), np.sin(angles), params.raceways.contour.shape[0] * np.arange(count) / count]),

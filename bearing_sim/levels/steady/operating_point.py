@@ -124,6 +124,7 @@ class Orbit(NamedTuple):
     d_spin: np.ndarray  # derivatives of these by the spin itself [1/s], shape (M,)
     drives: np.ndarray  # derivatives of the cage's acceleration by the spins [1/s], shape (M,)
     d_cage: np.ndarray  # derivatives of the rates by the cage's speed [1/s], shape (M,)
+    pulled: np.ndarray  # derivatives of the rates by the cage's acceleration, shape (M,)
     damped: np.ndarray  # derivatives of the cage's acceleration by its speed [1/s], shape (N,)
     diagonal: np.ndarray  # of the differences' equations, shape (M,)
     column: np.ndarray  # a right side, and three for the closing of the orbit, shape (M, 1 + 3)
@@ -174,6 +175,7 @@ def new_orbit(
         d_spin=np.zeros(nodes),
         drives=np.zeros(nodes),
         d_cage=np.zeros(nodes),
+        pulled=np.zeros(nodes),
         damped=np.zeros(most),
         diagonal=np.zeros(nodes),
         column=np.zeros((nodes, 1 + STEPS)),
@@ -210,6 +212,7 @@ def _at_angles(angles, count, orbit):
         orbit.d_spin[:nodes],
         orbit.drives[:nodes],
         orbit.d_cage[:nodes],
+        orbit.pulled[:nodes],
         orbit.damped[:angles],
         orbit.diagonal[:nodes],
         orbit.column[:nodes],
@@ -265,6 +268,7 @@ def _linearise(sense, model, work, orbit):
             node, j = k + angles * i, roller_at(i, sense, count)
             orbit.rates[node] = orbit.rate[SPIN + j]
             orbit.drives[node], orbit.d_cage[node], orbit.d_spin[node] = rows[ARROW.row, j], rows[ARROW.column, j], rows[ARROW.diagonal, j]
+            orbit.pulled[node] = rows[ARROW.pulled, j]
     for m in range(nodes):
         interval = _interval(m % angles, sense, orbit)
         orbit.diagonal[m] = max(_LEAST_SLOPE - interval * orbit.d_spin[m], _FALLING * ALPHA_0)
@@ -430,15 +434,22 @@ def _mean_drive(speed, sense, model, work, orbit, tolerance):
 
 
 @template
-def _write_cage_columns(sense, orbit, columns):
-    """Write what a change of the cage's speed at each angle does to the spins' equations, as right sides behind the first."""
+def _write_cage_columns(weight, sense, orbit, columns):
+    """Write what a change of the cage's speed at each angle does to the spins' equations, as right sides behind the first; ``weight`` as of `_ripple`."""
     angles = orbit.accelerations.shape[0]
+    for k in range(angles):
+        orbit.right[k] = weight * _interval(k, sense, orbit) * orbit.accelerations[k] - backward_difference(orbit.cage, k)
     for m in range(orbit.spins.shape[0]):
         here = m % angles
         for k in range(angles):
             columns[m, 1 + k] = 0.0
-        columns[m, 0] = orbit.column[m, 0]
-        columns[m, 1 + here] = _interval(here, sense, orbit) * (orbit.d_cage[m] - orbit.rates[m] / orbit.cage[here])
+        interval, pulled = _interval(here, sense, orbit), orbit.pulled[m] / weight
+        columns[m, 0] = orbit.column[m, 0] - pulled * orbit.right[here]
+        own = orbit.d_cage[m] + (orbit.pulled[m] * orbit.accelerations[here] - orbit.rates[m]) / orbit.cage[here]
+        columns[m, 1 + here] = interval * own + pulled * ALPHA_0
+        columns[m, 1 + (here - 1) % angles] += pulled * ALPHA_1
+        columns[m, 1 + (here - 2) % angles] += pulled * ALPHA_2
+        columns[m, 1 + (here - 3) % angles] += pulled * ALPHA_3
 
 
 @template
@@ -453,7 +464,6 @@ def _write_cage_equations(weight, sense, orbit, columns, matrix):
         matrix[k, (k - 1) % angles] += ALPHA_1
         matrix[k, (k - 2) % angles] += ALPHA_2
         matrix[k, (k - 3) % angles] += ALPHA_3
-        orbit.right[k] = interval * orbit.accelerations[k] - backward_difference(orbit.cage, k)
         for m in range(k, nodes, angles):
             felt = interval * orbit.drives[m]
             orbit.right[k] += felt * columns[m, 0]
@@ -481,7 +491,7 @@ def _ripple(weight, careful, sense, model, work, orbit):
             return False
         if careful:
             _adapt_reach(scale, iteration, orbit)
-        _write_cage_columns(sense, orbit, columns)
+        _write_cage_columns(weight, sense, orbit, columns)
         if not solve_cyclic(orbit.diagonal, columns):
             return False
         _write_cage_equations(weight, sense, orbit, columns, matrix)
@@ -751,7 +761,7 @@ def _write_means(sense, model, work, orbit, answer):
         _evaluate(k, sense, model, work, orbit)
         cage_speed = orbit.cage[k]
         part = orbit.speed[0] / (cage_speed * angles)  # of the time
-        powers = slip_powers(cage_speed, rate[OMEGA], orbit.state[SPIN:], model.drive.shaft_speed, model, work)
+        powers = slip_powers(cage_speed, orbit.state[SPIN:], model.drive.shaft_speed, model, work)
         answer[ANSWER.shaft_power] += part * (powers.shaft - kinetic_power(orbit.state, rate, model, work))
         answer[ANSWER.inner_sliding_power] += part * powers.inner_sliding
         answer[ANSWER.outer_sliding_power] += part * powers.outer_sliding
