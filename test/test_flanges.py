@@ -28,7 +28,7 @@ from bearing_sim.numerics.simd import by_roller as lanes_by_roller
 from bearing_sim.physics.flange import end_integrals, flange_friction, rim_corner, rub, shear
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.scene.flanges import flange_geometry
-from bearing_sim.studies.losses import repeats
+from bearing_sim.model.losses import repeats
 
 NUP = ["bearing.flanges={inner: both, outer: both, end_clearance: 20 um}"]
 NU, N = ["bearing.flanges={outer: both}"], ["bearing.flanges={inner: both}"]

@@ -72,8 +72,8 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
     settled in the longest time says what it was doing, and the exit code is 4. With --duration it ends after exactly that time, settled or
     not, and says which. With heat.law network it begins in thermal equilibrium; where there is none, the run fails and says why.
 
-    Slip, cage speed and lives are means over the last fifth of the run; largest loads and pressures are those over the roller pitch of
-    cage rotation that follows. --uncertainty uses the settled bearing at the fastest level that supports the scene; `bearing-sim
+    Slip, cage speed, powers and lives are means over the last fifth of the run; largest loads and pressures are those of that fifth.
+    --uncertainty uses the settled bearing at the fastest level that supports the scene; `bearing-sim
     uncertainty` shows more.
     """
     from bearing_sim.cli.uncertainty import bands_of
@@ -199,25 +199,17 @@ def _advance(simulation, plan, sinks, progress, estimation):
     return advance_until_settled(simulation, plan.shortest, plan.longest, advance)
 
 
-def _losses(level, window, pitch) -> dict:
-    """Return the report of losses: over a pitch, with which motion repeats at the lower levels, unless rollers slip and catch up there."""
-    from bearing_sim.studies.losses import loss_report, repeats
-
-    if level not in ("steady", "slip"):
-        return loss_report(window)
-    return loss_report(pitch) if repeats(pitch) else loss_report(window, by_losses=True)
-
-
 def _report(simulation, outcome, wall, start_up) -> dict:
     from bearing_sim.model.characteristic_frequencies import mean_frequencies
     from bearing_sim.studies.clearance import clearance_report
+    from bearing_sim.model.losses import loss_report
     from bearing_sim.studies.rating import life_report
 
-    window, pitch, last = outcome.window, outcome.pitch, outcome.window[-1]
+    window, last = outcome.window, outcome.window[-1]
     tilts = simulation.scene.bodies_tilt
 
     def pressure(name):
-        return 1e-6 * float(pitch[name].max()) if tilts else None
+        return 1e-6 * float(window[name].max()) if tilts else None
 
     return {
         "scene": simulation.scene.name,
@@ -235,9 +227,9 @@ def _report(simulation, outcome, wall, start_up) -> dict:
         "damage": float(last["damage"]),
         "cage_speed_rpm": float(window["cage_speed"].mean()) * 30 / math.pi,
         "characteristic_frequencies_hz": mean_frequencies(window),
-        **_losses(simulation.scene.level, window, pitch),
-        "inner_load_maximum": float(pitch["inner_load"].max()),
-        "outer_load_maximum": float(pitch["outer_load"].max()),
+        **loss_report(window),
+        "inner_load_maximum": float(window["inner_load_maximum"].max()),
+        "outer_load_maximum": float(window["outer_load_maximum"].max()),
         "inner_pressure_maximum_mpa": pressure("inner_pressure"),
         "outer_pressure_maximum_mpa": pressure("outer_pressure"),
         "inner_edge_pressure_maximum_mpa": pressure("inner_edge_pressure"),
@@ -270,7 +262,7 @@ def _print(report, scene, bands, estimation) -> None:
     from bearing_sim.cli.uncertainty import band_rows
     from bearing_sim.model.characteristic_frequencies import frequencies_text
     from bearing_sim.studies.clearance import clearance_row
-    from bearing_sim.studies.losses import loss_text
+    from bearing_sim.model.losses import loss_text
 
     rejected = f"{report['rejected_steps']} rejected, {report['non_finite_steps']} of which not finite"
     print_table(

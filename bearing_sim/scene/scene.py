@@ -348,6 +348,18 @@ class WantedError:
     error: Annotated[float, Field(gt=0.0, le=1.0)]  # 0.003 of slip are 0.3 percentage points; others are relative
 
 
+def _absent(scene: "Scene", path: str) -> str:
+    """Return which record on the way to a quantity a scene has not, or not of the kind that has it; empty where it has all of them."""
+    here, passed = scene, []
+    for name in path.split("."):
+        if not hasattr(here, name):
+            return ".".join(passed)
+        here = getattr(here, name)
+        passed.append(name)
+    return ""
+
+
+
 @record
 class Scene:
     """One bearing, its oil, its operating conditions, and how it is computed."""
@@ -407,6 +419,11 @@ class Scene:
             path, value = override_by_radius(asked, value, type(self))
             if path not in known:
                 reason = f"no quantity of a scene{nearest(path, known)}; load_scene(scene, ['{asked}=...']) changes fields of other kinds"
+                errors.append(InvalidField(asked, "", reason))
+                continue
+            absent = _absent(self, path)
+            if absent:
+                reason = f"the scene has no {absent} with such a field; load_scene(scene, ['{absent}=...']) gives it one"
                 errors.append(InvalidField(asked, "", reason))
                 continue
             try:

@@ -46,7 +46,6 @@ class Settled:
     reason : the same in a sentence; empty where it has settled.
     settling_time : since when slip has been as at the end [s]; NaN where it has not settled.
     window : samples of the last fifth of the run, for `bearing_sim.to_xarray` and `bearing_sim.to_pandas`.
-    pitch : samples over the roller pitch of cage rotation that follows it.
     bands : of ``cage_slip`` and ``modified_rating_life`` over the scene's uncertain fields, 5, 50 and 95 % quantiles with their sampling errors;
         empty unless asked for.
     """
@@ -81,14 +80,9 @@ class Settled:
         return self.outcome.window
 
     @property
-    def pitch(self) -> np.ndarray:
-        """Samples over the roller pitch of cage rotation that follows the run."""
-        return self.outcome.pitch
-
-    @property
     def sample(self) -> np.void:
         """The last sample, from which another run can begin (`bearing_sim.Simulation.reset`, `resume`)."""
-        return self.outcome.pitch[-1]
+        return self.outcome.window[-1]
 
     @cached_property
     def results(self) -> Mapping[str, float]:

@@ -12,6 +12,7 @@ from bearing_sim.model.validity import cell, outside
 from bearing_sim.scene.quantity import to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
+from bearing_sim.model.losses import power_loss
 from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, shortest_run
 from bearing_sim.sweep.thermal import begin_in_equilibrium
 
@@ -52,8 +53,8 @@ RESULTS = (
     Column("cage_slip_minimum", "%", "least cage slip at an instant", 100.0),
     Column("cage_slip_maximum", "%", "largest cage slip at an instant", 100.0),
     *_observed(LIVES),
-    Column("inner_load_maximum", "N", "largest normal force between a roller and the inner raceway over a roller pitch of cage rotation"),
-    Column("outer_load_maximum", "N", "largest normal force between a roller and the outer raceway over a roller pitch of cage rotation"),
+    Column("inner_load_maximum", "N", "largest normal force between a roller and the inner raceway"),
+    Column("outer_load_maximum", "N", "largest normal force between a roller and the outer raceway"),
     Column("loaded_rollers", "", "rollers between both raceways at an instant, mean"),
     *(Column(name, "um", f"{_OBSERVED[name].meaning}; mean", 1e6) for name in _CLEARANCES),
     *_observed(_MEANS),
@@ -126,10 +127,11 @@ def results_of(outcome: Outcome) -> dict[str, float]:
     window, slip = outcome.window, outcome.window["cage_slip"]
     found = {"cage_slip": outcome.slip, "cage_slip_minimum": slip.min(), "cage_slip_maximum": slip.max(), "simulated": round(outcome.simulated, 9)}
     for ring in ("inner", "outer"):
-        found[f"{ring}_load_maximum"] = outcome.pitch[f"{ring}_load"].max()
+        found[f"{ring}_load_maximum"] = window[f"{ring}_load_maximum"].max()
     found["loaded_rollers"] = (window["inner_load"] > 0.0).sum(axis=1).mean()
     found |= {name: mean_life(window[name]) for name in LIVES}
     found |= {name: window[name].mean() for name in (*_CLEARANCES, *_MEANS, *_POWERS)}
+    found["shaft_power"] = power_loss(window)
     return {name: float(value) for name, value in found.items()}
 
 

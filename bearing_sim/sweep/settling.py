@@ -31,10 +31,10 @@ _REPEATS = 0.6  # least autocorrelation of what is called an oscillation
 _SAMPLES = 1000  # of the shortest run: 200 in the last window
 _KEPT = 1000  # at least, of longer stretches
 _TOGETHER = 25  # samples of a call of the model
+_MAXIMA = ("inner_load_maximum", "outer_load_maximum")  # observables of all that happened since the sample before
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # fraction of a pitch between samples that stays farthest from all small ratios
 SETTLED, DRIFTING, LIMIT_CYCLE, WANDERING = "settled", "drifting", "limit cycle", "wandering"
 TOO_SHORT, NO_STEADY_STATE = "too short", "no steady state"
-PITCH_SAMPLES = 48  # instants over a roller pitch at which loads are taken
 
 
 class Tolerance(NamedTuple):
@@ -242,7 +242,6 @@ class Outcome(NamedTuple):
     reason : why it has not settled, and what it was doing; empty if it has.
     slip : mean cage slip over the last window, cut to whole cage turns; NaN at rest.
     window : samples of the last fifth, see `bearing_sim.model.sample`.
-    pitch : samples over the roller pitch of cage rotation that follows the run.
     counters : work done until the end of the run.
     """
 
@@ -252,7 +251,6 @@ class Outcome(NamedTuple):
     reason: str
     slip: float
     window: np.ndarray
-    pitch: np.ndarray
     counters: Counters
 
     @property
@@ -325,7 +323,7 @@ def advance_until_settled(simulation: Simulation, shortest: float, longest: floa
 
     Returns
     -------
-    how the run ended; the simulation stands a roller pitch of cage rotation behind it.
+    how the run ended.
 
     Raises
     ------
@@ -359,8 +357,7 @@ def _outcome(simulation: Simulation, record: _Record, settled: bool) -> Outcome:
         reason = f"after {length:.4g} s {doing or 'slip and life rest, but did not before'}"
     slip, window = found[0].mean, record.window
     settling = _settling_time(course, slip) if verdict == SETTLED else math.nan
-    pitch = over_a_pitch(simulation, WINDOW * length)
-    return Outcome(verdict, length, settling, reason, slip, window, pitch, counters)
+    return Outcome(verdict, length, settling, reason, slip, window, counters)
 
 
 def _settling_time(course: Course, slip: float) -> float:
@@ -404,23 +401,16 @@ def advance_in_calls(
     together : samples of a call of the model, whose budget of steps is that of a call.
     take : called with every block of samples.
     """
-    stride, kept = max(count // _KEPT, 1), []
+    stride, kept, largest = max(count // _KEPT, 1), [], {name: [] for name in _MAXIMA}
     for done in range(0, count, together):
         size = min(together, count - done)
         block = simulation.advance(size * interval, samples=size)
         take(block)
+        for name, values in largest.items():
+            values.append(block[name].copy())
         kept.append(block[(count - done - 1) % stride :: stride].copy())
-    return joined([part for part in kept if len(part)])
-
-
-def over_a_pitch(simulation: Simulation, longest: float) -> np.ndarray:
-    """Advance by a roller pitch of cage rotation and return samples of it, evenly spaced: what differs within a pitch is then seen whole.
-
-    Parameters
-    ----------
-    simulation : whose results have been taken.
-    longest : time after which a cage that hardly turns is not waited for [s].
-    """
-    speed = simulation.scene.bearing.roller.count * abs(float(simulation.sample["cage_speed"]))
-    pitch = min(2.0 * math.pi / speed, longest) if speed else longest
-    return simulation.advance(pitch, samples=PITCH_SAMPLES)
+    found = joined([part for part in kept if len(part)])
+    begins = np.concatenate([[0], np.arange((count - 1) % stride + 1, count, stride)])
+    for name, values in largest.items():  # also those of the samples that are left out
+        found[name] = np.maximum.reduceat(np.concatenate(values), begins)
+    return found

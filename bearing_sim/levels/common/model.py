@@ -14,6 +14,7 @@ QUARTER_PITCH = 1.0 / (3.0 + GOLDEN)  # 0.2764
 FIFTH_PITCH = 1.0 / (4.0 + GOLDEN)  # 0.2165
 POSITION_WEIGHT = 0.25  # of positions in the norm of a correction (assumption): contacts leave less of a correction than tractions do
 _PLAY_WEIGHT, _PLAY_SPEED = 10.0, 0.8  # of play in the norm of a correction at rest, and speed of the pockets where it has half of it [m/s] (assumption)
+_RING_DEPTH, _LEAST_RING_ERROR = 0.7, 0.01  # see `ring_weight`; the second of the tolerance of positions (assumptions)
 _SLOWEST = 1e-3  # rad/s; what a cage at rest counts as (assumption)
 # The raceways' stiffness changes with every passing roller, which excites the ring where it oscillates n/2 times in a passing, n = 1 to 6.  Each
 # entry has (n/2)^2, the relative difference of squared frequencies within which the longest step is shorter, and the shortest step as a part of
@@ -111,6 +112,25 @@ def ring_step(cage_speed, params, stiffness):
     steps = 1.0 / FIFTH_PITCH  # in a pitch; whole ones are added, so that they still sample all its instants alike
     steps += math.floor(steps * (1.0 / part - 1.0) + 0.5)
     return pitch_step(cage_speed, params.rollers.count, 1.0 / steps)
+
+
+@template
+def ring_weight(t, model):
+    """Return the weight of the inner ring's position in the norm of an error: the tolerance of positions over what is allowed to the ring.
+
+    A ring that vibrates by a part of the depth to which its load presses the rollers changes their loads by the same part, and lives by four times as
+    much.  So the error allowed to it is `_RING_DEPTH` of that depth of the most heavily loaded roller, (4.1 F/(Z K))^0.9 (R. Stribeck's load of a
+    bearing without clearance), where that is less than the tolerance.
+
+    Parameters
+    ----------
+    t : time [s].
+    model : `Model`.
+    """
+    load_y, load_z = load_at(t, model.drive)
+    params, allowed = model.params, model.tolerances.position
+    depth = (4.1 * math.sqrt(load_y * load_y + load_z * load_z) / (params.rollers.count * params.raceways.stiffness)) ** 0.9
+    return max(allowed / max(_RING_DEPTH * depth, _LEAST_RING_ERROR * allowed), 1.0)
 
 
 @template

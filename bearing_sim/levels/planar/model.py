@@ -8,7 +8,7 @@ implicit steps: `bearing_sim.levels.planar.jacobian`.
 import math
 
 from bearing_sim.levels.common.flanges import observe_flanges
-from bearing_sim.levels.common.model import POSITION_WEIGHT, orbital_speed_tolerance, play_weight, ring_step, shaft_speed_at
+from bearing_sim.levels.common.model import POSITION_WEIGHT, orbital_speed_tolerance, play_weight, ring_step, ring_weight, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, count_damage, observe_course, observe_rest, oil_at_speed, turn_is_over
 from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
@@ -79,18 +79,18 @@ def solve(work, x):
 @fused
 def error_norm(t, y, change, model):
     """Return the largest ratio of any state's change to its tolerance."""
-    return _largest_ratio(t, y, change, model, 1.0, 1.0)
+    return _largest_ratio(t, y, change, model, 1.0, ring_weight(t, model), 1.0)
 
 
 @fused
 def correction_norm(t, y, change, model):
     """Return `error_norm` of an iteration's correction, in which positions have the weight `POSITION_WEIGHT`, and play `play_weight`."""
-    return _largest_ratio(t, y, change, model, POSITION_WEIGHT, play_weight(y[OMEGA], model.params.raceways.pitch_radius))
+    return _largest_ratio(t, y, change, model, POSITION_WEIGHT, 1.0, play_weight(y[OMEGA], model.params.raceways.pitch_radius))
 
 
 @fused
-def _largest_ratio(t, y, change, model, position_weight, own_play_weight):
-    """Return the largest ratio of any state's change to its tolerance, positions and play with weights of their own.
+def _largest_ratio(t, y, change, model, position_weight, own_ring_weight, own_play_weight):
+    """Return the largest ratio of any state's change to its tolerance, positions, the ring's besides, and play with weights of their own.
 
     Positions are the rollers' radii and the ring's centre; play have the rollers in their pockets and the cage.  Spins count by the
     speed of the roller's surface.  Radial speeds and those of both centres follow the positions and are not weighed.
@@ -99,7 +99,7 @@ def _largest_ratio(t, y, change, model, position_weight, own_play_weight):
     position, play = position_weight / model.tolerances.position, own_play_weight / model.tolerances.play
     speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
     offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
-    largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
+    largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * own_ring_weight * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
     largest = max(largest, abs(change[OMEGA]) * speed)
     count = rollers.count
     if change.shape[0] > ROLLERS + BLOCK * count:

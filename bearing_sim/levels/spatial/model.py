@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.flanges import largest_corner, observe_flanges
-from bearing_sim.levels.common.model import FIFTH_PITCH, POSITION_WEIGHT, orbital_speed_tolerance, play_weight, ring_step, shaft_speed_at
+from bearing_sim.levels.common.model import FIFTH_PITCH, POSITION_WEIGHT, orbital_speed_tolerance, play_weight, ring_step, ring_weight, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, count_damage, observe_course, observe_rest, oil_at_speed, turn_is_over
 from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
@@ -156,18 +156,18 @@ def solve(work, x):
 @fused
 def error_norm(t, y, change, model):
     """Return the largest ratio of any state's change to its tolerance."""
-    return _largest_ratio(t, y, change, model, 1.0, 1.0)
+    return _largest_ratio(t, y, change, model, 1.0, ring_weight(t, model), 1.0)
 
 
 @fused
 def correction_norm(t, y, change, model):
     """Return `error_norm` of an iteration's correction, in which positions have the weight `POSITION_WEIGHT`, and play `play_weight`."""
-    return _largest_ratio(t, y, change, model, POSITION_WEIGHT, play_weight(y[OMEGA], model.params.raceways.pitch_radius))
+    return _largest_ratio(t, y, change, model, POSITION_WEIGHT, 1.0, play_weight(y[OMEGA], model.params.raceways.pitch_radius))
 
 
 @fused
-def _largest_ratio(t, y, change, model, position_weight, own_play_weight):
-    """Return the largest ratio of any state's change to its tolerance, positions, but not tilts, and play with weights of their own.
+def _largest_ratio(t, y, change, model, position_weight, own_ring_weight, own_play_weight):
+    """Return the largest ratio of any state's change to its tolerance, positions, but not tilts, the ring's, and play with weights of their own.
 
     As at level ``planar``; tilts count by what they move the end of a roller, a raceway or a land.  Skew and the cage's tilts have play.
     """
@@ -176,7 +176,7 @@ def _largest_ratio(t, y, change, model, position_weight, own_play_weight):
     speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
     offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
     tilt, skew = half / model.tolerances.position, play * half
-    largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
+    largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * own_ring_weight * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
     largest = max(largest, abs(change[OMEGA]) * speed, max(abs(change[RING_TILT_Y]), abs(change[RING_TILT_Z])) * tilt)
     largest = max(largest, max(abs(change[CAGE_TILT_Y]), abs(change[CAGE_TILT_Z])) * play * model.params.tilts.land_position)
     count = rollers.count

@@ -19,29 +19,18 @@ CAUSES = {
 """Losses of `bearing_sim.model.sample` by what people call their cause; drag is that of rollers, and in an oil bath of the cage too."""
 
 
-_BALANCED = 0.02  # of the losses
+def power_loss(samples: np.ndarray) -> float:
+    """Return the sum of all losses [W], the mean over samples of shape (n,)."""
+    return float(sum(samples[name].mean() for names in CAUSES.values() for name in names))
 
 
-def repeats(pitch: np.ndarray) -> bool:
-    """Return whether a bearing loses over a roller pitch what its shaft puts in, so that its motion repeats with the pitch.
+def loss_report(samples: np.ndarray) -> dict:
+    """Return the frictional moment [N m], the power loss and its parts by cause [W], means over samples of shape (n,).
 
-    Rollers that slip and catch up outside of the loaded zone do not: then means over a pitch are those of one pitch among many.
-    """
-    lost = sum(float(pitch[name].mean()) for names in CAUSES.values() for name in names)
-    return abs(float(pitch["shaft_power"].mean()) - lost) <= _BALANCED * abs(lost)
-
-
-def loss_report(samples: np.ndarray, by_losses: bool = False) -> dict:
-    """Return the frictional moment [N m], the power of the shaft and the losses by cause [W], means over samples of shape (n,).
-
-    Parameters
-    ----------
-    samples : see `bearing_sim.model.sample`.
-    by_losses : whether the power of the shaft is what is lost, as in the mean over a long time; its own mean over few samples is rougher.
+    Where nothing is accelerated the shaft puts in what is lost, and ``shaft_power`` is that.
     """
     losses = {f"{cause}_loss": float(sum(samples[name].mean() for name in names)) for cause, names in CAUSES.items()}
-    power = sum(losses.values()) if by_losses else float(samples["shaft_power"].mean())
-    speed = float(samples["shaft_speed"].mean())
+    power, speed = power_loss(samples), float(samples["shaft_speed"].mean())
     return {"friction_moment": power / speed if speed else math.nan, "shaft_power": power, **losses}
 
 
