@@ -21,6 +21,7 @@ from bearing_sim.levels.spatial.state import BORDER
 from bearing_sim.levels.spatial.state import SLICED as SLICED_ROW
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table_builder import solve_points
+from bearing_sim.model.losses import repeats
 from bearing_sim.model.params import pack
 from bearing_sim.model.sample import new_block
 from bearing_sim.numerics.linear_algebra import ARROW
@@ -28,7 +29,6 @@ from bearing_sim.numerics.simd import by_roller as lanes_by_roller
 from bearing_sim.physics.flange import end_integrals, flange_friction, rim_corner, rub, shear
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.scene.flanges import flange_geometry
-from bearing_sim.model.losses import repeats
 
 NUP = ["bearing.flanges={inner: both, outer: both, end_clearance: 20 um}"]
 NU, N = ["bearing.flanges={outer: both}"], ["bearing.flanges={inner: both}"]

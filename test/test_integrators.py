@@ -5,11 +5,11 @@ import math
 
 import numpy as np
 import pytest
+from bearing_sim.numerics.rosenbrock2 import ERROR_ORDER, rosenbrock2_attempt
 from one_equation import factor, failing, no_limit, solve, step_taken
 
 from bearing_sim.numerics import tr_bdf2
 from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.rosenbrock2 import ERROR_ORDER, rosenbrock2_attempt
 from bearing_sim.numerics.time_stepping import (
     COUNT,
     NON_FINITE,

@@ -201,8 +201,8 @@ def _advance(simulation, plan, sinks, progress, estimation):
 
 def _report(simulation, outcome, wall, start_up) -> dict:
     from bearing_sim.model.characteristic_frequencies import mean_frequencies
-    from bearing_sim.studies.clearance import clearance_report
     from bearing_sim.model.losses import loss_report
+    from bearing_sim.studies.clearance import clearance_report
     from bearing_sim.studies.rating import life_report
 
     window, last = outcome.window, outcome.window[-1]
@@ -261,8 +261,8 @@ def _thermal_rows(report) -> list[tuple[str, str]]:
 def _print(report, scene, bands, estimation) -> None:
     from bearing_sim.cli.uncertainty import band_rows
     from bearing_sim.model.characteristic_frequencies import frequencies_text
-    from bearing_sim.studies.clearance import clearance_row
     from bearing_sim.model.losses import loss_text
+    from bearing_sim.studies.clearance import clearance_row
 
     rejected = f"{report['rejected_steps']} rejected, {report['non_finite_steps']} of which not finite"
     print_table(

@@ -303,8 +303,18 @@ ARRAYS = {
     "roller_tilts": ArrayRows("inclination: outwards, along the orbit", ("roller_tilt", "roller_skew")),
     "roller_loads": ArrayRows("ring", ("inner_load", "outer_load")),
     "operating_point": ArrayRows(
-        "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load",
-        ("load_y", "load_z", "oil_temperature", "land_eccentricity", "inner_flange_force", "outer_flange_force", "flange_load"),
+        "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load, largest inner and outer roller load",
+        (
+            "load_y",
+            "load_z",
+            "oil_temperature",
+            "land_eccentricity",
+            "inner_flange_force",
+            "outer_flange_force",
+            "flange_load",
+            "inner_load_maximum",
+            "outer_load_maximum",
+        ),
     ),
     "predicted_temperatures": ArrayRows(
         "shaft, inner ring, rollers, outer ring, housing, oil that leaves",

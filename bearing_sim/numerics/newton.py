@@ -3,8 +3,9 @@
 
 **Damping.** Contacts and laws of friction bend f, and corrections may lead to and fro across a bend.  Where a correction turns back the one before,
 half of the next is taken, and a quarter and so on: the solution lies in between, at the bend, so that an iteration that turns back is at its end
-when what it has moved by is small enough, however large the correction is there.  Where corrections point the same way, more is taken again.  Several bends
-may be crossed in turn: then corrections do not turn back from one to the next, but are as large as two iterations before, and half of them is taken, too.
+when what it has moved by is small enough, however large the correction is there.  Where corrections point the same way, more is taken again.
+Several bends may be crossed in turn: then corrections do not turn back from one to the next, but are as large as two iterations before, and half
+of them is taken, too.
 Where a level knows the bend, it restrains its own part of a correction instead, as programs for circuits limit the voltage of each junction
 (L. W. Nagel: SPICE2, Memorandum ERL-M520, Univ. of California, Berkeley 1975).  The numbers are assumptions.
 """

@@ -359,7 +359,6 @@ def _absent(scene: "Scene", path: str) -> str:
     return ""
 
 
-
 @record
 class Scene:
     """One bearing, its oil, its operating conditions, and how it is computed."""

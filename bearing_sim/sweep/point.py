@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.steady.table import empty_table
+from bearing_sim.model.losses import power_loss
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.model.validity import cell, outside
 from bearing_sim.scene.quantity import to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
-from bearing_sim.model.losses import power_loss
 from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, shortest_run
 from bearing_sim.sweep.thermal import begin_in_equilibrium
 

@@ -6,8 +6,8 @@ on how many samples are taken.  Level ``steady`` takes no steps: it counts each 
 
 **Largest loads** of rollers are those of all steps since the sample before: samples alone alias with the passing of the rollers.
 
-**The shaft's power** is the sum of the losses, and of what cage, orbits and spins have taken up in the mean since the sample before.  At an instant it
-also feeds and drains elastic energy and vibration, which is many times the losses in a stiff bearing and says nothing of it.
+**The shaft's power** is the sum of the losses, and of what cage, orbits and spins have taken up in the mean since the sample before.  At an
+instant it also feeds and drains elastic energy and vibration, many times the losses in a stiff bearing.
 """
 
 import math
@@ -59,14 +59,14 @@ def count_damage(t, equivalent, oil, model, tally):
 
 @kernel
 def damage_rate(t, equivalent, oil, model):
-    """Return the damage of a turn of the shaft by a radian [1/rad], by the modified life of the method of the scene; parameters as of `observe_course`."""
+    """Return the damage of a turn of the shaft by a radian [1/rad], by the modified life; parameters as of `observe_course`."""
     load_y, load_z = load_at(t, model.drive)
     return 1.0 / (2.0 * math.pi * rate_lives(math.hypot(load_y, load_z), equivalent, oil, model.params.life).modified)
 
 
 @kernel
 def mean_rate(before, after):
-    """Return the mean of two damage rates [1/rad] over an interval in which loads change linearly: the rate goes with their power `_DAMAGE_EXPONENT`."""
+    """Return the mean damage rate [1/rad] over an interval in which loads change linearly, given those at its ends."""
     if not (before >= 0.0 and after >= 0.0) or abs(after - before) <= 1e-6 * (after + before):
         return 0.5 * (before + after)
     first, last = before ** (1.0 / _DAMAGE_EXPONENT), after ** (1.0 / _DAMAGE_EXPONENT)

@@ -129,8 +129,7 @@ def spatial_state_at(params, work, sample) -> np.ndarray:
 
 
 def _dynamic_state_at(at, params, work, sample):
-    """Return a state without tilts and its part of the rollers, shape (BLOCK, Z); ``at`` as of `rolling_state`.
-    """
+    """Return a state without tilts and its part of the rollers, shape (BLOCK, Z); ``at`` as of `rolling_state`."""
     state, rollers = _new_state(at, params)
     state[at.RING_Y], state[at.RING_Z] = sample["ring_y"], sample["ring_z"]
     whirls = math.hypot(sample["cage_y"], sample["cage_z"]) > 0.0

@@ -39,7 +39,12 @@ def slip_powers(cage_speed, spins, shaft_speed, model, work):
     for j in range(count):
         radius = loads[LOAD.radius, j]
         churning += drag * radius * cage_speed
-        pocket += abs(work.pockets[POCKET.force, j]) * pocket_friction(spins[j], cage.pocket_friction) * rollers.radius * (spins[j] + params.variants.pocket_reaction * cage_speed)
+        pocket += (
+            abs(work.pockets[POCKET.force, j])
+            * pocket_friction(spins[j], cage.pocket_friction)
+            * rollers.radius
+            * (spins[j] + params.variants.pocket_reaction * cage_speed)
+        )
     return Powers(
         shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + work.growth[0])
         + bore

@@ -12,7 +12,7 @@ import numpy as np
 from bearing_sim.levels.common.state_transfer import start_means
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.methods import advance
-from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
+from bearing_sim.levels.slip.state import OMEGA, THETA
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.model.sample import OBSERVABLES, flat, new_block
 from bearing_sim.numerics.time_stepping import CONTROL, OK, STEP_BUDGET, new_counts, new_memory

@@ -435,7 +435,12 @@ def _mean_drive(speed, sense, model, work, orbit, tolerance):
 
 @template
 def _write_cage_columns(weight, sense, orbit, columns):
-    """Write what a change of the cage's speed at each angle does to the spins' equations, as right sides behind the first; ``weight`` as of `_ripple`."""
+    """Write what a change of the cage's speed at each angle does to the spins' equations, as right sides behind the first.
+
+    Parameters
+    ----------
+    weight : as of `_ripple`.
+    """
     angles = orbit.accelerations.shape[0]
     for k in range(angles):
         orbit.right[k] = weight * _interval(k, sense, orbit) * orbit.accelerations[k] - backward_difference(orbit.cage, k)
@@ -529,7 +534,7 @@ def _ripple(weight, careful, sense, model, work, orbit):
 
 @kernel
 def _lighten(sense, model, work, orbit):
-    """Find the periodic motion of cage and spins as that of a cage that becomes ever less inert, from the balance of an even one on; return whether."""
+    """Find the periodic motion of cage and spins with a cage that becomes ever less inert, from that of an even one on; return whether it was found."""
     weight, careful = _LIGHTEST, 0
     while True:
         if _ripple(weight, careful, sense, model, work, orbit):
@@ -789,7 +794,12 @@ def _write_means(sense, model, work, orbit, answer):
 
 @template
 def _double(orbit, nodes, angles):
-    """Let spins and cage be known at twice as many angles, those in between in the middle of their neighbours; so many nodes and angles at present."""
+    """Let spins and cage be known at twice as many angles, those in between in the middle of their neighbours.
+
+    Parameters
+    ----------
+    nodes, angles : as many as there are at present.
+    """
     _put_between(orbit.spins, nodes)
     _put_between(orbit.cage, angles)
     _put_between(orbit.rings_y, angles)
