@@ -377,7 +377,8 @@ def average_laminae(turned, interval, params, work):
 
     The means are those of `bearing_sim.physics.lamina_life.add_lamina_powers`, each the sum over the lanes of ``work.lamina_powers``.  The
     end of a step counts if the cage has turned by ``interval`` since the last one that did, because all short steps would cost too much.  That
-    angle counts by the mean of the powers at both its ends, see `bearing_sim.levels.common.observation.average_moments`.  Laminae are as many as the scene wants for its life, whatever the number of slices that carry the
+    angle counts by the mean of the powers at both its ends, see `bearing_sim.levels.common.observation.average_moments`. Laminae are as many as the
+    scene wants for its life, whatever the number of slices that carry the
     roller: their loads follow from its penetration and lean.
 
     Parameters

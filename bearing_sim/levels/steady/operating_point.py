@@ -534,7 +534,7 @@ def _ripple(weight, careful, sense, model, work, orbit):
 
 @kernel
 def _lighten(sense, model, work, orbit):
-    """Find the periodic motion of cage and spins with a cage that becomes ever less inert, from that of an even one on; return whether it was found."""
+    """Find the periodic motion of cage and spins with an ever less inert cage, from that of an even one on; return whether it was found."""
     weight, careful = _LIGHTEST, 0
     while True:
         if _ripple(weight, careful, sense, model, work, orbit):
