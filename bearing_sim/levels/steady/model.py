@@ -22,7 +22,7 @@ from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import OMEGA, THETA
 from bearing_sim.levels.steady.marching import march
-from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CREEP, FAILED, Orbit, lag_at, new_orbit, solve_point
+from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CREEP, FAILED, Orbit, basin, between, lag_at, new_orbit, solve_point
 from bearing_sim.levels.steady.table import LookUp, Table, covers, empty_table, look_up, new_look_up
 from bearing_sim.model.params import Lubrication
 from bearing_sim.model.sample import COLUMN, SCALARS
@@ -36,6 +36,7 @@ from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs
 _NEAR, _EVEN = 0.02, 0.02  # slip, and fraction of the lag; as near, and where the lag changes by less, one step follows exactly
 _PIECES = 4  # of an interval in which it changes by more
 _MUCH, _MOST_PARTS = 0.01, 16  # change of the settled slip in an interval, by each of which it is cut in one part more
+_ROLLS = 0.05  # slip below which a cage's balance is sought from ideal rolling
 _HARDLY_FELT = 1.0 + 1e-6  # inertia up to which spins count for nothing
 FOLLOWED = 2  # where the state holds the cage speed that the spins have followed to
 _FIRST_LOSS = COLUMN.shaft_power + 1  # the losses by cause stand behind the power of the shaft
@@ -50,9 +51,10 @@ class Work(NamedTuple):
     scratch: LookUp
     answer: np.ndarray  # at the newest inputs, shape (len(ANSWER),)
     ways: np.ndarray  # how a cage goes, columns as of the answer, where an interval begins and within it; shape (2, ACCELERATIONS.stop)
-    wanted: np.ndarray  # condition whose operating point is wanted: speed, loads y and z, temperature, shape (4,)
-    asked: np.ndarray  # that which was last solved for, likewise; see `forget`
+    wanted: np.ndarray  # condition whose operating point is wanted: speed, loads y and z, temperature; and the cage's slip, shape (5,)
+    asked: np.ndarray  # the condition that was last solved for, shape (4,); see `forget`
     solved: np.ndarray  # the answer to it, shape (len(ANSWER),)
+    basin: np.ndarray  # slips between which a cage comes to that answer, shape (2,)
     done: np.ndarray  # samples of the present call that are complete, -1 before it has begun, int64, shape (1,)
     tally: np.ndarray  # sums over time, see `bearing_sim.levels.common.observation.Tally`
     solutions: np.ndarray  # operating points solved so far, and how many of them by marching, and without an end to it, int64, shape (3,)
@@ -77,9 +79,10 @@ def new_work(params, table: Table | None = None):
         scratch=new_look_up(),
         answer=np.full(len(ANSWER), math.nan),
         ways=np.full((2, ACCELERATIONS.stop), math.nan),
-        wanted=np.full(4, math.nan),
+        wanted=np.full(5, math.nan),
         asked=np.full(4, math.nan),
         solved=np.full(len(ANSWER), math.nan),
+        basin=np.full(2, math.nan),
         done=np.full(1, -1, np.int64),
         tally=np.zeros(len(Tally._fields)),
         solutions=np.zeros(3, np.int64),
@@ -100,17 +103,19 @@ def initial_state(params, work, shaft_speed, load_y, load_z):
 def solve_condition(shaft_speed: float, load_y: float, load_z: float, model, work: Work, start: float = 0.0, to_standstill: bool = False) -> bool:
     """Solve for an operating point into ``work.solved``, unless it was the last one; return whether it was found.
 
+    Where a cage has several balances under the same inputs, the answer is that to which it comes from its slip.
+
     Parameters
     ----------
     shaft_speed : [rad/s]; a shaft slower than `CREEP` is taken to turn so fast.
     load_y, load_z : [N].
     model : of the level, its lubrication that of the condition; its drive goes unused.
     work : `Work`.
-    start : slip at which the cage begins, 0 in ideal rolling.
+    start : slip at which the cage begins, 0 in ideal rolling, 1 where it stands.
     to_standstill : see `bearing_sim.levels.steady.operating_point.scan`.
     """
     asked, here = work.asked, (shaft_speed, load_y, load_z, model.lubrication.temperature)
-    if not start and tuple(asked) == here:
+    if tuple(asked) == here and work.basin[0] <= start <= work.basin[1] and not to_standstill:
         return True
     asked[:] = math.nan
     creeps = -CREEP if shaft_speed < 0.0 else CREEP
@@ -124,15 +129,15 @@ def solve_condition(shaft_speed: float, load_y: float, load_z: float, model, wor
         work.solutions[2] += marched == STEP_BUDGET
         if marched not in (OK, STEP_BUDGET):
             return False
-    if not start:
-        asked[:] = here
+    asked[:] = here
+    work.basin[:] = basin(*between(start, work.orbit.scanned), work.orbit.scanned)
     return True
 
 
 def supply(model, work: Work) -> bool:
     """Solve for the operating point that compiled code has asked for by `NEEDS_POINT`; return whether it was found."""
-    speed, load_y, load_z, _ = work.wanted.tolist()
-    return solve_condition(speed, load_y, load_z, model, work)
+    speed, load_y, load_z, _, slip = work.wanted.tolist()
+    return solve_condition(speed, load_y, load_z, model, work, slip)
 
 
 @template
@@ -160,13 +165,19 @@ def _condition_at(t, model):
 
 
 @template
-def _answer_to(condition, model, work):
-    """Write the operating point of a condition into ``work.answer``; return whether it is known, else it is wanted."""
+def _answer_to(condition, y, model, work):
+    """Write the operating point to which a cage comes into ``work.answer``; return whether it is known, else it is wanted.
+
+    Tables have the state that a cage comes to from ideal rolling.
+    """
     if _from_table(condition, work):
         return True
     wanted, asked = work.wanted, work.asked
     wanted[0], wanted[1], wanted[2], wanted[3] = condition.shaft_speed, condition.load_y, condition.load_z, model.lubrication.temperature
-    for k in range(wanted.shape[0]):
+    wanted[4] = _slip_of(y[OMEGA], condition.shaft_speed, model)
+    if not (work.basin[0] <= wanted[4] <= work.basin[1]):
+        return False
+    for k in range(asked.shape[0]):
         if not asked[k] == wanted[k]:
             return False
     for column in range(work.answer.shape[0]):
@@ -221,7 +232,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
 
     Parameters as of `bearing_sim.levels.slip.model.observe`.
     """
-    known = _answer_to(_condition_at(t, model), model, work)
+    known = _answer_to(_condition_at(t, model), y, model, work)
     if not known:
         for column in range(work.answer.shape[0]):
             work.answer[column] = math.nan
@@ -311,6 +322,14 @@ def _follow(before, after, shaft_speeds, model, work, duration, y):
 
 
 @template
+def _slip_of(cage_speed, shaft_speed, model):
+    """Return the slip from which a cage's balance is sought: none where it is near ideal rolling, 1 where it turns against the shaft."""
+    ideal = _ideal_speed(shaft_speed, model)
+    slip = 1.0 - (cage_speed if shaft_speed >= 0.0 else -cage_speed) / ideal
+    return 0.0 if abs(slip) < _ROLLS else min(slip, 1.0)
+
+
+@template
 def _ideal_speed(shaft_speed, model):
     """Return the speed of a cage without slip, without sign [rad/s]."""
     return 0.5 * max(abs(shaft_speed), CREEP) * (1.0 - model.params.raceways.diameter_ratio)
@@ -376,13 +395,13 @@ def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory,
     samples, done = rows.shape[0], work.done
     interval = duration / samples
     if done[0] < 0:
-        if not _answer_to(_condition_at(t, model), model, work):
+        if not _answer_to(_condition_at(t, model), y, model, work):
             return NEEDS_POINT, h
         _begin_interval(work)
         done[0] = 0
     for k in range(done[0], samples):
         begin, end = _condition_at(t + k * interval, model), _condition_at(t + (k + 1) * interval, model)
-        if not _answer_to(end, model, work):
+        if not _answer_to(end, y, model, work):
             return NEEDS_POINT, h
         _follow_inputs(begin, end, interval, model, work, y)
         counts[COUNT.steps] += 1

@@ -200,7 +200,7 @@ def new_orbit(
 
 
 @template
-def _at_angles(angles, count, orbit):
+def at_angles(angles, count, orbit):
     """Return the first part of an orbit's memory, for so many angles a pitch."""
     nodes = angles * count
     return Orbit(
@@ -681,7 +681,23 @@ def scan(to_standstill, model, work, orbit):
 
 
 @kernel
-def _between(start, scanned):
+def goes_on_skidding(slip, model, work, orbit):
+    """Return whether a cage that starts at a standstill stays at more than a slip; parameters as of `scan`, ``orbit`` is left as a search left it."""
+    shaft_speed = model.drive.shaft_speed
+    sense, ideal = 1.0 if shaft_speed > 0.0 else -1.0, 0.5 * shaft_speed * (1.0 - model.params.raceways.diameter_ratio)
+    orbit.rings_y[:] = orbit.rings_z[:] = 0.0
+    _roll(ideal * (1.0 - SCANNED[SCANNED.shape[0] - 1]), model.params, orbit)
+    for back in range(SCANNED.shape[0]):
+        k = SCANNED.shape[0] - 1 - back
+        if SCANNED[k] < slip:
+            break
+        if _mean_drive(ideal * (1.0 - SCANNED[k]), sense, model, work, orbit, _ROUGH) < 0.0:
+            return True
+    return False
+
+
+@kernel
+def between(start, scanned):
     """Return between which of `SCANNED` a cage comes to rest: the last at which it is braked, the first at which it is driven.
 
     The first is -1 where it is not known, the second `SCANNED.shape[0]` where the cage slows down until it stands.
@@ -704,6 +720,28 @@ def _between(start, scanned):
         if not scanned[i] >= 0.0:
             return (i, i + 1) if scanned[i] < 0.0 and scanned[i + 1] >= 0.0 else (-1, i)
     return -1, 0
+
+
+def stable_balances(scanned: np.ndarray) -> list[tuple[int, int]]:
+    """Return between which two of `SCANNED` cages come to rest, all of them, see `between`; those where drives are not known are left out."""
+    looked_at = np.flatnonzero(np.isfinite(scanned))
+    found = [(int(low), int(high)) for low, high in zip(looked_at[:-1], looked_at[1:]) if high == low + 1 and scanned[low] < 0.0 <= scanned[high]]
+    stops = bool(scanned[-1] < 0.0)  # NaN where it was not looked at
+    return found + [(len(scanned) - 1, len(scanned))] * stops
+
+
+def basin(low: int, high: int, scanned: np.ndarray) -> tuple[float, float]:
+    """Return the slips between which a cage comes to a balance between two of `SCANNED`; infinite where nothing else was seen on that side."""
+    while low > 0 and scanned[low - 1] < 0.0:
+        low -= 1
+    while high < len(scanned) and scanned[high] >= 0.0:
+        high += 1
+    nearest, farthest = -math.inf, math.inf
+    if low > 0 and scanned[low - 1] >= 0.0:
+        nearest = float(SCANNED[low])
+    if high < len(scanned) and scanned[high] < 0.0:
+        farthest = float(SCANNED[high - 1])
+    return nearest, farthest
 
 
 @kernel
@@ -871,7 +909,7 @@ def solve_point(start, to_standstill, model, work, orbit, answer):
     slip, status = math.nan, FAILED
     orbit.before[:] = math.nan
     while True:
-        view = _at_angles(angles, count, orbit)
+        view = at_angles(angles, count, orbit)
         for column in range(answer.shape[0]):
             answer[column] = math.nan
         if status == SETTLED and not _ripple(1.0, 0, sense, model, work, view):
@@ -880,7 +918,7 @@ def solve_point(start, to_standstill, model, work, orbit, answer):
             slip = 1.0 - view.speed[0] / ideal
         if status == FAILED:
             scan(to_standstill, model, work, view)
-            low, high = _between(start, orbit.scanned)
+            low, high = between(start, orbit.scanned)
             if low < 0:
                 return FAILED
             status, slip = STOPPED, SCANNED[SCANNED.shape[0] - 1]
