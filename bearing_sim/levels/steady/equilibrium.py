@@ -65,8 +65,8 @@ class _Round(NamedTuple):
 class _Balance:
     """Losses by temperatures, and temperatures by losses, of one operating condition."""
 
-    def __init__(self, scene: Scene, inputs: Sequence[float]):
-        self.scene, self.inputs, self.params = scene, inputs, pack(scene)
+    def __init__(self, scene: Scene, inputs: Sequence[float], slip: float):
+        self.scene, self.inputs, self.slip, self.params = scene, inputs, slip, pack(scene)
         self.network = thermal_network(scene, self.params)
         self._finer = list(_ANGLES)
         self.refine()
@@ -89,7 +89,7 @@ class _Balance:
         clearance = clearance_at(speed, lubrication.growth, params).running
         model = Model(params, lubrication, Drive(0.0, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), DEFAULT_TOLERANCES)
         forget(self._work)
-        if not solve_condition(speed, load_y, load_z, model, self._work):
+        if not solve_condition(speed, load_y, load_z, model, self._work, self.slip):
             return _Round(self._work.solved, np.zeros(len(POWERS)), temperatures, (math.nan, math.nan), clearance, "no operating point was found")
         answer = self._work.solved.copy()
         losses = np.array([answer[getattr(ANSWER, name)] if hasattr(ANSWER, name) else 0.0 for name in POWERS])  # no supports at level steady
@@ -105,7 +105,12 @@ class _Balance:
 
 
 def thermal_equilibrium(
-    scene: Scene, inputs: Sequence[float], start: np.ndarray | None = None, agreed: float = _AGREED, balanced: float = _BALANCED
+    scene: Scene,
+    inputs: Sequence[float],
+    start: np.ndarray | None = None,
+    agreed: float = _AGREED,
+    balanced: float = _BALANCED,
+    slip: float = 0.0,
 ) -> Equilibrium:
     """Find the thermal equilibrium of a scene whose `heat.law` is network.
 
@@ -117,12 +122,13 @@ def thermal_equilibrium(
     agreed : largest difference of temperatures before and after the last round [K].
     balanced : largest difference of the shaft power and the losses at the end, as a fraction of it; a small one needs operating points at many
         angles of a pitch, which costs more than the search.
+    slip : at which the cage begins, 0 in ideal rolling, 1 where it stands.
 
     Returns
     -------
     equilibrium : with ``converged`` false and the reason where there is none below the scene's limit.
     """
-    balance, limit = _Balance(scene, inputs), scene.heat.limit
+    balance, limit = _Balance(scene, inputs, slip), scene.heat.limit
     now = start_temperatures(scene.heat, float(inputs[3])) if start is None else np.array(start, float)
     before, stretch, gone, reason = None, 1.0, None, ""
     for rounds in range(1, _ROUNDS + 1):  # noqa: B007

@@ -30,7 +30,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.levels.common.model import DEFAULT_TOLERANCES
+from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.common.observation import oil_at_speed
 from bearing_sim.levels.slip.model import rhs_and_jacobian
 from bearing_sim.levels.slip.power import inertia_of_orbits, kinetic_power, slip_powers
@@ -82,6 +82,8 @@ _STALLED, _LEAST_FRACTION = 0.8, 1.0 / 16.0  # of the change before, from which 
 _LIGHTEST, _LIGHTER = 1.0 / 256.0, 4.0  # weights of what accelerates a cage: the first, and the next over the one before
 _LEFT = 1e-2  # of the losses; a cage driven by more at the slip that was found is not in balance
 _LAG_CHANGE = 1e-2  # of the slip
+_SKID_LOAD_STEP, _SKID_LOAD_WITHIN = 1.6, 1.03  # ratios of loads that are looked at: of the first ones, and of both ends of what is left at last
+_LIGHTEST_SKID = 100.0  # of the least load at first; lighter ones are not looked at
 
 SCANNED = np.array(
     [-1.2, -0.9, -0.64, -0.45, -0.3, -0.2, -0.15, -0.1, -0.06, -0.03, -0.012, -4e-3, -1e-3]  # only as far as the cage leads
@@ -680,20 +682,84 @@ def scan(to_standstill, model, work, orbit):
             orbit.skid[0], orbit.skid[1] = max(inertia, 1.0), max(delay, 0.0)
 
 
+@template
+def _at_load(load, angle, model):
+    """Return a model whose constant load [N] has another size; ``angle`` is its direction [rad]."""
+    drive = Drive(0.0, model.drive.shaft_speed, 0.0, load * math.cos(angle), 0.0, load * math.sin(angle), 0.0, 0.0)
+    return Model(model.params, model.lubrication, drive, model.tolerances)
+
+
 @kernel
-def goes_on_skidding(slip, model, work, orbit):
-    """Return whether a cage that starts at a standstill stays at more than a slip; parameters as of `scan`, ``orbit`` is left as a search left it."""
+def _least_drive(slip, model, work, orbit):
+    """Return the least drive of cages that slip by more than ``slip``, followed from a standstill [rad/s^2]; NaN where none is known."""
     shaft_speed = model.drive.shaft_speed
     sense, ideal = 1.0 if shaft_speed > 0.0 else -1.0, 0.5 * shaft_speed * (1.0 - model.params.raceways.diameter_ratio)
     orbit.rings_y[:] = orbit.rings_z[:] = 0.0
+    least = math.nan
     _roll(ideal * (1.0 - SCANNED[SCANNED.shape[0] - 1]), model.params, orbit)
-    for back in range(SCANNED.shape[0]):
+    for back in range(0, SCANNED.shape[0], 2):
         k = SCANNED.shape[0] - 1 - back
         if SCANNED[k] < slip:
             break
-        if _mean_drive(ideal * (1.0 - SCANNED[k]), sense, model, work, orbit, _ROUGH) < 0.0:
+        drive = _mean_drive(ideal * (1.0 - SCANNED[k]), sense, model, work, orbit, _ROUGH)
+        if not drive >= least and math.isfinite(drive):
+            least = drive
+    return least
+
+
+@kernel
+def _rolls(slip, model, work, orbit):
+    """Return whether a cage that rolls goes on rolling: one that slips by no more than ``slip`` is driven at some of its slips."""
+    shaft_speed = model.drive.shaft_speed
+    sense, ideal = 1.0 if shaft_speed > 0.0 else -1.0, 0.5 * shaft_speed * (1.0 - model.params.raceways.diameter_ratio)
+    orbit.rings_y[:] = orbit.rings_z[:] = 0.0
+    _roll(ideal, model.params, orbit)
+    for k in range(ROLLING, SCANNED.shape[0]):
+        if SCANNED[k] > slip:
+            break
+        if _mean_drive(ideal * (1.0 - SCANNED[k]), sense, model, work, orbit, _ROUGH) >= 0.0:
             return True
     return False
+
+
+@kernel
+def find_skid_load(slip, angle, least, most, model, work, orbit):
+    """Find the load below which a cage that skids goes on skidding although one that rolls goes on rolling.
+
+    The least drive of a skidding cage rises with the load; its zero is bracketed from below, where skids are solved for easily, and narrowed.
+
+    Parameters
+    ----------
+    slip : above which a cage skids.
+    angle : direction of the load [rad].
+    least, most : loads between which it is sought [N].
+    model : of level slip; its shaft not slower than `CREEP`, its load goes unused.
+    work : of level slip.
+    orbit : `Orbit`.
+
+    Returns
+    -------
+    load : [N]; 0 where there is none.
+    """
+    first = at_angles(int(orbit.resolution[RESOLUTION.first]), model.params.rollers.count, orbit)
+    below, above, load = 0.0, math.inf, least
+    drive_below = drive_above = math.nan
+    while above > _SKID_LOAD_WITHIN * below:
+        drive = _least_drive(slip, _at_load(load, angle, model), work, first)
+        if drive < 0.0:
+            below, drive_below = load, drive
+        else:
+            above, drive_above = load, drive
+        if below == 0.0 and load < least / _LIGHTEST_SKID or load > most:
+            return 0.0
+        if below == 0.0:
+            load = above / _SKID_LOAD_STEP**2
+        elif above == math.inf:
+            load = below * _SKID_LOAD_STEP
+        else:
+            part = drive_below / (drive_below - drive_above)
+            load = below + (above - below) * (min(max(part, 0.1), 0.9) if math.isfinite(part) else 0.5)
+    return below if _rolls(slip, _at_load(below, angle, model), work, first) else 0.0
 
 
 @kernel
