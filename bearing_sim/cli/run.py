@@ -10,7 +10,7 @@ from typing import NamedTuple
 import click
 
 from bearing_sim.cli.estimation import band_numbers, estimation_with_progress, live_band_rows
-from bearing_sim.cli.lives import life_rows
+from bearing_sim.cli.lives import life_rows, temperature_report, temperature_rows
 from bearing_sim.cli.options import json_option, scene_argument, set_option
 from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
 from bearing_sim.cli.reporting import (
@@ -35,15 +35,6 @@ _BLOCK = 10  # samples
 _SAMPLES = 10_000  # of a long run, by default
 _RATE = 1000.0  # [Hz] of a short run
 _LEAST_SAMPLES = 100  # of the shortest run that can be judged
-_CELSIUS = 273.15
-_TEMPERATURES = {
-    "shaft_temperature": "shaft",
-    "inner_ring_temperature": "inner ring",
-    "roller_temperature": "rollers",
-    "outer_ring_temperature": "outer ring",
-    "housing_temperature": "housing",
-    "oil_outlet_temperature": "oil that leaves",
-}
 _FLOWS = ("heat_to_oil", "heat_to_ambient")
 
 
@@ -53,6 +44,7 @@ _FLOWS = ("heat_to_oil", "heat_to_ambient")
 @click.option("--duration", metavar="S", help="Simulated time, such as 0.5 or '300 ms' [default: until slip and life rest, at least 0.5 s].")
 @click.option("--at-most", metavar="S", help="End a run without --duration here [default: 1000 s, or 2000 cage turns if these take longer].")
 @click.option("--level", metavar="LEVEL", help="Level of fidelity, instead of the scene's.")
+@click.option("--start", type=click.Choice(["rolling", "skid"]), default="rolling", show_default=True, help="How the cage begins.")
 @click.option(
     "--rate",
     type=click.FloatRange(min=0, min_open=True),
@@ -65,12 +57,14 @@ _FLOWS = ("heat_to_oil", "heat_to_ambient")
     "--uncertainty", type=click.IntRange(2, 65536), metavar="N", help="Also compute ranges of slip and life from N samples of uncertain fields."
 )
 @json_option
-def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncertainty, as_json):
-    """Run SCENE (a bundled scene or a YAML file) under its constant conditions, starting from ideal rolling, until it has settled.
+def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, uncertainty, as_json):
+    """Run SCENE (a bundled scene or a YAML file) under its constant conditions, from ideal rolling or a skid, until it has settled.
 
     A run has settled when cage slip is known to 0.05 points and life to 2 %, and neither is going to change by more. One that has not
     settled in the longest time says what it was doing, and the exit code is 4. With --duration it ends after exactly that time, settled or
     not, and says which. With heat.law network it begins in thermal equilibrium; where there is none, the run fails and says why.
+
+    Where the bearing may stay in other states under the same conditions, these are shown, too, and the load below which a skid lasts.
 
     Slip, cage speed, powers and lives are means over the last fifth of the run; largest loads and pressures are those of that fifth.
     --uncertainty uses the settled bearing at the fastest level that supports the scene; `bearing-sim
@@ -82,6 +76,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
     from bearing_sim.model.validity import outside
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError, Simulation, start_sample
+    from bearing_sim.sweep.states import SKID, other_states, skid_start, state_rows
     from bearing_sim.sweep.thermal import begin_in_equilibrium
 
     if duration is not None and at_most is not None:
@@ -100,26 +95,28 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
         progress = stack.enter_context(progress_bar(f"running {scene.name}{until}", plan.longest))
         started = time.perf_counter()
         announce_compilation(scene)
-        simulation = Simulation(scene, table=corrected)
+        begin = skid_start(scene) if start == SKID else None
+        simulation = Simulation(scene, table=corrected, start=begin)
         simulation.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
-        simulation.reset()
-        begin_in_equilibrium(simulation, plan.shortest, plan.longest)
+        simulation.reset(start=begin)
+        begin_in_equilibrium(simulation, plan.shortest, plan.longest, begin)
         for sink in sinks[: out is not None]:
             sink.write(start_sample(simulation))
         first = time.perf_counter()
         outcome = _advance(simulation, plan, sinks, progress, estimation)
         wall = time.perf_counter() - first
+        others = other_states(scene, outcome, start)
         warnings = outside(scene, outcome.window, laws=laws_of_table(scene, _table_temperatures(scene)))
         for sink in sinks:
             for each in warnings:
                 sink.write_event(validity_event(outcome.simulated, each))
-    report = {**_report(simulation, outcome, wall, first - started), **warnings_report(scene, warnings)}
+    report = {**_report(simulation, outcome, wall, first - started), **warnings_report(scene, warnings), **_states_report(others, start)}
     report |= band_numbers(estimation.newest) if estimation is not None else {}
     bands = bands_of(scene, uncertainty)[1] if uncertainty else None
     if as_json:
         print_json({**report, "uncertainty": bands} if bands else report)
     else:
-        _print(report, scene, bands, estimation)
+        _print(report, scene, bands, estimation, state_rows(others, start))
     warn_of_limits(scene, warnings)
     if seconds is None and not outcome.settled:
         raise Unsettled(f"not settled: {outcome.reason}; give more time with --at-most")
@@ -242,23 +239,28 @@ def _report(simulation, outcome, wall, start_up) -> dict:
     }
 
 
+def _states_report(others, start) -> dict:
+    """Return the start of the run, the other states, the skid load [N] and how the passing rollers excite the inner ring."""
+    resonance = others.resonance
+    ring = {} if resonance is None else {**resonance._asdict(), "ratios": resonance.ratios, "order": resonance.order}
+    states = [{name: value for name, value in state._asdict().items() if name != "basin"} for state in others.states]
+    return {"start": start, "other_states": states, "skid_load": others.skid_load, "ring_resonance": ring or None}
+
+
 def _thermal_report(window) -> dict:
     """Return temperatures [degC] and flows of heat [W] at the end, where the scene has a law of heat."""
     last = window[-1]
-    temperatures = {f"{name}_c": float(last[name]) - _CELSIUS for name in _TEMPERATURES if not math.isnan(last[name])}
-    return temperatures | {f"{name}_w": float(last[name]) for name in _FLOWS if not math.isnan(last[name])}
+    return temperature_report(last) | {f"{name}_w": float(last[name]) for name in _FLOWS if not math.isnan(last[name])}
 
 
 def _thermal_rows(report) -> list[tuple[str, str]]:
-    rows, known = [], [f"{words} {report[f'{name}_c']:.1f}" for name, words in _TEMPERATURES.items() if f"{name}_c" in report]
-    if known:
-        rows.append(("temperatures", f"{', '.join(known)} degC"))
+    rows = temperature_rows(report)
     if "heat_to_oil_w" in report:
         rows.append(("heat", f"{report['heat_to_oil_w']:.4g} W to the oil that flows through, {report['heat_to_ambient_w']:.4g} W to the air"))
     return rows
 
 
-def _print(report, scene, bands, estimation) -> None:
+def _print(report, scene, bands, estimation, states) -> None:
     from bearing_sim.cli.uncertainty import band_rows
     from bearing_sim.model.characteristic_frequencies import frequencies_text
     from bearing_sim.model.losses import loss_text
@@ -270,6 +272,7 @@ def _print(report, scene, bands, estimation) -> None:
         [
             ("cage slip", _slip(report)),
             ("settled", _settled(report)),
+            *states,
             ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
             ("characteristic frequencies", frequencies_text(report["characteristic_frequencies_hz"])),
             clearance_row(scene, report),

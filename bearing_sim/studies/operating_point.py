@@ -18,6 +18,7 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.sweep.point import DURATION, RESULTS, positive_seconds, results_of, run_until_settled
 from bearing_sim.sweep.settling import Outcome
+from bearing_sim.sweep.states import ROLLING, SKID, Others, other_states, skid_start, state_rows
 
 if TYPE_CHECKING:
     import pandas
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from bearing_sim.studies.uncertainty import Band
 
 SAMPLES, SEED = 64, 2017  # of bands
+NEARBY = "nearby"  # start at a neighbouring point
 _OBSERVED = {each.name: each for each in OBSERVABLES}
 _RESULTS = {each.name: each for each in RESULTS}
 _CELSIUS = 273.15
@@ -48,11 +50,13 @@ class Settled:
     window : samples of the last fifth of the run, for `bearing_sim.to_xarray` and `bearing_sim.to_pandas`.
     bands : of ``cage_slip`` and ``modified_rating_life`` over the scene's uncertain fields, 5, 50 and 95 % quantiles with their sampling errors;
         empty unless asked for.
+    start : from where the bearing came to this state: ``rolling``, ``skid`` or ``nearby``, a neighbouring point.
     """
 
     scene: Scene
     outcome: Outcome
     bands: "Mapping[str, Band]"
+    start: str = ROLLING
 
     @property
     def settled(self) -> bool:
@@ -90,6 +94,14 @@ class Settled:
         return MappingProxyType(results_of(self.outcome))
 
     @cached_property
+    def others(self) -> Others:
+        """The other states in which the bearing stays under the same conditions, the load below which a skid lasts, and the ring's resonance.
+
+        They are looked for when they are first asked for, see `bearing_sim.sweep.states.other_states`.
+        """
+        return other_states(self.scene, self.outcome, self.start)
+
+    @cached_property
     def warnings(self) -> tuple[Exceedance, ...]:
         """Laws that are used outside of their ranges, each with its worst value."""
         return tuple(outside(self.scene, self.outcome.window))
@@ -107,7 +119,7 @@ class Settled:
 
     def __getstate__(self) -> dict:
         # Without what is computed on demand, whose mapping cannot be pickled.
-        return {"scene": self.scene, "outcome": self.outcome, "bands": dict(self.bands)}
+        return {"scene": self.scene, "outcome": self.outcome, "bands": dict(self.bands), "start": self.start}
 
     def to_pandas(self) -> "pandas.DataFrame":
         """Return the results as a table: value, unit, the ends of the band where there is one, and meaning, by the name of the result."""
@@ -134,6 +146,7 @@ class Settled:
         lines.append(f"  largest roller load  inner {self.inner_load_maximum:.4g} N, outer {self.outer_load_maximum:.4g} N")
         lines.append(f"  running clearance    {1e6 * self.running_clearance:.4g} um")
         lines.append(f"  power loss           {self.shaft_power:.4g} W")
+        lines += [f"  {name:<20} {text}" for name, text in state_rows(self.others, self.start)]
         if math.isfinite(last[RING_TEMPERATURES[0]]):
             inner, outer = (last[name] - _CELSIUS for name in RING_TEMPERATURES)
             lines.append(f"  ring temperatures    inner {inner:.4g} degC, outer {outer:.4g} degC")
@@ -153,7 +166,7 @@ def settle(
     radial_load: float | str | None = None,
     load_angle: float | str | None = None,
     oil_temperature: float | str | None = None,
-    start: Settled | None = None,
+    start: Settled | str | None = None,
     longest: float | str | None = None,
     bands: bool = False,
     samples: int = SAMPLES,
@@ -170,9 +183,9 @@ def settle(
     level : of fidelity; the scene's own where absent.
     shaft_speed, radial_load, load_angle, oil_temperature : of the operating point, numbers in SI or texts with a unit, such as ``"3000 rpm"``;
         the scene's own where absent.
-    start : what the bearing settled to at a neighbouring point, at any level: begin there instead of in ideal rolling.  The run is then as short
-        as 15 cage turns, and the search for thermal equilibrium begins with those temperatures.  Where there are several states, the result
-        may be another one than from ideal rolling.
+    start : ``"skid"`` to begin with a cage that skids instead of in ideal rolling (``"rolling"``); or what the bearing settled to at a neighbouring
+        point, at any level.  The run from there is as short as 15 cage turns, and the search for thermal equilibrium begins with those temperatures.
+        Where there are several states, the result may be another one than from ideal rolling.
     longest : simulated time after which a bearing that does not settle is given up [s]; 1000 s, or 2000 cage turns, where absent.
     bands : whether to compute bands of slip and life over the ranges of the scene's uncertain fields (`bearing_sim.studies.uncertainty`).
     samples : size of each of the two samples of the bands, rounded up to a power of two.
@@ -195,11 +208,17 @@ def settle(
     found = found.at(shaft_speed=shaft_speed, radial_load=radial_load, load_angle=load_angle, oil_temperature=oil_temperature)
     if level is not None:
         found = found.at_level(level)
-    shortest = DURATION if start is None or found.operating.shaft_speed == 0.0 else 0.0  # where it starts near its end, 15 cage turns will do
-    outcome = run_until_settled(
-        found, shortest, None if longest is None else positive_seconds("longest", longest), None if start is None else start.sample
-    )
-    return Settled(found, outcome, _bands(found, samples, workers) if bands else MappingProxyType({}))
+    at_most = None if longest is None else positive_seconds("longest", longest)
+    shortest, sample = DURATION, None
+    if isinstance(start, Settled):
+        shortest, sample = 0.0 if found.operating.shaft_speed else DURATION, start.sample  # near its end 15 cage turns will do
+    elif start == SKID:
+        sample = skid_start(found)
+    elif start not in (None, ROLLING):
+        raise ValueError(f"start = {start!r}: expected 'rolling', 'skid', or what settle has returned for a neighbouring point")
+    outcome = run_until_settled(found, shortest, at_most, sample)
+    shown = start if isinstance(start, str) else (ROLLING if start is None else NEARBY)
+    return Settled(found, outcome, _bands(found, samples, workers) if bands else MappingProxyType({}), shown)
 
 
 def _bands(scene: Scene, samples: int, workers: int) -> "Mapping[str, Band]":

@@ -8,6 +8,7 @@ own.
 """
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -15,25 +16,33 @@ import numpy as np
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.steady.model import Work, forget, new_work, solve_condition
 from bearing_sim.levels.steady.operating_point import ANSWER, CREEP, SCANNED, basin, find_skid_load, stable_balances
-from bearing_sim.model.params import pack
-from bearing_sim.model.sample import NODE_OBSERVABLES, new_block
-from bearing_sim.model.temperatures import local_model, lubricate_scene
-from bearing_sim.physics.rating_life import rating_life_revolutions
-from bearing_sim.scene.scene import Scene
-from bearing_sim.simulation import Inputs, Simulation, scene_inputs
+from bearing_sim.model.losses import power_loss
+from bearing_sim.model.sample import NODE_OBSERVABLES
+from bearing_sim.physics.lamina_life import EquivalentLoads
+from bearing_sim.physics.rating_life import oil_factors, rate_lives
+from bearing_sim.scene.scene import Integration, Scene
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, inputs_of, scene_inputs
+from bearing_sim.sweep.ring_resonance import Resonance, ring_resonance
+from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, shortest_run
+from bearing_sim.sweep.thermal import operating_state
 
+ROLLING, SKID = "rolling", "skid"  # from where a run starts
 SKIDS = 0.05  # slip above which a cage counts as skidding
 _FIRST, _MOST = 1e-3, 0.5  # loads at which the search for a skid load begins and ends, over the static load rating
 _STANDSTILL = 1e-3  # rad/s; a cage that stands
+_LIFTED = 1e-5  # m, by which a ring is displaced against its load
+_LONGER = 1.5  # than the run; the longest one from another start
+_OTHER_SLIP, _OTHER_LIFE, _OTHER_POWER = 5e-3, 0.1, 0.1  # differences of another state: of slip, and relative
 
 
 class State(NamedTuple):
-    """A state in which a cage stays."""
+    """A state in which a bearing stays."""
 
     cage_slip: float
     rating_life: float  # by the loads on both rings [h]
     shaft_power: float  # [W]
-    basin: tuple[float, float]  # slips between which a cage comes to it
+    start: str  # from where the bearing comes to it
+    basin: tuple[float, float] = (math.nan, math.nan)  # slips between which a cage comes to it, where level steady tells
 
 
 class States(NamedTuple):
@@ -42,14 +51,18 @@ class States(NamedTuple):
     found: tuple[State, ...]  # the one to which the cage comes from ideal rolling first; none where no state was found, or at rest
     skid_load: float  # load below which a skid lasts, at the same speed and temperatures [N]; 0 where none does, NaN where it was not sought
 
-    def of(self, slip: float) -> State | None:
-        """Return the state to which a cage with such a slip belongs, None where there is none."""
-        return min(self.found, key=lambda state: abs(state.cage_slip - slip), default=None)
-
     def beside(self, slip: float) -> tuple[State, ...]:
-        """Return the other states of a bearing whose cage settled with such a slip."""
-        own = self.of(slip)
+        """Return the other states of a bearing whose cage has settled with such a slip."""
+        own = min(self.found, key=lambda state: abs(state.cage_slip - slip), default=None)
         return tuple(state for state in self.found if state is not own)
+
+
+class Others(NamedTuple):
+    """What a bearing that has settled might do as well under the same conditions."""
+
+    states: tuple[State, ...]
+    skid_load: float  # see `States`
+    resonance: Resonance | None  # of the inner ring, at levels that compute its motion
 
 
 def states(scene: Scene, inputs: Inputs | None = None, nodes: np.ndarray | None = None, skid_load: bool = True) -> States:
@@ -59,21 +72,22 @@ def states(scene: Scene, inputs: Inputs | None = None, nodes: np.ndarray | None 
     ----------
     scene : of any level.
     inputs : conditions; the scene's operating block where absent.
-    nodes : temperatures of the thermal network's nodes [K]; absent or NaN where the scene has none.
+    nodes : temperatures of the thermal network's nodes [K]; those of its equilibrium where absent or NaN.
     skid_load : whether to look for the skid load, which takes longer than the states.
+
+    Raises
+    ------
+    IntegrationError
+        There is no thermal equilibrium.
     """
     inputs = scene_inputs(scene) if inputs is None else inputs
-    speed, load_y, load_z, oil = inputs[:4]
+    speed, load_y, load_z = inputs[:3]
     if abs(speed) < CREEP:
         return States((), math.nan)
-    params = pack(scene)
-    if nodes is None or not np.isfinite(nodes).all():
-        lubrication = lubricate_scene(scene, params, oil, inputs[4:6])
-    else:
-        params, lubrication = local_model(scene, params, oil, nodes)
+    params, lubrication, _ = operating_state(scene, inputs, nodes)
     drive = Drive(0.0, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0)
     model, work = Model(params, lubrication, drive, DEFAULT_TOLERANCES), new_work(params)
-    found = tuple(_state(answer, reached, speed, params) for answer, reached in _balances(speed, load_y, load_z, model, work))
+    found = tuple(_state(*found, model) for found in _balances(speed, load_y, load_z, model, work))
     below = math.nan
     if skid_load and found:
         rating = params.life.static_rating
@@ -81,31 +95,125 @@ def states(scene: Scene, inputs: Inputs | None = None, nodes: np.ndarray | None 
     return States(found, float(below))
 
 
-def states_of_sample(scene: Scene, sample: np.void, inputs: Inputs, skid_load: bool = True) -> States:
-    """Return the states of a bearing as warm as in a sample; parameters as of `states`."""
-    return states(scene, inputs, np.array([float(sample[name]) for name in NODE_OBSERVABLES]), skid_load)
+def other_states(scene: Scene, outcome: Outcome, start: str = ROLLING) -> Others:
+    """Return the other states of a bearing under the conditions of a run that has ended.
+
+    Levels steady and slip have those of the mean drive of the cage.  Levels planar and spatial start once more from each of these, and, where the
+    passing rollers may keep the inner ring vibrating (`bearing_sim.sweep.ring_resonance`), with a ring that does not vibrate if this one does,
+    otherwise with one that is displaced against its load.
+
+    Parameters
+    ----------
+    scene : under constant conditions.
+    outcome : of its run.
+    start : from where it began, such as `ROLLING`.
+    """
+    sample, slip = outcome.window[-1], outcome.slip
+    inputs, nodes = inputs_of(sample), np.array([float(sample[name]) for name in NODE_OBSERVABLES])
+    if not math.isfinite(slip):
+        return Others((), math.nan, None)
+    known = states(scene, inputs, nodes)
+    if scene.level in ("steady", "slip"):
+        return Others(known.beside(slip), known.skid_load, None)
+    resonance, own, found = ring_resonance(scene, slip, inputs, nodes), _state_of(outcome, ""), []
+    starts = [(state.start, _start_in(scene, state.basin, inputs, nodes)) for state in known.beside(slip)]
+    if resonance is not None and resonance.may_vibrate:
+        quiet = min(known.found, key=lambda state: abs(state.cage_slip - slip), default=None)
+        if quiet is not None and not own.rating_life > (1.0 - _OTHER_LIFE) * quiet.rating_life:
+            starts.append(("from a ring that does not vibrate", _start_in(scene, quiet.basin, inputs, nodes)))
+        else:
+            starts.append(("from a displaced ring", _lifted(sample)))
+    starts = [(words, sample) for words, sample in starts if sample is not None]
+    if start != ROLLING:
+        starts.append(("from ideal rolling", None))
+    for words, begin in starts:
+        state = _state_from(scene, begin, words, inputs, nodes, outcome)
+        if state and _differs(state, own) and not any(not _differs(state, each) for each in found):
+            found.append(state)
+    return Others(tuple(found), known.skid_load, resonance)
+
+
+def _state_of(outcome: Outcome, start: str) -> State:
+    window = outcome.window
+    with np.errstate(divide="ignore"):
+        return State(outcome.slip, float(1.0 / np.mean(1.0 / window["rating_life"])), power_loss(window), start)
+
+
+def _differs(state: State, other: State) -> bool:
+    def apart(one, two):
+        return abs(one - two) / max(min(abs(one), abs(two)), 1e-300) if one != two else 0.0
+
+    return (
+        abs(state.cage_slip - other.cage_slip) > _OTHER_SLIP
+        or apart(state.rating_life, other.rating_life) > _OTHER_LIFE
+        or apart(state.shaft_power, other.shaft_power) > _OTHER_POWER
+    )
+
+
+def _state_from(scene: Scene, start: np.void | None, words: str, inputs: Inputs, nodes: np.ndarray, outcome: Outcome) -> State | None:
+    """Return the state that a bearing comes to from a sample, at the temperatures of a run; None where it does not settle."""
+    shortest = shortest_run(scene, 0.0)
+    try:
+        run = Simulation(scene, inputs, start=start, nodes=nodes if np.isfinite(nodes).all() else None)
+        if run.thermal is not None:
+            run.set_temperatures(nodes)
+        found = advance_until_settled(run, shortest, max(shortest, _LONGER * outcome.simulated))
+    except IntegrationError:
+        return None
+    return _state_of(found, words if found.settled else f"{words}, {found.verdict}")
+
+
+def _start_in(scene: Scene, reached: tuple[float, float], inputs: Inputs, nodes: np.ndarray) -> np.void | None:
+    """Return the sample of level slip that has settled in a basin, at the temperatures of a run; None where it does not settle."""
+    simple = at_level_slip(scene)
+    start = standing_cage(simple, inputs) if reached[1] == math.inf and reached[0] != -math.inf else None
+    try:
+        run = Simulation(simple, inputs, start=start, nodes=nodes if np.isfinite(nodes).all() else None)
+        if run.thermal is not None:
+            run.set_temperatures(nodes)
+        return advance_until_settled(run, shortest_run(simple, 0.0), longest_run(simple, 1.0)).window[-1]
+    except IntegrationError:
+        return None
+
+
+def _lifted(sample: np.void) -> np.void:
+    """Return a sample whose inner ring is displaced against its load."""
+    lifted, load = sample.copy(), math.hypot(sample["load_y"], sample["load_z"])
+    for axis in ("y", "z"):
+        lifted[f"ring_{axis}"] -= _LIFTED * float(sample[f"load_{axis}"]) / max(load, 1e-300)
+    return lifted
+
+
+def at_level_slip(scene: Scene) -> Scene:
+    """Return a scene at level slip, without what that level leaves out."""
+    operating = replace(scene.operating, moment=None, misalignment=0.0)
+    support = replace(scene.support, unbalance=replace(scene.support.unbalance, amount=0.0))
+    return replace(scene, level="slip", level_reason="", wants=(), integration=Integration(), operating=operating, support=support)
 
 
 def _balances(speed: float, load_y: float, load_z: float, model: Model, work: Work):
-    """Yield the answer and the basin of each state, see `bearing_sim.levels.steady.operating_point.basin`."""
+    """Yield answer, basin (`bearing_sim.levels.steady.operating_point.basin`) and start of each state."""
     forget(work)
     if not solve_condition(speed, load_y, load_z, model, work, to_standstill=True):
         return
     rolling, scanned = tuple(work.basin.tolist()), work.orbit.scanned.copy()
-    yield work.solved.copy(), rolling
+    yield work.solved.copy(), rolling, "from ideal rolling"
     for low, high in stable_balances(scanned):
         reached = basin(low, high, scanned)
         if reached == rolling:
             continue
         start = 1.0 if high == len(SCANNED) else float(SCANNED[high])
         if solve_condition(speed, load_y, load_z, model, work, start):
-            yield work.solved.copy(), reached
+            yield work.solved.copy(), reached, "from a skid" if start > 0.0 else "from a cage that leads"
 
 
-def _state(answer: np.ndarray, reached: tuple[float, float], speed: float, params) -> State:
-    revolutions = rating_life_revolutions(answer[ANSWER.inner_equivalent_load], answer[ANSWER.outer_equivalent_load], params.life)
-    hours = revolutions * 2.0 * math.pi / (3600.0 * abs(speed))
-    return State(float(answer[ANSWER.cage_slip]), float(hours), float(answer[ANSWER.shaft_power]), reached)
+def _state(answer: np.ndarray, reached: tuple[float, float], start: str, model: Model) -> State:
+    params, drive = model.params, model.drive
+    oil = oil_factors(abs(drive.shaft_speed), model.lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius, params.life)
+    equivalent = EquivalentLoads(*answer[ANSWER.inner_equivalent_load : ANSWER.reference_modification_factor + 1].tolist())
+    lives = rate_lives(math.hypot(drive.load_y, drive.load_z), equivalent, oil, params.life)
+    hours = lives.basic * 2.0 * math.pi / (3600.0 * abs(drive.shaft_speed))
+    return State(float(answer[ANSWER.cage_slip]), float(hours), float(answer[ANSWER.shaft_power]), start, reached)
 
 
 def standing_cage(scene: Scene, inputs: Inputs | None = None) -> np.void:
@@ -119,10 +227,60 @@ def standing_cage(scene: Scene, inputs: Inputs | None = None) -> np.void:
     inputs : conditions; the scene's operating block where absent.
     """
     rolling = Simulation(scene, inputs).sample
-    sample = new_block(1, scene.bearing.roller.count)[0]
-    sample[...] = rolling
+    sample = rolling.copy()
     # The spin of rolling is that of an inner raceway that turns by omega_i - omega_c under a cage that is held.
     faster = rolling["shaft_speed"] / (rolling["shaft_speed"] - rolling["cage_speed"])
     sample["roller_spin"] = rolling["roller_spin"] * faster
     sample["cage_speed"] = sample["orbital_speed"] = math.copysign(_STANDSTILL, rolling["shaft_speed"])
     return sample
+
+
+def skid_start(scene: Scene, inputs: Inputs | None = None) -> np.void:
+    """Return the sample from which a bearing starts in a skid.
+
+    At levels steady and slip the cage stands.  At the others the bearing starts as level slip has settled from there, at the temperatures of
+    the inputs: a cage that stands would be thrown about.
+
+    Parameters
+    ----------
+    scene : of any level.
+    inputs : conditions; the scene's operating block where absent.
+    """
+    inputs = scene_inputs(scene) if inputs is None else inputs
+    if scene.level in ("steady", "slip"):
+        return standing_cage(scene, inputs)
+    nodes = operating_state(scene, inputs).temperatures
+    found = _start_in(scene, (0.0, math.inf), inputs, nodes)
+    return standing_cage(scene, inputs) if found is None else found
+
+
+def state_rows(others: Others, start: str) -> list[tuple[str, str]]:
+    """Return rows of a table: the state that is shown, the others, the skid load, and how the passing rollers excite the ring."""
+    came = {ROLLING: "from ideal rolling", SKID: "from a skid"}.get(start, "from a neighbouring point")
+    rows = [("state", f"{came}{'' if others.states else '; no other was found'}")]
+    rows += [("also stays at", state_text(state)) for state in others.states]
+    if others.skid_load > 0.0:
+        rows.append(("skid load", f"{others.skid_load:.4g} N; under less a cage that skids goes on skidding"))
+    if others.resonance is not None:
+        rows.append(("inner ring", resonance_text(others.resonance)))
+    return rows
+
+
+def state_text(state: State) -> str:
+    """Return a state in words."""
+    return f"{100.0 * state.cage_slip:.2f} % cage slip, {state.rating_life:.4g} h, {state.shaft_power:.4g} W: {state.start}"
+
+
+def resonance_text(resonance: Resonance) -> str:
+    """Return how the passing rollers excite the inner ring, in words."""
+    low, high = resonance.ratios
+    frequencies = " and ".join(f"{frequency:.0f}" for frequency in resonance.frequencies)
+    text = (
+        f"moves with {resonance.moving_mass:.3g} kg ({resonance.ring_mass:.3g} kg of it the ring's own); {frequencies} Hz on its contacts, "
+        f"{low:.2f} and {high:.2f} of the {resonance.passage:.0f} Hz of the passing rollers"
+    )
+    if resonance.excited:
+        return f"{text}: near {resonance.order:g}, they make it vibrate; its mass and bearing.contact.damping_time decide slip and life"
+    if resonance.may_vibrate:
+        return f"{text}: near {resonance.order:g}, they may keep it vibrating"
+    return text
