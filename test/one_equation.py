@@ -9,7 +9,7 @@ from bearing_sim.numerics.compilation import kernel
 
 
 @kernel
-def step_taken(h, y, model, work):
+def step_taken(t, h, y, model, work):
     pass
 
 

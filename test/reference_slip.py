@@ -27,6 +27,9 @@ class Reference:
     inner_radius: float = 27.875e-3
     mixture_fraction: float = 0.03
     pocket_friction: float = 0.05
+    pocket_clearance: float = 1e-4
+    pocket_film_force: float = 67.0
+    pocket_film_damping: float = 5.0
 
     def __post_init__(self):
         self.pitch_radius = self.inner_radius + self.roller_radius
@@ -39,6 +42,7 @@ class Reference:
         self.density = self.mixture_fraction * (914 + (870 - 914) * (393.15 - 367) / (422 - 367))
         self.pitch_angles = 2 * np.pi * np.arange(self.rollers) / self.rollers
         self.ring = np.zeros(2)
+        self.pocket = self.pocket_without_play = np.zeros(self.rollers)  # of the last rate, what pockets take from their rollers [N]
 
     def contour(self, azimuth):
         half = self.d_value / 2
@@ -118,6 +122,24 @@ class Reference:
         coefficient = np.exp(np.interp(np.log(reynolds), np.log(points), np.log(values)))
         return 0.5 * self.density * coefficient * self.length * 2 * self.roller_radius * speed**2
 
+    def pocket_forces(self, driven, inner, outer, omega):
+        """What pockets with play take from their rollers, which drives each by ``driven``; tractions are functions of a change of sliding speed."""
+
+        def slope(traction):
+            return np.maximum((traction(1e-7) - traction(-1e-7)) / 2e-7, 0.0)
+
+        # a roller that gains on the cage by a speed of 1 spins faster by s, so that its tractions do not turn it: i (1 + s) = e (1 - s)
+        i, e = slope(inner), slope(outer)
+        faster = np.divide(e - i, e + i, out=np.zeros_like(i), where=e + i > 0)
+        held = i * (1 + faster) + e * (1 - faster)
+        time = 1 / (2 * omega)
+        film = self.pocket_film_damping + self.pocket_film_force / self.pocket_clearance * time
+        moved = np.abs(driven) * time / (held + film)
+        soft = film / (film + held)
+        felt = soft + (1 - soft) * moved / (moved + self.pocket_clearance)
+        shared = driven @ (1 - felt) / max(np.sum(1 - felt), 1e-300)
+        return felt * driven + (1 - felt) * shared
+
     def rate(self, t, y):
         theta, omega, spin = y[0], y[1], y[2:]
         inner, outer, radius, slope, azimuth, (ring_y, ring_z) = self.loads(theta, omega)
@@ -126,14 +148,22 @@ class Reference:
         slide_i, slide_e = omega_i * r_i - (orbital + spin * r_w), -(orbital - spin * r_w)
         roll_i = ((omega_i - omega) * r_i + (spin + omega) * r_w) / 2
         roll_e = (omega * (radius + r_w) + (spin + omega) * r_w) / 2
-        traction_i = inner * self.traction_coefficient(inner, roll_i, slide_i, 1 / (1 / r_w + 1 / r_i))
-        traction_e = outer * self.traction_coefficient(outer, roll_e, slide_e, 1 / (1 / r_w - 1 / self.low_radius))
+
+        def inner_traction(faster):
+            return inner * self.traction_coefficient(inner, roll_i, slide_i + faster, 1 / (1 / r_w + 1 / r_i))
+
+        def outer_traction(faster):
+            return outer * self.traction_coefficient(outer, roll_e, slide_e + faster, 1 / (1 / r_w - 1 / self.low_radius))
+
+        traction_i, traction_e = inner_traction(0.0), outer_traction(0.0)
         lean = (outer * slope + inner * (ring_y * np.sin(azimuth) - ring_z * np.cos(azimuth))) / radius
         along = traction_i + traction_e - self.churning(omega) + lean - 2 * self.mass * slope * omega**2
         cage_inertia = 0.05 * self.pitch_radius**2
         acceleration = (radius @ along + self.cage_drag(omega)) / (cage_inertia + self.mass * radius @ radius)
-        pocket = np.abs(along - self.mass * radius * acceleration)
-        braking = self.pocket_friction * pocket * r_w * spin / np.sqrt(spin**2 + 10.0**2)
+        driven = along - self.mass * radius * acceleration
+        pocket = self.pocket_forces(driven, inner_traction, outer_traction, omega)
+        self.pocket, self.pocket_without_play = pocket, driven
+        braking = self.pocket_friction * np.abs(pocket) * r_w * spin / np.sqrt(spin**2 + 10.0**2)
         spin_acceleration = (r_w * (traction_i - traction_e) - braking) / (0.5 * self.mass * r_w**2)
         return np.concatenate([[omega, acceleration], spin_acceleration])
 

@@ -1,18 +1,22 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The design: its borders are where single runs begin to break a limit, tolerances shrink its region, and what bounds it is reported."""
 
+import io
 import json
 
+import matplotlib.text
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from bearing_sim import Simulation, load_scene
 from bearing_sim.cli.main import main
-from bearing_sim.studies.design import D_VALUE, LOW, NOMINAL, WORST, Limits, default_axes, design
+from bearing_sim.studies import design as studied
+from bearing_sim.studies.deng2017.design import radii_within
+from bearing_sim.studies.design import D_VALUE, END_OF_MAP, LOW, NOMINAL, WORST, Border, Limits, default_axes, design
 from bearing_sim.sweep.conditions import Conditions
 from bearing_sim.sweep.grid import read_axis
-from bearing_sim.sweep.table import read_table
+from bearing_sim.sweep.table import new_figure, read_table
 from bearing_sim.sweep.tasks import Journal
 
 LIMITS = Limits(10.0, 300.0, Conditions(0.02, 0.1))
@@ -103,7 +107,8 @@ def test_a_region_thinner_than_the_steps_of_the_grid_is_found():
 
 def test_a_region_that_goes_on_beyond_the_range_says_so_and_raceways_that_cannot_be_end_it():
     inside = found(radii="34.863mm:34.864mm:2", d_values="0.1mm")
-    assert {(each.below_by, each.above_by) for each in inside.borders} == {("range", "range")}
+    assert {(each.below_by, each.above_by) for each in inside.borders} == {(END_OF_MAP, END_OF_MAP)}
+    assert "R_low = 34.86300 and 34.86400 mm, where raceways meet both limits: the region goes on beyond it" in inside.open_ends(NOMINAL)
     refused = found(radii="34.7mm,34.863mm", d_values="0.1mm")
     assert [row["status"] for row in refused.grid.rows] == ["refused", "ok"]
     assert border_of(refused, NOMINAL, 0.1).below_by in ("life", "no result")
@@ -159,7 +164,46 @@ def test_what_stands_beside_the_paper_spans_its_d_values_whatever_the_grid(tmp_p
 
     ours, other = within("0.095mm:0.105mm:2"), within("0.09mm:0.11mm:2")
     assert [other[end] for end in ours] == pytest.approx([ours[end] for end in ours], abs=1e-4)
-    assert within("0.098mm:0.102mm:2") is None
+    short = within("0.098mm:0.102mm:2")
+    assert short["low_from"] is None and "the map ends at D = 0.0980 and 0.1020 mm: the limit may lie beyond it" in short["text"]
+
+
+def interval(d_value, low, high, below_by="life", above_by="slip"):
+    return Border(WORST, d_value, low, high, below_by, above_by)
+
+
+def test_radii_for_all_d_values_say_why_there_are_none_and_where_the_map_ends_before_the_limit():
+    def within(*borders):
+        return radii_within(borders, [0.095, 0.1, 0.105])
+
+    whole = within(interval(0.095, 1.0, 4.0), interval(0.1, 2.0, 4.0), interval(0.105, 1.0, 3.0))
+    assert (whole.low_from, whole.low_to) == (2.0, 3.0) and "beyond" not in whole.text
+    gap = within(interval(0.095, 1.0, 4.0), interval(0.105, 1.0, 4.0))
+    assert gap.low_from is None and "no raceway meets both limits at D = 0.1000 mm" in gap.text
+    ended = within(interval(0.095, 3.0, 4.0), interval(0.1, 2.0, 4.0), interval(0.105, 1.0, 2.5, above_by=END_OF_MAP))
+    assert ended.low_from is None and "none in the map; the map ends at R_low = 2.50000 mm" in ended.text and "the limit lies beyond it" in ended.text
+    other_end = within(interval(0.095, 1.0, 2.0), interval(0.1, 1.0, 3.0), interval(0.105, 1.0, 4.0, above_by=END_OF_MAP))
+    assert other_end.low_to == 2.0 and "beyond" not in other_end.text
+
+
+def words_in(monkeypatch, designed):
+    """Return all texts of the picture of a design."""
+    figures = []
+    monkeypatch.setattr(studied, "new_figure", lambda *size: figures.append(new_figure(*size)) or figures[-1])
+    studied.draw(io.BytesIO(), designed)
+    texts = [text.get_text().replace("\n", " ") for text in figures[0].findobj(matplotlib.text.Text)]
+    return " | ".join(text for text in texts if text)
+
+
+def test_the_picture_names_the_region_of_the_worst_case_or_says_that_there_is_none_and_from_which_start_its_states_are(designed, monkeypatch):
+    shown = words_in(monkeypatch, designed)
+    assert "in the worst case of speed ±2 %, load ±10 %: meets both limits at steady" in shown
+    assert "at nominal speed and load: meets both limits at steady" in shown and "no raceway" not in shown
+    assert "from ideal rolling" in shown
+    nominal_only = designed._replace(bands=[band for band in designed.bands if band.found.kind == NOMINAL])
+    shown = words_in(monkeypatch, nominal_only)
+    assert "in the worst case of speed ±2 %, load ±10 %: no raceway of the map meets both limits at steady" in shown
+    assert "in the worst case of speed ±2 %, load ±10 %: meets both" not in shown
 
 
 @pytest.mark.parametrize(

@@ -21,9 +21,7 @@ from bearing_sim.levels.spatial.state import BORDER
 from bearing_sim.levels.spatial.state import SLICED as SLICED_ROW
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table_builder import solve_points
-from bearing_sim.model.losses import repeats
 from bearing_sim.model.params import pack
-from bearing_sim.model.sample import new_block
 from bearing_sim.numerics.linear_algebra import ARROW
 from bearing_sim.numerics.simd import by_roller as lanes_by_roller
 from bearing_sim.physics.flange import end_integrals, flange_friction, rim_corner, rub, shear
@@ -127,8 +125,8 @@ def test_flanges_stand_in_the_books_of_level_slip(seed, options):
     state = rough_slip_state(simulation("slip"), seed)
     (rate, run, model), (without, bare, bare_model) = rates(("slip", slip), options, state)
     speed = run.inputs.shaft_speed
-    powers = slip_powers(state[OMEGA], rate[OMEGA], state[SPIN:], speed, model, run._work)
-    before = slip_powers(state[OMEGA], without[OMEGA], state[SPIN:], speed, bare_model, bare._work)
+    powers = slip_powers(state[OMEGA], state[SPIN:], speed, model, run._work)
+    before = slip_powers(state[OMEGA], state[SPIN:], speed, bare_model, bare._work)
     params, radius = run._params, run._work.loads[LOAD.radius]
     inertia = params.cage.inertia + params.rollers.mass * (np.array(radius) ** 2).sum()
     gained = state[OMEGA] * (rate - without)[OMEGA] * inertia + params.rollers.inertia * state[SPIN:] @ (rate - without)[SPIN:]
@@ -398,11 +396,3 @@ def test_a_bearing_by_designation_has_the_flanges_of_its_type_and_gives_them_up_
     assert not without.flanges.present and "flanges.end_clearance" not in {each.field for each in without.estimated}
     known = load_scene({**tree, "bearing": {"preset": "NUP 210", "flanges": {"end_clearance": "60 um"}}}).bearing
     assert known.flanges.end_clearance == pytest.approx(60e-6) and "flanges.end_clearance" not in {each.field for each in known.estimated}
-
-
-def test_friction_of_a_bearing_whose_rollers_slip_and_catch_up_is_a_mean_over_more_than_a_pitch():
-    pitch = new_block(2, 18)
-    pitch["shaft_power"], pitch["flange_power"] = 100.0, 99.0
-    assert repeats(pitch)
-    pitch["flange_power"] = 110.0
-    assert not repeats(pitch)

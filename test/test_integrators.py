@@ -1,14 +1,12 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""One-step methods and both loops around them on problems with closed forms; they know no bearings."""
+"""TR-BDF2 and both loops around them on problems with closed forms; they know no bearings."""
 
 import math
 
 import numpy as np
 import pytest
-from bearing_sim.numerics.rosenbrock2 import ERROR_ORDER, rosenbrock2_attempt
 from one_equation import factor, failing, no_limit, solve, step_taken
 
-from bearing_sim.numerics import tr_bdf2
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.time_stepping import (
     COUNT,
@@ -21,10 +19,12 @@ from bearing_sim.numerics.time_stepping import (
     new_counts,
     new_memory,
 )
+from bearing_sim.numerics.tr_bdf2 import ERROR_ORDER, tr_bdf2_attempt
 
 # model: (stiffness, fraction of the Jacobian that the method is given, absolute tolerance, time from which all is NaN, longest step that
 # can be solved); work: (jacobian, factored)
 STIFFNESS, GIVEN, TOLERANCE, NAN_FROM, SOLVABLE = range(5)
+_REGULAR_SPEED = 1e-3
 
 
 @kernel
@@ -67,8 +67,22 @@ def error_by_length(t, y, h, model, work, memory, counts):
 
 
 @kernel
-def keep_longest(h, y, model, work):
+def keep_longest(t, h, y, model, work):
     work[0] = max(work[0], h)
+
+
+@kernel
+def rubbed(t, y, model, work, rate):
+    # braked by dry friction, whose law is all but a step at rest
+    rate[0] = -model[STIFFNESS] * math.tanh(y[0] / _REGULAR_SPEED)
+    return True
+
+
+@kernel
+def rubbed_with_jacobian(t, y, model, work, rate):
+    rubbed(t, y, model, work, rate)
+    work[0] = -(model[STIFFNESS] - rate[0] * rate[0] / model[STIFFNESS]) / _REGULAR_SPEED
+    return True
 
 
 @kernel
@@ -82,20 +96,20 @@ def keep_correction(y, change, model, work):
 
 
 @kernel
-def rosenbrock2_step(t, y, h, model, work, memory, counts):
-    return rosenbrock2_attempt(rate_of, rate_and_jacobian, factor, solve, t, y, h, model, work, memory, counts)
+def tr_bdf2_step(t, y, h, model, work, memory, counts):
+    return tr_bdf2_attempt(rate_of, rate_and_jacobian, guess_known, factor, solve, norm, norm, keep_correction, t, y, h, model, work, memory, counts)
 
 
 @kernel
-def tr_bdf2_step(t, y, h, model, work, memory, counts):
-    return tr_bdf2.tr_bdf2_attempt(
-        rate_of, rate_and_jacobian, guess_known, factor, solve, norm, norm, keep_correction, t, y, h, model, work, memory, counts
+def rubbed_step(t, y, h, model, work, memory, counts):
+    return tr_bdf2_attempt(
+        rubbed, rubbed_with_jacobian, guess_known, factor, solve, norm, norm, keep_correction, t, y, h, model, work, memory, counts
     )
 
 
 @kernel
 def failing_step(t, y, h, model, work, memory, counts):
-    return rosenbrock2_attempt(failing, failing, factor, solve, t, y, h, model, work, memory, counts)
+    return tr_bdf2_attempt(failing, failing, guess_known, factor, solve, norm, norm, keep_correction, t, y, h, model, work, memory, counts)
 
 
 @kernel
@@ -106,31 +120,18 @@ def with_error_by_length(t, end, y, h, longest, budget, model, work, memory, cou
 
 
 @kernel
-def by_rosenbrock2(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(
-        rosenbrock2_step, ERROR_ORDER, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts
-    )
-
-
-@kernel
-def by_rosenbrock2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(
-        rosenbrock2_step, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts
-    )
-
-
-@kernel
 def by_tr_bdf2(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(
-        tr_bdf2_step, tr_bdf2.ERROR_ORDER, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts
-    )
+    return advance_in_steps(tr_bdf2_step, ERROR_ORDER, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_tr_bdf2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(
-        tr_bdf2_step, tr_bdf2.ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts
-    )
+    return advance_in_steps(tr_bdf2_step, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
+
+
+@kernel
+def by_rubbed_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
+    return advance_in_steps(rubbed_step, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
@@ -157,9 +158,6 @@ def across_an_impact_fixed(t, end, y, h, longest, budget, model, work, memory, c
     )
 
 
-ADAPTIVE, FIXED = [by_rosenbrock2, by_tr_bdf2], [by_rosenbrock2_fixed, by_tr_bdf2_fixed]
-
-
 def solution(run, stiffness=2.0, step=1e9, given=1.0, tolerance=1e-9, end=2.0, budget=10**7, start=1.0, nan_from=math.inf, solvable=math.inf):
     """Return value, status and counts at ``end``; ``step`` is the fixed or longest one."""
     y, counts, model = np.array([start]), new_counts(), np.array([stiffness, given, tolerance, nan_from, solvable])
@@ -172,14 +170,14 @@ def orders(run, stiffness=2.0, given=1.0, tolerance=1e-9):
     return [math.log2(a / b) for a, b in zip(errors, errors[1:])]
 
 
-@pytest.mark.parametrize("given", [1.0, 0.7, 0.0])
-def test_rosenbrock2_is_of_order_2_whatever_jacobian_it_is_given(given):
-    assert orders(by_rosenbrock2_fixed, given=given) == pytest.approx([2.0, 2.0], abs=0.2)
-
-
 @pytest.mark.parametrize("stiffness", [1.0, 2.0])
 def test_tr_bdf2_is_of_order_3(stiffness):
     assert orders(by_tr_bdf2_fixed, stiffness, tolerance=1.0) == pytest.approx([3.0, 3.0], abs=0.15)
+
+
+def test_tr_bdf2_is_of_order_3_without_a_jacobian_too():
+    # that of level slip leaves small couplings out: the iteration then takes longer, and the filter is another
+    assert orders(by_tr_bdf2_fixed, 2.0, given=0.0, tolerance=1e-9) == pytest.approx([3.0, 3.0], abs=0.15)
 
 
 def test_what_tr_bdf2_adds_to_its_stages_is_left_out_where_it_is_many_tolerances():
@@ -225,30 +223,28 @@ def test_tr_bdf2_evaluates_the_slope_anew_where_none_is_kept():
     assert y[0] == pytest.approx(math.cos(0.1) + 2.0 * math.exp(-0.2), abs=1e-4)
 
 
-def test_rosenbrock2_follows_a_stiff_solution_at_steps_a_million_times_its_time_constant():
-    value, status, counts = solution(by_rosenbrock2_fixed, 1e9, 0.02)
-    assert status == OK and counts[COUNT.steps] == 100
-    # Of first order here: the method has no derivative by time, so that a stiff solution lags by a part of the step.
-    assert abs(value - math.cos(2.0)) < 0.02
-    assert abs(solution(by_rosenbrock2_fixed, 1e9, 0.005)[0] - math.cos(2.0)) < 0.005
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
+def test_a_body_braked_by_dry_friction_comes_to_rest_in_steps_that_lead_across_the_bend_of_the_law(tolerance):
+    # Whole corrections lead to and fro between both flat parts of the law, and the iteration would not end.
+    value, status, counts = solution(by_rubbed_fixed, 10.0, 0.07, end=0.3, start=1.0, tolerance=tolerance)
+    assert status == OK and abs(value) < 0.1 * _REGULAR_SPEED
+    assert counts[COUNT.rejected_steps] < 2 and counts[COUNT.factorisations] < 100
 
 
 def test_tr_bdf2_follows_a_stiff_solution_without_lagging():
     assert solution(by_tr_bdf2_fixed, 1e9, 0.02)[0] == pytest.approx(math.cos(2.0), abs=1e-8)
 
 
-@pytest.mark.parametrize(("run", "error"), [(by_rosenbrock2_fixed, 1e-2), (by_tr_bdf2_fixed, 1e-5)])
-def test_a_stiff_transient_dies_in_one_long_step(run, error):
+def test_a_stiff_transient_dies_in_one_long_step():
     # L-stability: the factor of one step goes to zero with the stiffness
-    assert solution(run, 1e12, 1e-3, end=1e-3, start=5.0)[0] == pytest.approx(1.0, abs=error)
+    assert solution(by_tr_bdf2_fixed, 1e12, 1e-3, end=1e-3, start=5.0)[0] == pytest.approx(1.0, abs=1e-5)
 
 
-@pytest.mark.parametrize(("run", "more"), [(by_rosenbrock2, 5), (by_tr_bdf2, 4)])
-def test_error_stays_within_a_few_tolerances_and_work_grows_with_accuracy(run, more):
-    loose, _, loose_counts = solution(run, 50.0, tolerance=3e-3)
-    tight, _, tight_counts = solution(run, 50.0, tolerance=3e-6)
+def test_error_stays_within_a_few_tolerances_and_work_grows_with_accuracy():
+    loose, _, loose_counts = solution(by_tr_bdf2, 50.0, tolerance=3e-3)
+    tight, _, tight_counts = solution(by_tr_bdf2, 50.0, tolerance=3e-6)
     assert abs(loose - math.cos(2.0)) < 5e-3 and abs(tight - math.cos(2.0)) < 5e-6
-    assert tight_counts[COUNT.steps] > more * loose_counts[COUNT.steps]
+    assert tight_counts[COUNT.steps] > 4 * loose_counts[COUNT.steps]
 
 
 @pytest.mark.parametrize("first", [1.0, 1e-6])
@@ -263,20 +259,19 @@ def test_no_step_is_accepted_whose_error_is_above_the_tolerance(first):
 def test_the_last_step_ends_exactly_at_the_end():
     y, counts, memory = np.array([1.0]), new_counts(), new_memory(1)
     for k in range(10):
-        by_rosenbrock2(0.1 * k, 0.1 * (k + 1), y, 0.03, 0.03, 10**6, np.array([3.0, 1.0, 1e9, math.inf, 0.0]), np.zeros(2), memory, counts)
+        by_tr_bdf2(0.1 * k, 0.1 * (k + 1), y, 0.03, 0.03, 10**6, np.array([3.0, 1.0, 1e9, math.inf, 0.0]), np.zeros(2), memory, counts)
     assert y[0] == pytest.approx(math.cos(1.0), abs=2e-4)
     assert counts[COUNT.steps] == 40
 
 
-@pytest.mark.parametrize("run", [*ADAPTIVE, *FIXED])
+@pytest.mark.parametrize("run", [by_tr_bdf2, by_tr_bdf2_fixed])
 def test_a_step_budget_bounds_the_work(run):
     _, status, counts = solution(run, step=2e-3, budget=17)
     assert status == STEP_BUDGET and counts[COUNT.steps] + counts[COUNT.rejected_steps] == 17
 
 
-@pytest.mark.parametrize("run", ADAPTIVE)
-def test_nan_ends_with_a_status_not_a_hang(run):
-    _, status, counts = solution(run, nan_from=0.5, tolerance=1e-3)
+def test_nan_ends_with_a_status_not_a_hang():
+    _, status, counts = solution(by_tr_bdf2, nan_from=0.5, tolerance=1e-3)
     assert status == NON_FINITE and counts[COUNT.non_finite_steps] > 0
 
 
@@ -286,15 +281,14 @@ def test_kernels_that_fail_end_with_a_status_not_a_hang(run):
 
 
 def test_a_tolerance_that_cannot_be_met_takes_the_smallest_steps_and_counts_them():
-    value, status, counts = solution(by_rosenbrock2, 1e3, tolerance=1e-30, budget=200)
+    value, status, counts = solution(with_error_by_length, tolerance=1e-30, budget=200)
     assert status == STEP_BUDGET and counts[COUNT.smallest_steps] > 50 and math.isfinite(value)
 
 
-@pytest.mark.parametrize("run", FIXED)
-def test_fixed_steps_are_equal_and_no_longer_than_asked_for(run):
-    _, status, counts = solution(run, step=0.03)
+def test_fixed_steps_are_equal_and_no_longer_than_asked_for():
+    _, status, counts = solution(by_tr_bdf2_fixed, step=0.03)
     assert status == OK and counts[COUNT.steps] == math.ceil(2.0 / 0.03) and counts[COUNT.rejected_steps] == 0
-    assert solution(run, step=0.1)[2][COUNT.steps] == 20
+    assert solution(by_tr_bdf2_fixed, step=0.1)[2][COUNT.steps] == 20
 
 
 def test_a_fixed_step_that_cannot_be_solved_is_halved_and_counted():
@@ -317,8 +311,7 @@ def test_a_fixed_step_with_an_impact_in_it_is_fine_there_alone():
     assert counts[COUNT.steps] < 30 and counts[COUNT.rejected_steps] < 20
 
 
-@pytest.mark.parametrize("run", FIXED)
-def test_a_state_that_is_not_finite_ends_fixed_steps_with_a_status(run):
-    value, status, counts = solution(run, step=0.02, nan_from=0.5)
+def test_a_state_that_is_not_finite_ends_fixed_steps_with_a_status():
+    value, status, counts = solution(by_tr_bdf2_fixed, step=0.02, nan_from=0.5)
     assert status == NON_FINITE and value == pytest.approx(math.cos(0.5), abs=0.02)
     assert 0 < counts[COUNT.rejected_steps] < 12

@@ -241,11 +241,12 @@ def test_end_face_torque_is_laminar_below_and_turbulent_above_transition():
 def test_arrow_solution_is_that_of_the_dense_matrix(count):
     random = np.random.default_rng(3)
     jacobian, factored, shift = new_arrow(count), new_arrow(count), 0.3
-    jacobian.border[:], jacobian.rows[:] = random.normal(size=2), random.normal(size=(3, count))
+    jacobian.border[:], jacobian.rows[:] = random.normal(size=2), random.normal(size=(4, count))
     dense = np.zeros((count + 2, count + 2))
     dense[0, 1], dense[1, 1] = jacobian.border
     dense[1, 2:], dense[2:, 1] = jacobian.rows[ARROW.row], jacobian.rows[ARROW.column]
     dense[2:, 2:] = np.diag(jacobian.rows[ARROW.diagonal])
+    dense[2:] += np.outer(jacobian.rows[ARROW.pulled], dense[1])  # what follows the derivative of the speed
     right = random.normal(size=count + 2)
     x = right.copy()
     assert factor_shifted(jacobian, shift, factored)

@@ -42,11 +42,11 @@ def test_the_mean_stiffness_of_the_raceways_is_that_of_springs_in_series_along_t
 
     expected = stiffness(run._state)
     work.ring_stiffness[:] = 0.0
-    model_of_level.average_loads(1e-12, run._state, run._model(run.inputs, 1.0), work)  # the first instant counts as a whole
+    model_of_level.sum_up(0.0, 1e-12, run._state, run._model(run.inputs, 1.0), work)  # the first instant counts as a whole
     np.testing.assert_allclose(work.ring_stiffness, [expected[0, 0], expected[0, 1], expected[1, 1]], rtol=1e-6, atol=1e-9 * expected.max())
     turn = 2.0 * np.pi / run.sample["cage_speed"]
     work.ring_stiffness[:] = 0.0, 0.0, 1.0
-    model_of_level.average_loads(turn, run._state, run._model(run.inputs, 1.0), work)
+    model_of_level.sum_up(0.0, turn, run._state, run._model(run.inputs, 1.0), work)
     assert work.ring_stiffness[0] == pytest.approx((1.0 - np.exp(-1.0)) * expected[0, 0], rel=1e-6), "a mean over a cage turn"
 
 

@@ -17,6 +17,7 @@ from test_planar_reference import GROWN, TIGHTER
 from bearing_sim import Simulation, load_scene
 from bearing_sim.levels.spatial import jacobian
 from bearing_sim.levels.spatial import model as spatial
+from bearing_sim.levels.spatial.power import spatial_powers
 from bearing_sim.levels.spatial.state import AT_CAGE, BLOCK, BORDER, CAGE_COLUMNS, CAGE_ROWS, LOCAL, RING, RING_COLUMNS, RING_ROWS
 from bearing_sim.numerics.simd import LANES
 
@@ -234,10 +235,12 @@ def test_powers_are_those_of_the_plain_numpy_model(variant):
     new_reference, overrides, crown = VARIANTS[variant]
     reference, run = new_reference(), simulation(*overrides, crown=crown)
     for seed in range(3):
-        run._begin(rough_state(run, seed, 0.3), np.array([run.sample]))
+        run._begin(rough_state(run, seed, 0.3), np.array([run.sample]), float(run.sample["cage_speed"]))
+        model = run._model(run.inputs, 1.0)
+        spatial.rhs(0.0, run._state, model, run._work, np.zeros_like(run._state))
+        powers = spatial_powers(0.0, run._state, run.inputs.shaft_speed, model, run._work)
         work, heat = reference.powers(reference.forces(plain(run._state)))
         expected = {
-            "shaft_power": work["shaft"],
             "inner_sliding_power": heat["inner traction"],
             "outer_sliding_power": heat["outer traction"],
             "inner_rolling_power": heat["inner rolling"],
@@ -246,6 +249,7 @@ def test_powers_are_those_of_the_plain_numpy_model(variant):
             "windage_power": heat["mixture on the cage"],
         }
         found = run.sample
+        assert powers.shaft == pytest.approx(work["shaft"], rel=1e-9)
         for name, power in expected.items():
             assert found[name] == pytest.approx(power, rel=1e-9), name
         lost = sum(found[name] for name in ("land_power", "pocket_power", "damping_power"))
@@ -285,7 +289,7 @@ def test_pressures_are_those_of_hertz_under_laminae_of_the_plain_numpy_model(var
     reference, run = new_reference(), simulation("life.laminae=6", *overrides, crown=crown)
     life = run._params.life  # its laminae are shared by all bearings with such rollers
     run._params = run._params._replace(life=life._replace(laminae=life.laminae._replace(crown=np.zeros(6) if crown is None else crown)))
-    run._begin(rough_state(run, 4, 0.3), np.array([run.sample]))
+    run._begin(rough_state(run, 4, 0.3), np.array([run.sample]), float(run.sample["cage_speed"]))
     forces, plane = reference.forces(plain(run._state)), reference.planar
     for ring, curvature in (("inner", 1 / plane.roller_radius + 1 / plane.inner_radius), ("outer", 1 / plane.roller_radius - 1 / plane.low_radius)):
         pressure = np.sqrt(getattr(forces, ring) * reference.slices / plane.length * plane.modulus * curvature / (2 * np.pi))
