@@ -13,10 +13,8 @@ HALF_PITCH = 1.0 / (2.0 + 1.0 / (3.0 + GOLDEN))  # 0.4393
 QUARTER_PITCH = 1.0 / (3.0 + GOLDEN)  # 0.2764
 FIFTH_PITCH = 1.0 / (4.0 + GOLDEN)  # 0.2165
 POSITION_WEIGHT = 0.25  # of positions in the norm of a correction (assumption): contacts leave less of a correction than tractions do
-_PLAY_WEIGHT, _PLAY_SPEED = (
-    10.0,
-    0.8,
-)  # of play in the norm of a correction at rest, and speed of the pockets where it has half of it [m/s] (assumption)
+# Weight of play in the norm of a correction at rest, and speed of the pockets where it has half of it [m/s] (assumptions).
+_PLAY_WEIGHT, _PLAY_SPEED = 10.0, 0.8
 _RING_DEPTH, _LEAST_RING_ERROR = 0.7, 0.01  # see `ring_weight`; the second of the tolerance of positions (assumptions)
 _SLOWEST = 1e-3  # rad/s; what a cage at rest counts as (assumption)
 # The raceways' stiffness changes with every passing roller, which excites the ring where it oscillates n/2 times in a passing, n = 1 to 6.  Each

@@ -40,10 +40,8 @@ from bearing_sim.physics.profile import profile_depth, profile_force
 from bearing_sim.physics.raceway import contour_at
 
 _PITCH_POSITIONS, _MOST_PITCH_POSITIONS = 20, 320  # cage angles over one roller pitch for the equivalent loads, at first and at most
-_RELIEF_TIME, _SLOWEST = (
-    0.5,
-    1e-3,
-)  # time in which a roller gains or loses on the cage, times the cage speed, and least such speed [rad/s] (assumptions)
+# Time in which a roller gains or loses on the cage, times the cage speed, and least such speed [rad/s] (assumptions).
+_RELIEF_TIME, _SLOWEST = 0.5, 1e-3
 _MOMENT_CHANGE = 0.01  # by which twice as many may change the fourth power of a load; a life then changes by a per cent
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.steady.model import forget, new_work, solve_condition
-from bearing_sim.levels.steady.operating_point import ANSWER, new_orbit
+from bearing_sim.levels.steady.operating_point import ANSWER, RESOLUTION, new_orbit
 from bearing_sim.model.params import pack
 from bearing_sim.model.temperatures import local_model
 from bearing_sim.model.thermal_network import POWERS, fit_gaps, start_temperatures, thermal_network
@@ -32,8 +32,7 @@ _ROUNDS = 150
 _AGREED, _NEARLY = 1e-5, 3.0  # K; of temperatures before and after a round; the second where losses jump at the equilibrium
 _FARTHEST = 15.0  # K, of a round
 _SHORTEST, _LONGEST = 0.05, 4.0  # factors on the change of a round
-_ANGLES, _FINE = (33, 99, 199), (1e-8, 1e-8)  # of the operating point, refined until shaft power and losses agree
-_BALANCED = 5e-7  # of the shaft power
+_FINE = (1e-8, 1e-8)  # tolerances of the operating point, so that temperatures can agree
 _CELSIUS = 273.15
 
 
@@ -68,19 +67,10 @@ class _Balance:
     def __init__(self, scene: Scene, inputs: Sequence[float], slip: float):
         self.scene, self.inputs, self.slip, self.params = scene, inputs, slip, pack(scene)
         self.network = thermal_network(scene, self.params)
-        self._finer = list(_ANGLES)
-        self.refine()
+        self._work = new_work(self.params)._replace(orbit=new_orbit(scene.bearing.roller.count, tolerances=_FINE))
         self._thermal = physics.new_work()
         self._gaps = fit_gaps(scene)
         self._free = np.zeros(NODES)
-
-    def refine(self) -> bool:
-        """Solve operating points at more angles of a pitch from here on; return False where there are no more."""
-        if not self._finer:
-            return False
-        orbit = new_orbit(self.scene.bearing.roller.count, self._finer.pop(0), _FINE)
-        self._work = new_work(self.params)._replace(orbit=orbit)
-        return True
 
     def go(self, temperatures: np.ndarray) -> _Round:
         """Solve for the operating point at temperatures and settle the network with its losses."""
@@ -91,6 +81,8 @@ class _Balance:
         forget(self._work)
         if not solve_condition(speed, load_y, load_z, model, self._work, self.slip):
             return _Round(self._work.solved, np.zeros(len(POWERS)), temperatures, (math.nan, math.nan), clearance, "no operating point was found")
+        resolution = self._work.orbit.resolution  # no fewer angles than before: losses would jump from round to round
+        resolution[RESOLUTION.first] = max(resolution[RESOLUTION.first], resolution[RESOLUTION.angles] // 2)
         answer = self._work.solved.copy()
         losses = np.array([answer[getattr(ANSWER, name)] if hasattr(ANSWER, name) else 0.0 for name in POWERS])  # no supports at level steady
         cage = 0.5 * speed * (1.0 - params.raceways.diameter_ratio) * (1.0 - answer[ANSWER.cage_slip])
@@ -109,7 +101,6 @@ def thermal_equilibrium(
     inputs: Sequence[float],
     start: np.ndarray | None = None,
     agreed: float = _AGREED,
-    balanced: float = _BALANCED,
     slip: float = 0.0,
 ) -> Equilibrium:
     """Find the thermal equilibrium of a scene whose `heat.law` is network.
@@ -120,8 +111,6 @@ def thermal_equilibrium(
     inputs : shaft speed [rad/s], load y, load z [N] and the temperature of the oil that comes in [K]; `bearing_sim.simulation.Inputs` will do.
     start : temperatures of the nodes to begin with [K]; those of the scene's start where absent.
     agreed : largest difference of temperatures before and after the last round [K].
-    balanced : largest difference of the shaft power and the losses at the end, as a fraction of it; a small one needs operating points at many
-        angles of a pitch, which costs more than the search.
     slip : at which the cage begins, 0 in ideal rolling, 1 where it stands.
 
     Returns
@@ -141,11 +130,7 @@ def thermal_equilibrium(
             reason = f"{found.failure or 'temperatures are not finite'} {_warmth(now)}"
             break
         if largest < agreed:
-            power = float(found.answer[ANSWER.shaft_power])
-            if abs(power - found.losses.sum()) <= balanced * abs(power) or not balance.refine():
-                break
-            now = found.reached
-            continue
+            break
         if now.max() >= limit:
             reason = f"no thermal equilibrium below the limit of {limit - _CELSIUS:.4g} degC{_gone(gone, found.clearance)}"
             break

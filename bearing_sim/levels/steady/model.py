@@ -22,7 +22,19 @@ from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import OMEGA, THETA
 from bearing_sim.levels.steady.marching import march
-from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CREEP, FAILED, Orbit, basin, between, lag_at, new_orbit, solve_point
+from bearing_sim.levels.steady.operating_point import (
+    ACCELERATIONS,
+    ANSWER,
+    CREEP,
+    FAILED,
+    SCANNED,
+    Orbit,
+    basin,
+    between,
+    lag_at,
+    new_orbit,
+    solve_point,
+)
 from bearing_sim.levels.steady.table import LookUp, Table, covers, empty_table, look_up, new_look_up
 from bearing_sim.model.params import Lubrication
 from bearing_sim.model.sample import COLUMN, SCALARS
@@ -124,7 +136,7 @@ def solve_condition(shaft_speed: float, load_y: float, load_z: float, model, wor
     status = solve_point(start, to_standstill or start > 0.0, constant, work.bearing, work.orbit, work.solved)
     work.solutions[0] += 1
     if status == FAILED:
-        marched = march(start, constant, work.solved)
+        marched = march(_near_balance(start, work.orbit.scanned), constant, work.solved)
         work.solutions[1] += 1
         work.solutions[2] += marched == STEP_BUDGET
         if marched not in (OK, STEP_BUDGET):
@@ -132,6 +144,12 @@ def solve_condition(shaft_speed: float, load_y: float, load_z: float, model, wor
     asked[:] = here
     work.basin[:] = basin(*between(start, work.orbit.scanned), work.orbit.scanned)
     return True
+
+
+def _near_balance(start: float, scanned: np.ndarray) -> float:
+    """Return a slip near the balance to which a cage goes from one; the same where the scan knows of none."""
+    low, high = between(start, scanned)
+    return start if low < 0 or high == len(SCANNED) else 0.5 * float(SCANNED[low] + SCANNED[high])
 
 
 def supply(model, work: Work) -> bool:

@@ -143,6 +143,7 @@ class Orbit(NamedTuple):
     state: np.ndarray  # of level slip, shape (Z + 2,)
     rate: np.ndarray  # shape (Z + 2,)
     scanned: np.ndarray  # drives at `SCANNED` [rad/s^2], positive where the cage gains speed; NaN where not looked at or not found
+    slope: np.ndarray  # of the mean drive by the cage's speed where `_narrow` has found it in balance [1/s], shape (1,)
     skid: np.ndarray  # inertia and delay of the spins of a cage that skids, see `AnswerColumn`, shape (2,)
     before: np.ndarray  # the answer with half as many angles, shape (len(ANSWER),)
     resolution: np.ndarray  # see `Resolution`, shape (len(RESOLUTION),)
@@ -194,6 +195,7 @@ def new_orbit(
         state=np.zeros(count + 2),
         rate=np.zeros(count + 2),
         scanned=np.full(len(SCANNED), math.nan),
+        slope=np.full(1, math.nan),
         skid=np.full(2, math.nan),
         before=np.full(len(ANSWER), math.nan),
         resolution=np.array([angles, angles, math.nan, math.nan, math.nan]),
@@ -231,6 +233,7 @@ def at_angles(angles, count, orbit):
         orbit.state,
         orbit.rate,
         orbit.scanned,
+        orbit.slope,
         orbit.skid,
         orbit.before,
         orbit.resolution,
@@ -461,13 +464,25 @@ def _write_cage_columns(weight, sense, orbit, columns):
 
 @template
 def _write_cage_equations(weight, sense, orbit, columns, matrix):
-    """Write the equations of the cage's speeds, the spins' eliminated by the solutions in ``columns``; ``weight`` as of `_ripple`."""
+    """Write the equations of the cage's speeds, the spins' eliminated by the solutions in ``columns``; ``weight`` as of `_ripple`.
+
+    The derivatives of level slip leave out that loads change with the cage's speed by the centrifugal forces.  Where the drive hardly depends on the
+    speed otherwise, that is all that holds a cage: all angles alike get what the slope of the mean drive has more.
+    """
     angles, nodes = orbit.accelerations.shape[0], orbit.spins.shape[0]
+    more = orbit.slope[0]
+    for k in range(angles):
+        more -= orbit.damped[k] / angles
+    for m in range(nodes):
+        for k in range(angles):
+            more -= orbit.drives[m] * columns[m, 1 + k] / angles
+    if not math.isfinite(more):
+        more = 0.0
     for k in range(angles):
         interval = weight * _interval(k, sense, orbit)
         for other in range(angles):
             matrix[k, other] = 0.0
-        matrix[k, k] += ALPHA_0 - interval * (orbit.damped[k] - orbit.accelerations[k] / orbit.cage[k])
+        matrix[k, k] += ALPHA_0 - interval * (orbit.damped[k] + more - orbit.accelerations[k] / orbit.cage[k])
         matrix[k, (k - 1) % angles] += ALPHA_1
         matrix[k, (k - 2) % angles] += ALPHA_2
         matrix[k, (k - 3) % angles] += ALPHA_3
@@ -553,17 +568,23 @@ def _lighten(sense, model, work, orbit):
 def _narrow(within, low, drive_low, high, drive_high, ideal, sense, model, work, orbit):
     """Return the slip between two at which the cage is in balance, by the Illinois rule; NaN where spins were not found.
 
+    The slope of the drive there is that of the last two speeds.
+
     Parameters
     ----------
     within : how near, over 0.01 + slip.
     low, drive_low, high, drive_high : slips, and the drives there.
     """
-    slip, slope = high, (drive_high - drive_low) / (high - low)
+    slip, slope, beside, drive_beside = high, (drive_high - drive_low) / (high - low), high, drive_high
+    orbit.slope[0] = -slope / abs(ideal)
     for _ in range(_HALVINGS):
         slip = low - drive_low * (high - low) / (drive_high - drive_low)
         drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, _USUAL)
         if not math.isfinite(drive):
             return math.nan
+        if slip != beside and drive != drive_beside:
+            orbit.slope[0] = -(drive - drive_beside) / ((slip - beside) * abs(ideal))
+        beside, drive_beside = slip, drive
         if min(abs(drive / slope), abs(high - low)) < within * (1e-2 + abs(slip)):
             return slip
         if drive * drive_high > 0.0:
@@ -989,15 +1010,23 @@ def solve_point(start, to_standstill, model, work, orbit, answer):
                 return FAILED
             status, slip = STOPPED, SCANNED[SCANNED.shape[0] - 1]
             if high < SCANNED.shape[0]:
-                status = SETTLED
-                if not _settle(low, high, ideal, sense, model, work, view):
-                    return FAILED
+                status = SETTLED if _settle(low, high, ideal, sense, model, work, view) else FAILED
                 slip = 1.0 - view.speed[0] / ideal
+        if status == FAILED:  # more angles may resolve what these do not
+            if 2 * angles > most:
+                return FAILED
+            angles *= 2
+            continue
         if status == STOPPED:
             _mean_drive(ideal * (1.0 - slip), sense, model, work, view, _ROUGH)
         answer[ANSWER.cage_slip] = slip if status == SETTLED else 1.0
         left = _write_means(sense, model, work, view, answer)
         if not math.isfinite(left) or (status == SETTLED and left > _LEFT * _losses(answer)):
+            status = FAILED
+        if status == FAILED and 2 * angles <= most:
+            angles *= 2
+            continue
+        if status == FAILED:
             for column in range(answer.shape[0]):
                 answer[column] = math.nan
             return FAILED
