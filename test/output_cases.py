@@ -56,6 +56,7 @@ CASES = {
     "state export": Case(("state", "export", STATE)),
     "study deng2017": Case(("study", "deng2017", "--quick"), 300),
     "study misalignment": Case(("study", "misalignment", SCENE, "--points", "2", "--slices", "5", "--crown", "none"), 30),
+    "study resonances": Case(("study", "resonances", "deng2017_table1", "--points", "2"), 30),
     "study support": Case(("study", "support", "deng2017_table1", "--points", "2"), 30),
     "study situations": Case(("study", "situations", "--only", "skid", "--no-pictures"), 60),
     "study vibration": Case(("study", "vibration", "--runs", "1", "--healthy", "0"), 90),

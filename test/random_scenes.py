@@ -39,6 +39,20 @@ def random_scenes(seed: int, count: int, level: str, cold: bool = False) -> list
     return found
 
 
+def cold_start(temperature: float = 0.0, load: float = 3000.0, speed: float = 1500.0, level: str = "slip"):
+    """Return a gearbox bearing in thick oil, lightly loaded; temperature in degC, load in N, speed in rpm."""
+    return scene_from_mapping(
+        {
+            "name": "cold start",
+            "level": level,
+            "bearing": "NU 232",
+            "lubricant": {"oil": "ISO VG 320", "temperature": f"{temperature} degC", "supply": "oil_bath"},
+            "operating": {"shaft_speed": f"{speed} rpm", "radial_load": f"{load} N"},
+        },
+        "cold start",
+    )
+
+
 def _draw(generator: random.Random, each, level: str, cold: bool) -> dict:
     group = generator.choice(CLEARANCE_GROUPS)
     text = each.designation.text if group == "CN" else f"{each.designation.text}/{group}"

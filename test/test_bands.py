@@ -14,6 +14,7 @@ from bearing_sim.estimation.bands import QUANTITIES, BandEstimator, prior_draws,
 from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import ANSWERS, conditions_at, domain_of, fit_response, read_response, scene_fields, write_response
 from bearing_sim.levels.steady.table import empty_table
+from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.studies.response import design, obtain_response, settled_points
 from bearing_sim.studies.uncertainty import UncertaintyError
 
@@ -95,11 +96,14 @@ def test_a_response_says_where_it_has_no_answer(response, effects, column, end):
 
 def test_slip_changes_the_life_of_a_response_as_it_does_that_of_the_level(effects):
     inputs = Inputs(4000.0, 500.0, 150.0, 390.0)
-    ends = [settled(load_scene("deng2017_table1", [f"{FIELD}={value}", "level=steady"]), inputs) for value in (0.02, 0.05)]
+    # tolerances at which the level doubles the angles of a pitch until they change its lives by less than 5e-5
+    overrides = ["level=steady", *tolerance_overrides(0.01)]
+    ends = [settled(load_scene("deng2017_table1", [f"{FIELD}={value}", *overrides]), inputs) for value in (0.02, 0.05)]
     slips, lives = (np.array([[float(end[name]) for end in ends]]) for name in ("cage_slip", "rating_life"))
     condition = np.array([[4000.0, math.hypot(500.0, 150.0), 390.0, math.atan2(150.0, 500.0)]])
     assert slips[0, 1] - slips[0, 0] > 0.01
-    assert effects.by_slip(condition, slips)[0, 1] == pytest.approx(math.log(lives[0, 1] / lives[0, 0]), rel=1e-5)
+    # the level takes means over a pitch in time and of a cage that ripples, the response over angles of an even one, fewer of them
+    assert effects.by_slip(condition, slips)[0, 1] == pytest.approx(math.log(lives[0, 1] / lives[0, 0]), rel=5e-3)
 
 
 @pytest.mark.parametrize(("method", "within"), [("iso281", 1e-9), ("iso16281", 2e-4)])

@@ -15,7 +15,7 @@ from bearing_sim import Simulation, load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.studies.deng2017 import claims as deng2017_claims
 from bearing_sim.studies.deng2017.claims import CLAIMS, FAILS, HOLDS, IN_PART, Course, judge
-from bearing_sim.studies.deng2017.study import D_VALUE, LEVELS, LOAD, LOW, SPEED, STUDIES, plan_study
+from bearing_sim.studies.deng2017.study import D_VALUE, LEVELS, LOAD, LOW, ROUNDNESS, SPEED, STUDIES, plan_study
 from bearing_sim.sweep.grid import point_count, read_axis
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, read_table
@@ -49,7 +49,7 @@ def column(table, x, y, **fixed):
 
 def test_every_claim_is_judged_at_both_levels_and_every_figure_of_the_paper_is_drawn(about):
     judged = {(each["claim"], each["level"]) for each in about["claims"]}
-    assert judged == {(0, "elastic ring")} | {(number, level) for number in range(1, 10) for level in LEVELS}
+    assert judged == {(0, "elastic ring")} | {(number, level) for number in range(1, len(CLAIMS) + 1) for level in LEVELS}
     told = " ".join(each["title"] for each in about["figures"])
     assert all(re.search(rf"\b{number}\b", told) for number in (3, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23))
     assert "Trajectories" in told and "design question" in told
@@ -105,6 +105,9 @@ def test_claims_at_level_slip_follow_from_the_tables(tables, about):
     assert np.all(np.diff(column(tables["table2", "slip"], SPEED, "cage_slip")[1]) > 0) and verdicts[9] == HOLDS
     (second,) = [each for each in about["claims"] if (each["claim"], each["level"]) == (2, "slip")]
     assert second["verdict"] == IN_PART and "not 10 %" in second["off"], "slip and life rise, but past 10 % sooner"
+    assert column(tables["d_value", "slip"], D_VALUE, "rating_life")[1].min() > 300 and verdicts[10] == FAILS
+    roundness = "bearing.outer_raceway.roundness"
+    assert column(tables["roundness", "slip"], roundness, "rating_life")[1].min() > 300 and verdicts[11] == FAILS
     assert verdicts[6] == IN_PART  # an inner ring that is free to move hardly notices
 
 
@@ -267,7 +270,7 @@ def test_a_folder_without_a_study_is_refused_with_what_to_do(tmp_path):
 
 
 def test_every_claim_names_its_figure_in_words_of_the_paper():
-    assert [number for number, *_ in CLAIMS] == list(range(1, 10))
+    assert [number for number, *_ in CLAIMS] == list(range(1, 12))
     assert all(figures and len(says) > 30 for _, figures, says, _ in CLAIMS)
 
 
@@ -279,6 +282,28 @@ def test_slip_that_rises_ever_faster_holds_and_its_slope_is_told_in_points_for_a
     columns = tuple(Column(name, "", "") for name in rows[0])
     found = deng2017_claims.low_radius({("low_radius", "slip"): Table(columns, rows, {})}, "slip")
     assert found.verdict == HOLDS and found.gives.endswith("slope of slip 0.4 to 1.2 points/um")
+
+
+@pytest.mark.parametrize(
+    ("judge_life", "name", "x", "values", "short"),
+    [
+        (deng2017_claims.short_life_of_low_lobes, "d_value", D_VALUE, (0.08, 0.09, 0.095, 0.12), (True, True, False, False)),
+        (deng2017_claims.short_life_of_uneven_lobes, "roundness", ROUNDNESS, (0.0, 6.0, 8.0, 10.0), (False, False, True, True)),
+    ],
+)
+def test_a_life_below_300_h_is_claimed_of_low_or_uneven_lobes_alone(judge_life, name, x, values, short):
+    def judged(lives):
+        rows = [{x: value, "rating_life": life, "inner_equivalent_load": 1.0} for value, life in zip(values, lives)]
+        table = Table(tuple(Column(each, "", "") for each in rows[0]), rows, {})
+        radii = zip((34.86, 34.862, 34.864), (200, 320, 440))
+        grid = [{D_VALUE: 0.08, LOW: low, "rating_life": life, "inner_equivalent_load": 1.0} for low, life in radii]
+        region = Table(tuple(Column(each, "", "") for each in grid[0]), grid, {})
+        return judge_life({(name, "slip"): table, ("map", "slip"): region}, "slip")
+
+    assert judged([290.0 if each else 310.0 for each in short]).verdict == HOLDS
+    long = judged([310.0] * 4)
+    assert long.verdict == FAILS and "life is 310 h at least" in long.off and long.why
+    assert judged([290.0] * 4).verdict == IN_PART
 
 
 def test_claims_are_numbered_as_they_are_listed():

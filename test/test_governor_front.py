@@ -34,9 +34,9 @@ def setting(level, detail, factor, slip, life=0.01, overrides=()):
 
 
 STEADY, SLIP = setting("steady", "table", 1860.0, 1.9, 0.12), setting("slip", "tolerances x 1", 15.0, 1.95, 0.12)
-COARSE = setting("planar", "tolerances x 3", 6.9, 0.06, 0.012, ["integration.relative_tolerance=0.09"])
+COARSE = setting("planar", "tolerances x 3", 6.9, 0.06, 0.012, ["integration.relative_tolerance=0.03"])
 PLANAR = setting("planar", "tolerances x 1", 5.2, 0.047, 0.008)
-FINE = setting("planar", "tolerances x 0.1", 1.2, 0.003, 0.001, ["integration.relative_tolerance=0.003"])
+FINE = setting("planar", "tolerances x 0.1", 1.2, 0.003, 0.001, ["integration.relative_tolerance=0.001"])
 STEP = setting("planar", "step 40 us", 7.5, 0.05, 0.01, ["integration.fixed_step=40 us"])
 SPATIAL = setting("spatial", "tolerances x 1", 1.0, 0.047, 0.008)
 
@@ -70,12 +70,12 @@ def test_a_corrected_table_that_is_not_on_disk_is_not_fallen_to(monkeypatch):
 def test_a_setting_that_cannot_run_at_the_conditions_of_the_scene_is_left_out():
     impossible = COARSE._replace(detail="impossible", overrides=("integration.fixed_step=9 ms",))
     made = governor_of(Simulation(scene()), [PLANAR, impossible, COARSE])
-    assert [one.scene.integration.relative_tolerance for one in made._ladder] == [0.03, 0.09]
+    assert [one.scene.integration.relative_tolerance for one in made._ladder] == [0.01, 0.03]
     assert made._settings == [PLANAR, COARSE]
 
 
 def test_a_setting_that_is_hardly_faster_is_not_worth_a_change():
-    near = setting("planar", "near", 6.0, 0.05, overrides=["integration.relative_tolerance=0.05"])
+    near = setting("planar", "near", 6.0, 0.05, overrides=["integration.relative_tolerance=0.02"])
     assert "planar, near" not in names(settings_to_fall(scene(), front(PLANAR, near, COARSE)))
 
 
@@ -86,11 +86,11 @@ def test_levels_that_were_not_measured_follow_with_unknown_errors():
 
 
 def test_a_scene_whose_own_setting_was_not_measured_falls_to_coarser_settings_of_its_level_before_lower_levels():
-    own = scene("integration.relative_tolerance=0.01")
+    own = scene("integration.relative_tolerance=0.005")
     fallen = settings_to_fall(own, ALL)
     assert fallen[0].name == "planar, as in the scene" and math.isnan(fallen[0].errors["slip"])
     assert fallen[0].overrides == complete_overrides(own) and names(fallen[1:]) == names([PLANAR, COARSE, STEADY])
-    between = settings_to_fall(scene("integration.relative_tolerance=0.05"), ALL)
+    between = settings_to_fall(scene("integration.relative_tolerance=0.02"), ALL)
     assert names(between[1:]) == names([COARSE, STEADY])
 
 
@@ -101,7 +101,7 @@ def test_settings_that_may_be_slower_than_one_that_was_not_measured_are_left_out
 
 
 def test_a_fixed_step_that_was_not_measured_falls_to_settings_that_are_faster_than_a_longer_step():
-    fast = setting("planar", "tolerances x 10", 9.0, 0.1, overrides=["integration.relative_tolerance=0.3"])
+    fast = setting("planar", "tolerances x 10", 9.0, 0.1, overrides=["integration.relative_tolerance=0.1"])
     kept = front(STEADY, COARSE, PLANAR, STEP, fast)
     assert names(settings_to_fall(scene("integration.fixed_step=20 us"), kept)[1:]) == names([fast, STEADY])
     assert names(settings_to_fall(scene("integration.fixed_step=80 us"), kept)[1:]) == names([STEADY])
@@ -224,7 +224,7 @@ def test_a_governor_of_measured_settings_has_their_tolerances():
     simulation = Simulation(scene())
     made = governor_of(simulation, [PLANAR, COARSE])
     assert made._ladder[0] is simulation
-    assert [one.scene.integration.relative_tolerance for one in made._ladder] == [0.03, 0.09]
+    assert [one.scene.integration.relative_tolerance for one in made._ladder] == [0.01, 0.03]
 
 
 def test_the_settings_of_a_record_are_read_again():

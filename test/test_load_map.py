@@ -60,6 +60,19 @@ def test_jump_ahead_leaves_nothing_of_the_past():
     assert (~np.isnan(chart.loads()).all(axis=0)).sum() == 1
 
 
+def test_columns_narrower_than_samples_show_what_lies_between_their_neighbours_and_a_gap_stays_empty():
+    chart = LoadMap(20.0, rolling=False, rollers=18)  # 0.125 s a column
+    for time in [*np.arange(0.0, 10.01, 0.5), *np.arange(15.0, 20.01, 0.5)]:
+        block = synthetic_block(SCENE, np.array([time]))
+        block["inner_load"] = 100.0 * time
+        chart.add(block)
+    loads, left = chart.loads(), np.arange(COLUMNS) * 20.0 / COLUMNS
+    known = ~np.isnan(loads[0])
+    assert known[left <= 10.0].all() and known[(left >= 15.0)].all() and not known[(left > 10.6) & (left < 14.9)].any()
+    inside = left <= 10.0
+    np.testing.assert_allclose(loads[3, inside], 100.0 * left[inside], atol=1e-6)
+
+
 def test_unknown_loads_pass_for_none():
     block = standing_load(np.linspace(0.01, 1.0, 500))
     block["inner_load"][:] = np.nan

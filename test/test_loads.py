@@ -10,7 +10,11 @@ from click.testing import CliRunner
 
 from bearing_sim import Simulation, load_scene
 from bearing_sim.cli.main import main
+from bearing_sim.model.sample import NODE_OBSERVABLES
+from bearing_sim.scene.loader import scene_to_yaml
+from bearing_sim.studies.friction import compare
 from bearing_sim.studies.statics import statics
+from bearing_sim.sweep.point import run_until_settled
 
 SPATIAL = ("level=spatial", "bearing.roller.crown=iso_log")
 
@@ -33,6 +37,56 @@ def test_life_in_hours_falls_with_speed_and_is_endless_at_rest():
     assert found("operating.shaft_speed=100 rpm").lives.basic > 100 * found().lives.basic
     nothing = found("operating.shaft_speed=0 rpm", "operating.radial_load=0 N", "bearing.outer_raceway.low_radius=34.9 mm")
     assert not nothing.inner.any() and math.isinf(nothing.lives.modified) and not any(np.isnan(nothing.ring))
+
+
+MOTOR = {  # warms up by 20 K, at which its oil has half the viscosity
+    "name": "motor",
+    "level": "steady",
+    "bearing": "NU 210/C3",
+    "mounting": {"shaft": {"fit": "j6"}, "housing": {"fit": "H7"}},
+    "lubricant": {"oil": "ISO VG 68", "supply": "oil_bath", "temperature": "40 degC"},
+    "operating": {"shaft_speed": "3000 rpm", "radial_load": "5 kN"},
+    "heat": {"law": "network", "ambient_temperature": "20 degC"},
+    "life": {"a_iso": "bath_17_14"},
+}
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        pytest.param((), id="network"),
+        pytest.param(("bearing.outer_raceway={lobes: 5, d_value: 60 um}",), id="lobed"),
+        pytest.param(("heat={law: given, inner_ring: 70 degC, outer_ring: 60 degC}", "operating.load_angle=40 deg"), id="given"),
+    ],
+)
+def test_loads_and_friction_are_those_of_a_run_at_the_same_temperatures(overrides):
+    scene = load_scene(MOTOR, overrides)
+    last, still, friction = run_until_settled(scene).window[-1], statics(scene, 40), compare(scene, "2")
+    for name in NODE_OBSERVABLES:
+        for value in (float(still.sample[0][name]), friction.temperatures[name]):
+            assert value == pytest.approx(float(last[name]), abs=0.05, nan_ok=True)
+    assert still.lives.viscosity_ratio == pytest.approx(float(last["viscosity_ratio"]), rel=2e-3)
+    assert still.lives.lnmr == pytest.approx(float(last["lnmr"]), rel=0.01)  # it does not slip
+    assert still.clearance.running == pytest.approx(float(last["running_clearance"]), abs=0.05e-6)
+    assert friction.model == pytest.approx(float(last["shaft_power"]), rel=2e-3)
+
+
+def test_where_there_is_no_equilibrium_the_commands_say_why(tmp_path):
+    path = tmp_path / "hot.yaml"
+    path.write_text(scene_to_yaml(load_scene(MOTOR, ["heat.limit=50 degC"])))
+    for command in (["run"], ["loads"], ["study", "friction", "--series", "2"]):
+        failed = CliRunner().invoke(main, [*command, str(path)])
+        assert failed.exit_code == 1 and "no thermal equilibrium below the limit of 50 degC" in failed.stderr, command
+
+
+@pytest.mark.parametrize(("bearing", "lobes", "d_value", "load"), [("N 1016/C4", 9, 60, 1600), ("NU 219", 7, 40, 800), ("NU 317", 7, 120, 5000)])
+def test_lives_are_means_over_a_whole_pitch(bearing, lobes, d_value, load, monkeypatch):
+    raceway = f"bearing.outer_raceway={{lobes: {lobes}, d_value: {d_value} um}}"
+    scene = load_scene(MOTOR | {"bearing": bearing, "heat": {"law": "none"}}, [raceway, f"operating.radial_load={load} N"])
+    by_error = statics(scene, 40).lives
+    monkeypatch.setattr("bearing_sim.studies.statics._PITCH_POSITIONS", 640)
+    by_many = statics(scene, 40).lives
+    assert (by_error.l10r, by_error.lnmr) == pytest.approx((by_many.l10r, by_many.lnmr), rel=4e-3)
 
 
 def test_misalignment_moves_pressure_up_and_life_down():

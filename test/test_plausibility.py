@@ -124,3 +124,9 @@ def test_the_mass_of_a_cage_is_judged_by_a_ring_less_its_pockets():
     inside, outside, pocket = 33.5e-3, 37.7e-3, 11e-3 + 2 * cage.pocket_clearance
     volume = math.pi * (outside**2 - inside**2) * 14e-3 - 16 * pocket * 12e-3 * (outside - inside)
     assert f"for about {1e6 * volume:.3g} cm^3" in found[0], found
+
+
+def test_a_machine_slower_than_the_speed_from_which_slip_counts_is_told_so():
+    (finding,) = [each for each in plausibility(motor("operating.shaft_speed=11 rpm")) if "slip_from_speed" in each]
+    assert "191 rpm" in finding and "11 rpm" in finding
+    assert not [each for each in plausibility(motor("operating.shaft_speed=11 rpm", "thresholds.slip_from_speed=5 rpm")) if "slip_from" in each]

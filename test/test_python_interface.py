@@ -173,6 +173,7 @@ def test_bands_are_those_of_the_uncertainty_study_without_its_shares(paper):
     assert result.bands["cage_slip"] == whole.bands["cage_slip"] and result.bands["modified_rating_life"] == whole.bands["life_hours"]
     assert result.bands["cage_slip"].low < result.cage_slip < result.bands["cage_slip"].high
     assert result.to_pandas().loc["cage_slip", "low"] == result.bands["cage_slip"].low and "90 % of cases between" in repr(result)
+    assert "h (no dimension is uncertain)" in repr(result)
     assert settle(paper).bands == {}
     with pytest.raises(UncertaintyError, match="the scene has no uncertain fields"):
         settle(load_scene(paper, [f"uncertainty.{each.field}=null" for each in paper.uncertainty]), bands=True)

@@ -151,6 +151,10 @@ def test_arrays_of_earlier_versions_lack_their_last_rows_and_others_are_refused(
     found = read("load y, z, oil temperature, land eccentricity", [1.0, 2.0, 300.0, 0.5])
     assert [found[name] for name in ("load_y", "load_z", "oil_temperature", "land_eccentricity")] == [1.0, 2.0, 300.0, 0.5]
     assert np.isnan(found["flange_load"]) and np.isnan(found["inner_flange_force"])
-    for label, numbers in (("temperature, load", [1.0, 2.0, 300.0, 0.5]), ("load y", np.ones(8))):
+    assert np.isnan(found["inner_load_maximum"]) and np.isnan(found["outer_load_maximum"])
+    before_maxima = "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load"
+    found = read(before_maxima, np.arange(7.0))
+    assert found["flange_load"] == 6.0 and np.isnan(found["inner_load_maximum"]) and np.isnan(found["outer_load_maximum"])
+    for label, numbers in (("temperature, load", [1.0, 2.0, 300.0, 0.5]), ("load y", np.ones(10))):
         with pytest.raises(RecordingError, match="/operating_point has"):
             read(label, numbers)

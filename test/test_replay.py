@@ -3,6 +3,7 @@
 
 import json
 import math
+import re
 import signal
 import subprocess
 import sys
@@ -230,11 +231,33 @@ def test_progress_never_goes_back_and_ends_at_the_end(tmp_path):
 
 
 def test_slip_statistics_weigh_by_time_and_leave_out_the_standing_shaft():
-    result = Replay(1.0, slip=[0.1, 0.4, math.nan, 5.0], speed=[100.0, 100.0, 0.0, 0.5], weight=[3.0, 1.0, 9.0, 9.0], life=[1.0])
+    result = Replay(1.0, slip=[0.1, 0.4, math.nan, 5.0], speed=[100.0, 100.0, 0.0, 19.0], weight=[3.0, 1.0, 9.0, 9.0], life=[1.0])
     figures = result.slip_statistics()
     assert figures["mean"] == pytest.approx((3 * 0.1 + 0.4) / 4)
     assert (figures["median"], figures["maximum"]) == (0.1, 0.4)
     assert math.isnan(Replay(1.0, slip=[math.nan], speed=[0.0], weight=[1.0]).slip_statistics()["mean"])
+
+
+def test_the_scene_says_from_which_speed_on_slip_counts():
+    samples = {"slip": [0.1, 0.4], "speed": [100.0, -30.0], "weight": [1.0, 1.0]}
+    assert Replay(1.0, **samples).slip_statistics()["maximum"] == 0.4 and Replay(1.0, **samples).seconds_above(0.2) == 1.0
+    slower = Replay(1.0, **samples, slip_from_speed=50.0)
+    assert slower.slip_statistics()["maximum"] == 0.1 and slower.seconds_above(0.2) == 0.0
+
+
+def risen(interval, over):
+    """Return outputs of a slip that rises from 0 to 6 % over a time [s] in the middle of ten seconds."""
+    times = np.arange(interval, 10.0, interval)
+    slips = 0.06 * np.clip((times - 5.0) / over, 0.0, 1.0)
+    return Replay(10.0, time=times.tolist(), slip=slips.tolist(), speed=[1000.0] * len(times), weight=[interval] * len(times))
+
+
+def test_outputs_that_are_coarser_than_the_motion_are_told_from_those_of_a_slow_one():
+    jump = risen(0.3, 0.04).jump()
+    assert (jump.slip, jump.interval) == pytest.approx((0.06, 0.3)) and 5.0 < jump.time < 5.4
+    assert risen(0.005, 0.04).jump() is None and risen(0.3, 4.0).jump() is None
+    gap = Replay(10.0, time=[1.0, 2.0, 8.0, 9.0], slip=[0.0, 0.0, 0.1, 0.1], speed=[1000.0] * 4, weight=[1.0] * 4)
+    assert gap.jump() is None, "in a gap nothing was simulated"
 
 
 def test_life_is_simulated_time_over_damage():
@@ -244,6 +267,21 @@ def test_life_is_simulated_time_over_damage():
 
 def command(*arguments):
     return CliRunner().invoke(main, ["replay", *map(str, arguments)])
+
+
+@pytest.mark.timeout(120)
+def test_replay_and_report_tell_the_same_slip_of_a_log_that_ends_at_rest(tmp_path):
+    log, out, page = tmp_path / "m.mcap", tmp_path / "r.mcap", tmp_path / "r.html"
+    assert CliRunner().invoke(main, ["mission", "-o", str(log), "--duration", "3"]).exit_code == 0
+    ran = command(log, "--scene", "deng2017_table1", "-o", out, "--json")
+    report = json.loads(ran.stdout)
+    assert 0.0 < report["cage_slip"] < report["cage_slip_maximum"] < 0.2
+    assert report["outputs_coarse_at"]["interval"] == pytest.approx(0.02) and "coarser than the motion" in ran.stderr
+    assert CliRunner().invoke(main, ["report", str(out), "-o", str(page)]).exit_code == 0
+    text = re.sub(r"<[^>]*>", " ", page.read_text())
+    shown = f"mean {100 * report['cage_slip']:.2f} %, largest {100 * report['cage_slip_maximum']:.2f} %"
+    assert re.search(rf"cage slip while turning\s+{re.escape(shown)}", text)
+    assert re.search(r"characteristic frequencies at the end\s+none: the shaft is slower than 191 rpm", text)
 
 
 @pytest.mark.timeout(120)
@@ -449,5 +487,5 @@ def test_the_table_of_a_replay_spans_the_speeds_and_the_oil_temperatures_of_the_
 def test_the_time_below_a_minimum_load_counts_while_the_shaft_turns_and_grows_with_the_speed():
     result = Replay(10.0)
     result.speed, result.load, result.weight = [0.0, 0.5, 100.0, -100.0, 50.0], [0.0, 0.0, 900.0, 1100.0, 600.0], [1.0, 2.0, 4.0, 8.0, 16.0]
-    assert result.seconds_below(lambda speeds: 10.0 * np.abs(speeds)) == (4.0, 28.0), "at rest and below a hundredth of the speed nothing counts"
+    assert result.seconds_below(lambda speeds: 10.0 * np.abs(speeds)) == (4.0, 28.0), "at rest and below 20 rad/s nothing counts"
     assert Replay(1.0).seconds_below(lambda speeds: speeds) == (0.0, 0.0)

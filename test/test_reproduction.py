@@ -147,7 +147,9 @@ def test_a_recording_that_begins_in_the_middle_of_a_run_is_gone_on_from(tmp_path
     scene = load_scene("deng2017_table1")
     told, differences = repeated(live_run(scene, tmp_path / "run.mcap", from_start=False), tmp_path)
     assert told["starts"] == ["sample"] and told["samples"] == 300
-    assert worst(differences, "bearing_joints", "damage", "roller_places") < 1e-4
+    assert worst(differences, "bearing_joints", "roller_places") < 1e-4
+    # lives follow from running means of powers of the loads, of which a sample has two of eight: they differ by a per cent until a turn is over
+    assert worst(differences, "damage") < 5e-4
     assert worst(differences, "cage_slip", "roller_loads") < 1e-2  # goes on from observables, not from the whole state
 
 

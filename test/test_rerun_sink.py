@@ -17,7 +17,7 @@ from waiting import wait_for
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.view.plots import RunSeries, log10_hours
+from bearing_sim.view.plots import RunSeries, log10_hours, series
 from bearing_sim.view.run_view import FileFrames, LiveFrames
 from bearing_sim.view.sink import RerunSink
 from bearing_sim.view.viewer import is_complete
@@ -102,6 +102,16 @@ def test_slip_of_a_shaft_that_hardly_turns_does_not_choose_the_axis():
     series.write(block)
     assert series.ranges()["/slip/cage"] == pytest.approx((0.0, 6.0), abs=0.2)
     assert series.ranges()["/load/radial"] == (800.0, 800.0)
+
+
+def test_near_rest_there_is_no_slip_and_the_largest_load_is_that_since_the_sample_before():
+    block = synthetic_block(SCENE, TIMES, speeds=(10.0, 4000.0))
+    block["inner_load_maximum"], block["outer_load_maximum"] = 5000.0, np.nan  # an earlier version recorded none
+    block["cage_slip"][0] = -1e9
+    found = series(block, 20.0)
+    assert math.isnan(found["/slip/cage"][0]) and np.isfinite(found["/slip/cage"][block["shaft_speed"] >= 20.0]).all()
+    np.testing.assert_allclose(found["/loads/inner_largest"], 5000.0)
+    np.testing.assert_allclose(found["/loads/outer_largest"], block["outer_load"].max(axis=1))
 
 
 def test_threshold_lines_stand_at_the_scenes_thresholds(tmp_path):

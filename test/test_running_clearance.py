@@ -280,6 +280,7 @@ def test_a_cage_that_turns_grows_into_the_lands_around_it_as_a_ring_does():
     [
         (["bearing.ring_growth.centrifugal=true"], "bearing.ring_growth: no longer a field; bearing.dimensions_at: cold"),
         (["mounting.shaft.fit=k5"], "running bearing, which fits no longer change"),
+        (["heat={law: given, shaft: 160 degC}"], "heat.shaft: the dimensions are those of the running bearing, which the temperature of the shaft"),
         ([COLD, "bearing.inner_raceway.bore_radius=null"], "bore_radius: missing; an inner ring whose dimensions are cold"),
         ([COLD, "mounting.shaft={interference: 5 um, bore_radius: 26 mm}"], "bore_radius: 25.0135 mm; expected between the shaft's bore"),
         ([COLD, "mounting.housing={interference: 5 um, outside_radius: 30 mm}"], "expected between the raceway"),

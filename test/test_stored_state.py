@@ -146,6 +146,14 @@ def test_totals_agree_with_a_plain_count_sample_by_sample():
     assert days[0].monitored_seconds == pytest.approx(99.9, abs=0.11)
 
 
+def test_a_machine_that_is_made_to_turn_slower_than_slip_counts_runs_without_a_slip():
+    n = 100
+    block = samples(np.arange(1, n + 1) * 1.0, np.zeros(n), np.full(n, 1.0), np.full(n, 0.2), np.ones(n), np.ones(n), np.ones(n))
+    state, times_ns = StoredState("A1", {}), np.arange(1, n + 1) * SECOND
+    state.take(block, times_ns, np.ones(n), Criteria(1.2, 20.0, 20e3))
+    assert state.totals.running_seconds == 100.0 and state.totals.slip_seconds == [0.0, 0.0, 0.0, 100.0] and state.totals.largest_slip is None
+
+
 # -- files
 
 

@@ -99,9 +99,11 @@ def test_a_point_is_what_a_single_run_says(level):
         run.advance(0.24)
         block = run.advance(0.06, samples=333)
         assert row["cage_slip"] == pytest.approx(100 * block["cage_slip"].mean(), rel=2e-3)
-        assert row["rating_life"] == pytest.approx(block["rating_life"].mean(), rel=2e-3)
-        assert row["inner_load_maximum"] == pytest.approx(block["inner_load"].max(), rel=5e-3)
-        assert row["outer_load_maximum"] == pytest.approx(block["outer_load"].max(), rel=5e-3)
+        # lives of level slip are running means over a turn of the cage, of some forty steps: they scatter by 3 %, and 20 turns are in a window
+        assert row["rating_life"] == pytest.approx(1.0 / (1.0 / block["rating_life"]).mean(), rel=2e-3 if level == "steady" else 1e-2)
+        for name in ("inner_load", "outer_load"):
+            largest = block[name].max()
+            assert largest <= block[f"{name}_maximum"].max() and row[f"{name}_maximum"] == pytest.approx(largest, rel=5e-3)
         assert row["shaft_power"] == pytest.approx(block["shaft_power"].mean(), rel=5e-3)
         assert row["status"] == "ok" and row["simulated"] >= 0.3
 
@@ -172,12 +174,15 @@ def test_a_row_says_means_extremes_and_lives_as_damage_adds_up(monkeypatch):
         window[name] = 1.0
     window["cage_slip"], window["rating_life"] = [0.1, 0.3], [100.0, 300.0]
     window["inner_load"], window["outer_load"] = [[0.0, 0.0, 0.0, 5.0], [0.0, 2.0, 3.0, 7.0]], [[9.0] * 4, [9.0, 9.0, 9.0, 11.0]]
-    pitch, work = window[1:], Counters(*[0] * 6)
-    monkeypatch.setattr(point, "run_until_settled", lambda scene, duration, longest: Outcome("settled", 0.5, 0.1, "", 0.2, window, pitch, work))
+    window["inner_load_maximum"], window["outer_load_maximum"] = [8.0, 7.5], [9.5, 12.0]  # some of them between the samples
+    window["shaft_power"] = 100.0  # with what is accelerated; a row has the sum of the twelve losses, 1 W each
+    work = Counters(*[0] * 6)
+    monkeypatch.setattr(point, "run_until_settled", lambda scene, duration, longest: Outcome("settled", 0.5, 0.1, "", 0.2, window, work))
     row = point_row(load_scene("deng2017_table1"))
     assert (row["cage_slip_minimum"], row["cage_slip"], row["cage_slip_maximum"]) == pytest.approx((10.0, 20.0, 30.0))
     assert row["rating_life"] == pytest.approx(150.0), "half of the time at 100 h and half at 300 h uses as much up as 150 h do"
-    assert row["loaded_rollers"] == 2.0 and (row["inner_load_maximum"], row["outer_load_maximum"]) == (7.0, 11.0)
+    assert row["loaded_rollers"] == 2.0 and (row["inner_load_maximum"], row["outer_load_maximum"]) == (8.0, 12.0)
+    assert row["shaft_power"] == 12.0 and row["seal_power"] == 1.0
 
 
 def test_an_axis_of_numbers_in_si_is_the_axis_of_the_text():

@@ -264,7 +264,7 @@ WIRE = {
     "roller_tilts": ("inclination: outwards, along the orbit", [("roller_tilt", "rad"), ("roller_skew", "rad")]),
     "roller_loads": ("ring", [("inner_load", "N"), ("outer_load", "N")]),
     "operating_point": (
-        "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load",
+        "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load, largest inner and outer roller load",
         [
             ("load_y", "N"),
             ("load_z", "N"),
@@ -273,6 +273,8 @@ WIRE = {
             ("inner_flange_force", "N"),
             ("outer_flange_force", "N"),
             ("flange_load", "N"),
+            ("inner_load_maximum", "N"),
+            ("outer_load_maximum", "N"),
         ],
     ),
     "predicted_temperatures": (

@@ -145,7 +145,9 @@ def test_the_shear_stress_of_a_film_is_found_by_few_corrections_whatever_heats_i
 def test_a_run_with_each_law_settles(name):
     run = Simulation(load_scene("deng2017_table1", LAWS[name]))
     slips = run.advance(0.4, samples=400)["cage_slip"][300:]
-    assert 0.0 < slips.mean() < 0.4 and np.ptp(slips) < 0.01
+    # with a traction at rest (mu_0) rollers roll by the radii at their contacts, which let the cage lead an ideal one by 1e-4 at any tolerance
+    least = -2e-4 if name == "kragelskii with mu_0" else 0.0
+    assert least < slips.mean() < 0.4 and np.ptp(slips) < 0.01
 
 
 @pytest.mark.parametrize(

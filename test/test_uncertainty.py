@@ -11,9 +11,11 @@ from click.testing import CliRunner
 from recordings import steady_log, write_log
 from scipy import stats
 
+from bearing_sim.cli.estimation import band_rows, live_band_rows
 from bearing_sim.cli.main import main
+from bearing_sim.model.plausibility import left_out
 from bearing_sim.scene.loader import SceneError, load_scene, scene_from_yaml, scene_names, scene_to_yaml
-from bearing_sim.scene.uncertainty import Range, quantities, value_at, with_values
+from bearing_sim.scene.uncertainty import Range, quantities, value_at, with_values, without_dimensions
 from bearing_sim.studies.uncertainty import UncertaintyError, band, design, distribution, indices, lowest_level, settled, stretches, study
 from bearing_sim.sweep.tasks import Journal
 
@@ -299,6 +301,8 @@ def test_the_command_tells_bands_shares_errors_and_sources(tmp_path):
 def test_the_command_prints_a_table_and_refuses_in_one_line():
     shown = bands("--samples", 4)
     assert shown.exit_code == 0 and "cage slip: 5, 50, 95 % quantile" in shown.output and "lubricant.mixture_fraction" in shown.output
+    text = " ".join(shown.output.replace("│", " ").split())
+    assert "h (no dimension is uncertain); scene's own values" in text and "left out lubricant.rolling_resistance is none" in text
     refused = bands("--samples", 4, "--set", "lubricant.temperature=60 degC")
     assert refused.exit_code == 2 and "excludes the scene's own value, 60 degC" in refused.output
     assert bands("--level", "cheap").exit_code == 2 and bands("--picture", "bands.gif").exit_code == 2
@@ -320,6 +324,18 @@ def test_bands_over_a_log_say_for_how_long_its_inputs_are_unknown(tmp_path):
     report = json.loads(found.stdout)
     assert report["unknown_seconds"] == pytest.approx(2.0) and report["log_seconds"] == pytest.approx(6.0)
     assert "life is at most" in report["verdict"] and "input_limits.maximum_load" in report["verdict"] and "warning" in found.stderr
+
+
+def test_a_band_says_that_it_contains_no_dimension_unless_one_decides_the_clearance():
+    note = " (no dimension is uncertain)"
+    assert without_dimensions(ranges()) == note == without_dimensions(["bearing.roller.count", "bearing.inner_raceway.ring_mass"])
+    for field in ("outer_raceway.low_radius", "outer_raceway.d_value", "inner_raceway.radius", "roller.diameter", "clearance"):
+        assert without_dimensions([*ranges(), f"bearing.{field}"]) == ""
+    assert without_dimensions(one.field for one in load_scene("deng2017_table1_cold").uncertainty) == ""
+    rows = dict(live_band_rows({"rating_life": (383.0, 390.0), "cage_slip": (0.05, 0.09)}, load_scene("deng2017_table1")))
+    assert rows["rating life, 5 to 95 %"] == f"383 h to 390 h{note}" and note not in rows["cage slip, 5 to 95 %"]
+    cold = load_scene("deng2017_table1_cold")
+    assert all(note not in text for _, text in band_rows({"remaining_life": (194.0, 816.0)}, cold)) and left_out(cold) == []
 
 
 def test_a_run_prints_bands_on_request():

@@ -8,6 +8,7 @@ import pytest
 from rerun_files import last_value, views_in, written
 from synthetic_run import synthetic_block
 
+from bearing_sim.model.losses import CAUSES as LOSSES
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.blueprint import blueprint
 from bearing_sim.view.drawings import CAUSES, TURNS, OrbitPath, causes_of
@@ -51,6 +52,11 @@ def test_orbit_is_in_micrometres_with_z_upwards(tmp_path):
     assert last_value(chunks, "/cage_orbit/text", "Arrows2D:labels") == ["e/c = 0.667, c = 150 µm"]
 
 
+def test_the_powers_shown_are_that_of_the_shaft_and_all_losses():
+    losses = {name for names in LOSSES.values() for name in names}
+    assert {f"{cause}_power" for cause in CAUSES} == losses | {"shaft_power"}
+
+
 def test_series_of_powers_and_eccentricity_are_the_samples(tmp_path):
     block = whirling_block()
     chunks = written(tmp_path / "run.rrd", PLANAR, block)
@@ -72,11 +78,12 @@ def test_bars_are_as_long_as_the_mean_of_their_newest_powers(tmp_path):
 
 
 def test_a_scene_shows_the_losses_that_it_can_have():
-    absent = {"inner_rolling", "outer_rolling", "seal", "support"}
+    absent = {"inner_rolling", "outer_rolling", "seal", "flange", "support"}
     assert CAUSES.keys() - causes_of(PLANAR).keys() == absent
     more = [
         "lubricant.rolling_resistance=hydrodynamic",
         "bearing.seals={law: constant_moment, moment: 0.1 N*m}",
+        "bearing.flanges={outer: both}",
         "support={elastic: true, shaft: {mass: 2 kg}}",
     ]
     assert causes_of(load_scene("deng2017_table1", ["level=planar", *more])).keys() == CAUSES.keys()

@@ -5,13 +5,13 @@ import math
 
 import click
 
-from bearing_sim.cli.lives import life_rows
-from bearing_sim.cli.options import json_option, picture_option, scene_argument, set_option
+from bearing_sim.cli.lives import life_rows, temperature_report, temperature_rows
+from bearing_sim.cli.options import json_option, picture_option, scene_argument, set_option, verbose_option
 from bearing_sim.cli.outputs import OutputFile, WritingCommand
 from bearing_sim.cli.reporting import (
-    FailedRun,
     UsageError,
     announce_compilation,
+    as_failed_run,
     as_file_error,
     as_usage_error,
     print_json,
@@ -45,49 +45,40 @@ def scenes(as_json):
     "--slices", type=click.IntRange(5, 400), metavar="N", help="Slices per roller, for their loads and the life [default: life.laminae of the scene]."
 )
 @picture_option("Draw the loads")
+@verbose_option
 @json_option
-def loads(scene_name, overrides, slices, picture, as_json):
+def loads(scene_name, overrides, slices, picture, verbose, as_json):
     """Show the quasi-static load distribution of SCENE under its constant conditions, without cage slip and with roller 0 on the load line.
 
+    With heat.law network the bearing is in thermal equilibrium, as in `bearing-sim run`; where there is none, the command fails and says why.
     A moment or a misalignment requires level spatial, in the scene or by --set level=spatial.
     """
     from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.simulation import IntegrationError
 
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
     warn_of_scene(scene)
     announce_compilation()
+    from bearing_sim.estimation.grading import graded
     from bearing_sim.model.validity import outside
     from bearing_sim.studies.statics import statics
 
     slices = slices or scene.life.laminae
-    try:
+    with as_failed_run(IntegrationError, ArithmeticError):
         found = statics(scene, slices)
-    except ArithmeticError as error:
-        raise FailedRun(str(error)) from None
     if picture is not None:
         from bearing_sim.studies.statics import draw
 
         operating = scene.operating
         with as_file_error(), picture.draft() as draft:
             draw(draft, f"{scene.name}: {operating.radial_load:g} N, {operating.shaft_speed * 30 / math.pi:.6g} rpm", found)
-    warnings = outside(scene, _still_sample(scene, found))
+    warnings = graded(scene, outside(scene, found.sample), found.sample[0])
     if as_json:
         print_json({**_report_loads(scene, slices, found), **warnings_report(scene, warnings), "picture": picture and str(picture)})
     else:
         _print_loads(scene, slices, found)
-    warn_of_limits(scene, warnings)
-
-
-def _still_sample(scene, found):
-    """Return a block of one sample with the loads, the pressures and the viscosity ratio of a static balance."""
-    from bearing_sim.model.validity import still_sample
-
-    sample = still_sample(scene)
-    sample["inner_load"], sample["outer_load"] = found.inner, found.outer
-    sample["reference_load"], sample["viscosity_ratio"] = found.lives.reference_load, found.lives.viscosity_ratio
-    sample["inner_pressure"], sample["outer_pressure"] = found.inner_pressure, found.outer_pressure
-    return sample
+    warn_of_limits(scene, warnings, verbose)
 
 
 def _report_loads(scene, slices, found) -> dict:
@@ -106,6 +97,7 @@ def _report_loads(scene, slices, found) -> dict:
         "outer_pressure_maximum_mpa": 1e-6 * found.outer_pressure,
         "equivalent_loads": list(found.equivalent_loads),
         **_clearance(scene, found),
+        **temperature_report(found.sample[0]),
         **_lives(scene, slices, found),
         "azimuths_deg": [math.degrees(azimuth) for azimuth in found.azimuths],
         "inner_loads": found.inner.tolist(),
@@ -151,6 +143,7 @@ def _print_loads(scene, slices, found) -> None:
             (f"ring tilt ({held})", lean(1e3 * found.tilt[0], found.tilt[1], "mrad")),
             ("moment on the ring", lean(found.moment[0], found.moment[1], "N m")),
             clearance_row(scene, _clearance(scene, found)),
+            *temperature_rows(temperature_report(found.sample[0])),
             *life_rows(scene, _lives(scene, slices, found)),
         ],
     )

@@ -56,7 +56,7 @@ def calibrate(
     from a table by `bearing-sim import-csv`. Only settled operation is used. Fields that the data cannot determine are refused.
     """
     scene = _scene(log, scene_name, overrides)
-    warn_of_scene(scene)
+    warn_of_scene(scene, before_results=False)
     names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic, "cage_speed_measured": cage_topic}
     measured, lines, unknown = _measured(log, scene, names, joint, stamps, cage_joint)
     announce_compilation(scene)

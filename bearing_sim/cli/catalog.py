@@ -160,8 +160,9 @@ def _show(designation: str, picture, as_json) -> None:
 @click.option("--load", required=True, metavar="QUANTITY", help="Radial load, such as 5kN.")
 @click.option("--temperature", metavar="QUANTITY", help="Temperature of bearing and oil, such as 70degC [default: computed from the losses].")
 @click.option("--level", type=level_type, default="slip", show_default=True, help="Level of fidelity.")
+@click.option("--mass", metavar="QUANTITY", help="Mass of shaft and rotor that moves with the inner ring [default: estimated].")
 @click.option("-o", "--out", type=OutputFile(), metavar="SCENE.yaml", help="File to write [default: standard output].")
-def new(bearing, oil, grease, supply, speed, load, temperature, level, out):
+def new(bearing, oil, grease, supply, speed, load, temperature, level, mass, out):
     """Write the scene of a bearing by DESIGNATION in an oil or a grease, with a comment for every choice that was made for you.
 
     Then: bearing-sim run SCENE.yaml.
@@ -175,7 +176,7 @@ def new(bearing, oil, grease, supply, speed, load, temperature, level, out):
     if supply is not None:
         lubricant["supply"] = {"law": supply}
     with as_usage_error(SceneError):
-        text, scene = new_scene(Wish(bearing, lubricant, speed, load, temperature, level), default_name(out and out.path), command_line())
+        text, scene = new_scene(Wish(bearing, lubricant, speed, load, temperature, level, mass), default_name(out and out.path), command_line())
     if out is None:
         click.echo(text, nl=False)
         return

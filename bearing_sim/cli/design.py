@@ -208,34 +208,34 @@ def _beside(scene, limits):
 def _report_design(scene, designed, beside, files) -> dict:
     from bearing_sim.model.validity import counted
     from bearing_sim.studies.deng2017.design import radii_within
-    from bearing_sim.studies.design import KINDS
+    from bearing_sim.studies.design import D_VALUE, KINDS, STATE
 
     about = designed.grid.about
     report = {name: about[name] for name in ("level", "verify_level", "life")} | about["wanted"]
-    report = {"scene": scene.name} | report | {"raceways": len(designed.grid.rows)}
+    report = {"scene": scene.name} | report | {"state": STATE, "raceways": len(designed.grid.rows)}
     report["warnings"] = counted(row["warnings"] for row in designed.grid.rows)
     report["without_result"] = sum(row["status"] in ("failed", "refused") for row in designed.grid.rows)
     report["unsettled"] = sum(row["status"] == "unsettled" for row in designed.grid.rows)
     report["unsettled_checks"] = sum(check.status == "unsettled" for check in designed.checks)
+    report["beyond_the_map"] = {kind: designed.open_ends(kind) for kind in KINDS}
     for kind in KINDS:
         bands = [band for band in designed.bands if band.found.kind == kind]
         report[kind] = [band.found._asdict() | {"verdict": band.verdict, "verified": band.verified and band.verified._asdict()} for band in bands]
         if beside is not None:
             for name, borders in (("", [band.found for band in bands]), ("_verified", designed.recommended(kind))):
-                found = radii_within(borders, beside[1])
-                report[f"{kind}{name}_within_deng"] = found and {"low_from": found[0], "low_to": found[1]}
+                report[f"{kind}{name}_within_deng"] = radii_within(borders, designed.grid.values(D_VALUE), beside[1])._asdict()
     report["widest"] = designed.widest and designed.widest._asdict()
     report["checks"] = [check._asdict() for check in designed.checks]
     return report | {"deng2017": beside and {"d_value": beside[1], "low_radius": beside[2]}, "files": list(map(str, files))}
 
 
 def _print_design(report) -> None:
-    from bearing_sim.studies.design import NOMINAL, WORST
+    from bearing_sim.studies.design import KINDS, condition_name
 
     verify_level = report["verify_level"]
     verified = f", verified at level {verify_level}" if verify_level else ", not verified at a higher level"
     wanted = f"slip below {report['slip_below']:g} %, life above {report['life_above']:g} h ({report['life']})"
-    click.echo(f"{report['scene']} at level {report['level']}{verified}: {wanted}")
+    click.echo(f"{report['scene']} at level {report['level']}{verified}: {wanted}; {report['state']}")
     for point in report["points"]:
         oil = f", oil {point['oil_temperature_degC']:g} degC" if "oil_temperature_degC" in point else ""
         click.echo(f"  {100 * point['share']:.4g} % of the time {point['shaft_speed_rpm']:g} rpm, {point['radial_load']:g} N{oil}")
@@ -244,18 +244,19 @@ def _print_design(report) -> None:
     for name, what, count in (("unsettled", "raceways", report["raceways"]), ("unsettled_checks", "verified raceways", len(report["checks"]))):
         if report[name]:
             click.echo(f"{report[name]} of {count} {what} had not settled in some of their runs; the table has the reasons")
-    nominal = "at every operating point" if report["points"] else "at the scene's speed and load"
-    for kind, condition in ((NOMINAL, nominal), (WORST, f"in the worst case of {report['spread']}")):
+    for kind in KINDS:
+        condition = condition_name(kind, report)
         if not report[kind]:
             click.echo(f"{condition}: no raceway in the map meets both limits")
             continue
         _print_bands(condition, report[kind], report["level"], verify_level)
+        if report["beyond_the_map"][kind]:
+            click.echo(f"  {report['beyond_the_map'][kind]}")
         if report["deng2017"]:
             (left, right), (low, high) = report["deng2017"]["d_value"], report["deng2017"]["low_radius"]
             for name, at in (("", report["level"]), *((("_verified", verify_level),) if verify_level else ())):
-                found = report[f"{kind}{name}_within_deng"]
-                span = f"R_low {found['low_from']:.5f} to {found['low_to']:.5f} mm" if found else "none in the map"
-                click.echo(f"  for every D from {left} to {right} mm, at {at}: {span}; Deng 2017 has {low:.4f} to {high:.4f} mm")
+                found = report[f"{kind}{name}_within_deng"]["text"]
+                click.echo(f"  for every D from {left} to {right} mm, at {at}: {found}; Deng 2017 has {low:.4f} to {high:.4f} mm")
     _print_checks(report)
     warn(report["warnings"])
     click.echo(", ".join(report["files"]))

@@ -70,18 +70,25 @@ def estimation_with_progress(scene):
     return LiveEstimation(scene, response_with_progress(scene)) if scene.estimation.is_asked else None
 
 
-def band_rows(statistics) -> list[tuple[str, str]]:
-    """Return the rows of a table for the bands of a replay (`bearing_sim.runtime.replay.Replay.band_statistics`)."""
-    return _rows(_SHOWN, statistics)
+def band_rows(statistics, scene) -> list[tuple[str, str]]:
+    """Return the rows of a table for the bands of a replay of a scene (`bearing_sim.runtime.replay.Replay.band_statistics`)."""
+    return _rows(_SHOWN, statistics, scene)
 
 
-def live_band_rows(newest) -> list[tuple[str, str]]:
-    """Return the rows of a table for the newest bands of a run (`bearing_sim.estimation.live.LiveEstimation.newest`)."""
-    return _rows(_NEWEST, newest)
+def live_band_rows(newest, scene) -> list[tuple[str, str]]:
+    """Return the rows of a table for the newest bands of a run of a scene (`bearing_sim.estimation.live.LiveEstimation.newest`)."""
+    return _rows(_NEWEST, newest, scene)
 
 
-def _rows(shown, bands) -> list[tuple[str, str]]:
-    return [(words, text(*bands[name])) for name, (words, text) in shown.items() if name in bands and not math.isnan(sum(bands[name]))]
+def _rows(shown, bands, scene) -> list[tuple[str, str]]:
+    from bearing_sim.scene.uncertainty import ranges_of, without_dimensions
+
+    note = without_dimensions(one.field for one in ranges_of(scene))
+    return [
+        (words, f"{text(*bands[name])}{note if name.endswith('life') else ''}")
+        for name, (words, text) in shown.items()
+        if name in bands and not math.isnan(sum(bands[name]))
+    ]
 
 
 def band_numbers(bands) -> dict[str, list[float]]:

@@ -28,6 +28,7 @@ _STUDIES = {
     "damage": Entry("study:damage", "Compare the damage of a measured run between levels."),
     "misalignment": Entry("study:misalignment", "Edge pressure, tilt, skew and life against misalignment of the inner ring."),
     "support": Entry("study:support", "Response over speed with a support of shaft and outer ring, and without."),
+    "resonances": Entry("study:resonances", "Where the passing rollers make the inner ring vibrate, over speed, and in which states it stays."),
     "situations": Entry("study:situations", "Pictures of six situations, from start to fault, in rerun."),
     "clearance": Entry("study:clearance", "Running clearance over speed and load, thermal runaway, and what is lost at which speed."),
     "slices": Entry("study:slices", "Convergence of level spatial with the number of slices, its quadrature, and the cost of both."),

@@ -14,6 +14,7 @@ PICTURES = (".png", ".svg", ".pdf")
 
 level_type = click.Choice(LEVELS)
 set_option = click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; can be repeated.")
+verbose_option = click.option("--verbose", is_flag=True, help="Also print limits of validity that are passed without effect, and assumptions.")
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 quick_option = click.option("--quick", is_flag=True, help="Measure almost nothing, to check that everything works.")
 

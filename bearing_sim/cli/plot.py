@@ -86,14 +86,14 @@ def _band_of(course, samples):
     import numpy as np
 
     from bearing_sim.cli.uncertainty import SEED
-    from bearing_sim.model.turning import turns
+    from bearing_sim.model.turning import stands_text, turns
     from bearing_sim.scene.uncertainty import without_range
     from bearing_sim.studies.uncertainty import UncertaintyError, rounded_up, study
 
     times, conditions, scene = course.conditions[:, 0], course.conditions[:, 1:], course.scene
-    turning = turns(conditions[:, 0])
+    turning = turns(conditions[:, 0], scene.thresholds.slip_from_speed)
     if not turning.any():
-        raise UsageError(f"{course.name}: the shaft does not turn, so there is no slip and no range of it; leave out --band")
+        raise UsageError(f"{course.name}: {stands_text(scene.thresholds.slip_from_speed)}, so there is no range of its slip; leave out --band")
     times, conditions = times[turning], conditions[turning]
     if np.all(conditions[:, 3] == scene.lubricant.temperature):
         conditions[:, 3] = math.nan  # the scene's own, which may be uncertain

@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim replay``: run the model on a recorded log, or compute a recorded run again."""
 
+import math
 import time
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -9,7 +10,7 @@ import click
 
 from bearing_sim.cli.estimation import band_numbers, band_rows, response_with_progress
 from bearing_sim.cli.lives import hours
-from bearing_sim.cli.options import allow_outside_option, channel_sources, json_option, log_options, set_option
+from bearing_sim.cli.options import allow_outside_option, channel_sources, json_option, log_options, set_option, verbose_option
 from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
 from bearing_sim.cli.reporting import (
     FailedRun,
@@ -48,6 +49,7 @@ from bearing_sim.cli.reporting import (
 )
 @click.option("--serial", default="", metavar="NUMBER", help="Serial number of that bearing; a state of another one is refused.")
 @log_options
+@verbose_option
 @json_option
 def replay(
     logs,
@@ -62,6 +64,7 @@ def replay(
     joint,
     stamps,
     longest_gap,
+    verbose,
     as_json,
     **channels,
 ):
@@ -85,6 +88,7 @@ def replay(
         return
     import numpy as np
 
+    from bearing_sim.estimation.grading import graded
     from bearing_sim.inputs.log import InputLogError, read_input_log
     from bearing_sim.inputs.profile import judge
     from bearing_sim.recording.writer import COMMAND, McapSink
@@ -132,16 +136,31 @@ def replay(
             start_up = time.perf_counter() - started
             progress = stack.enter_context(progress_bar(f"replaying {', '.join(names_of)}", seconds))
             result = replay(scene, course, recording, watchers, rate, progress, keeper=keeper, response=response, **choice)
+    warnings = graded(scene, result.warnings, result.worst_samples, ("slip", "life"))
     for event in keeper.news(0.0) + keeper.events(0.0) if keeper is not None else []:
         click.echo(f"{event.level.name.lower().replace('ok', 'note')}: {event.text}", err=True)
+    jump = result.jump() if scene.level != "steady" else None  # which has no motion of its own: its slip follows the inputs
+    if jump is not None:
+        finer = float(f"{10.0 / jump.interval:.1g}")
+        click.echo(
+            f"note: the outputs are coarser than the motion: cage slip changes by {100 * jump.slip:.3g} points within the {jump.interval:.3g} s "
+            f"before {jump.time:.6g} s, drawn as a straight line; take finer outputs with --rate, such as --rate {finer:g}",
+            err=True,
+        )
     if as_json:
         stored = {} if keeper is None else {"state": keeper.summary()}
         print_json(
-            {**_report(result, course, recorded, scene, out), **stored, **warnings_report(scene, result.warnings), "start_up_seconds": start_up}
+            {
+                **_report(result, course, recorded, scene, out),
+                "outputs_coarse_at": jump and jump._asdict(),
+                **stored,
+                **warnings_report(scene, warnings),
+                "start_up_seconds": start_up,
+            }
         )
     else:
         _print(result, course, recorded, scene, out, keeper)
-    warn_of_limits(scene, result.warnings)
+    warn_of_limits(scene, warnings, verbose)
     if result.given_up:
         raise FailedRun(result.given_up)
     if course.unknown_seconds:
@@ -233,6 +252,7 @@ def _report(result, course, recorded, scene, out) -> dict:
 def _print(result, course, recorded, scene, out, keeper) -> None:
     from bearing_sim.inputs.log import summary_lines
     from bearing_sim.model.plausibility import minimum_load
+    from bearing_sim.model.turning import stands_text
 
     slip = {name: f"{100 * value:.2f} %" for name, value in result.slip_statistics().items()}
     spread = f"mean {slip['mean']}, median {slip['median']}, 95 % below {slip['p95']}, 99 % below {slip['p99']}, largest {slip['maximum']}"
@@ -244,15 +264,21 @@ def _print(result, course, recorded, scene, out, keeper) -> None:
         rows.append(("log ends early", recorded.unfinished))
     rows += [
         ("level", scene.level),
-        ("cage slip while turning", spread),
+        (
+            "cage slip while turning",
+            f"none: {stands_text(scene.thresholds.slip_from_speed)}" if math.isnan(result.slip_statistics()["mean"]) else spread,
+        ),
         (
             "life under these inputs",
             f"{'at most ' * bool(course.verdict)}{hours(result.life_hours)} by {symbol}; "
             f"least rating life at an instant {hours(result.least_rating_life)}",
         ),
-        *band_rows(result.band_statistics()),
+        *band_rows(result.band_statistics(), scene),
         ("life used", f"{'at least ' * bool(course.verdict)}{100 * result.damage:.4g} %"),
-        ("below the minimum load", _below(*result.seconds_below(lambda speeds: minimum_load(scene, speeds)[0]), minimum_load(scene)[1])),
+        (
+            "below the minimum load",
+            _below(*result.seconds_below(lambda speeds: minimum_load(scene, speeds)[0]), minimum_load(scene)[1], scene.thresholds.slip_from_speed),
+        ),
         ("inputs unknown", course.unknown_event.text if course.unknown_seconds else "0 s"),
         ("refused inputs", f"{refused} (of {course.messages})"),
         ("gaps", f"{len(course.gaps)}, {result.gap_seconds:.4g} s not simulated"),
@@ -269,10 +295,12 @@ def _print(result, course, recorded, scene, out, keeper) -> None:
     print_table(f"replay of {recorded.path.name} on {scene.name}", rows)
 
 
-def _below(below: float, turning: float, rule: str) -> str:
+def _below(below: float, turning: float, rule: str, slip_from_speed: float) -> str:
     """Return in words for how long [s] the load was below the makers' minimum while the shaft turned."""
+    from bearing_sim.model.turning import stands_text
+
     if not turning:
-        return "the shaft does not turn"
+        return stands_text(slip_from_speed)
     unit, factor = ("h", 3600.0) if turning > 7200.0 else ("s", 1.0)
     return f"{below / factor:.4g} {unit} of {turning / factor:.4g} {unit} that the shaft turns, {100 * below / turning:.3g} % ({rule})"
 

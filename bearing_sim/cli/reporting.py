@@ -166,21 +166,23 @@ def _without_folder(argument: str) -> str:
     return f"{begin}{sign}{path.name}" if is_file else argument
 
 
-def announce_compilation(scene=None) -> None:
+def announce_compilation(scene=None, with_states: bool = False) -> None:
     """Announce on stderr that compiling will take a while, if what is needed has not been compiled in this version of the model yet.
 
     Parameters
     ----------
     scene : that is going to run; what it needs is known then.  If it begins in thermal equilibrium, its level and the search are compiled side
         by side here.
+    with_states : as of `bearing_sim.runtime.precompilation.is_compiled_for`; what they need is compiled at its side, too.
     """
     from bearing_sim.numerics.compilation import CACHE_FOLDER
     from bearing_sim.runtime.precompilation import Build, compile_all, is_compiled_for
 
-    if is_compiled_for(scene) if scene is not None else any(CACHE_FOLDER.rglob("*.nbi")):
+    if is_compiled_for(scene, with_states) if scene is not None else any(CACHE_FOLDER.rglob("*.nbi")):
         return
     click.echo("compiling the model, once per version: about half a minute ...", err=True)
-    if scene is not None and scene.heat.law == "network" and scene.level != "steady":  # whose code is nearly the search's
+    searches = scene is not None and (with_states or scene.heat.law == "network")
+    if searches and scene.level != "steady":  # whose code is nearly the search's
         for _ in compile_all([Build(scene.level), Build("slip", equilibrium=True)]):
             pass
 
@@ -199,32 +201,49 @@ def warn(lines: Iterable[str]) -> None:
         click.echo(f"warning: {line}", err=True)
 
 
-def warn_of_scene(scene) -> None:
-    """Print on stderr what is implausible about a scene, and which limits of laws it exceeds whatever it is used for."""
-    warn(_warnings_of_scene(scene))
+def warn_of_scene(scene, before_results: bool = True) -> None:
+    """Print on stderr what is implausible about a scene, and which limits of laws it exceeds whatever it is used for.
 
-
-def _warnings_of_scene(scene) -> list[str]:
+    Parameters
+    ----------
+    scene : of the command.
+    before_results : whether `warn_of_limits` follows, which knows more about those whose effect is computed.
+    """
     from bearing_sim.model.plausibility import plausibility
-    from bearing_sim.model.validity import scene_exceedances
 
-    return [*plausibility(scene), *(each.text for each in scene_exceedances(scene))]
+    warn([*plausibility(scene), *(each.text for each in _told_of_scene(scene, before_results))])
 
 
-def warn_of_limits(scene, exceedances: Iterable) -> None:
-    """Print on stderr which laws are used outside of their ranges, except for what `warn_of_scene` has printed.
+def _told_of_scene(scene, before_results: bool = True) -> list:
+    """Return the exceedances of a scene that `warn_of_scene` prints."""
+    from bearing_sim.model.validity import Grade, scene_exceedances
+
+    return [each for each in scene_exceedances(scene) if each.grade == Grade.WARNING and not (before_results and each.law.variations)]
+
+
+def warn_of_limits(scene, exceedances: Iterable, verbose: bool = False) -> None:
+    """Print on stderr which laws are used outside of their ranges and move a result, except for what `warn_of_scene` has printed.
 
     Parameters
     ----------
     scene : of the results.
-    exceedances : see `bearing_sim.model.validity.outside`.
+    exceedances : graded, see `bearing_sim.estimation.grading.graded`.
+    verbose : whether to print a note of those without effect and of assumptions, too.
     """
-    printed = _warnings_of_scene(scene)
-    warn(each.text for each in exceedances if each.text not in printed)
+    from bearing_sim.model.plausibility import plausibility
+    from bearing_sim.model.validity import Grade
+
+    told, implausible = {each.law.name for each in _told_of_scene(scene)}, plausibility(scene)
+    for each in exceedances:
+        if each.grade != Grade.WARNING:
+            if verbose:
+                click.echo(f"note: {each.note}", err=True)
+        elif each.law.name not in told and each.text not in implausible:
+            warn([each.text])
 
 
 def warnings_report(scene, exceedances: Iterable) -> dict[str, list]:
-    """Return the warnings of a result for JSON: ``warnings``, laws outside of their ranges, and ``implausible``, what is odd about the scene."""
+    """Return for JSON ``warnings``, laws outside of their ranges with their grades, and ``implausible``, what is odd about the scene."""
     from bearing_sim.model.plausibility import plausibility
 
     return {"warnings": [each.report() for each in exceedances], "implausible": plausibility(scene)}

@@ -11,7 +11,7 @@ import click
 
 from bearing_sim.cli.estimation import band_numbers, estimation_with_progress, live_band_rows
 from bearing_sim.cli.lives import life_rows, temperature_report, temperature_rows
-from bearing_sim.cli.options import json_option, scene_argument, set_option
+from bearing_sim.cli.options import json_option, scene_argument, set_option, verbose_option
 from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
 from bearing_sim.cli.reporting import (
     Unsettled,
@@ -56,8 +56,9 @@ _FLOWS = ("heat_to_oil", "heat_to_ambient")
 @click.option(
     "--uncertainty", type=click.IntRange(2, 65536), metavar="N", help="Also compute ranges of slip and life from N samples of uncertain fields."
 )
+@verbose_option
 @json_option
-def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, uncertainty, as_json):
+def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, uncertainty, verbose, as_json):
     """Run SCENE (a bundled scene or a YAML file) under its constant conditions, from ideal rolling or a skid, until it has settled.
 
     A run has settled when cage slip is known to 0.05 points and life to 2 %, and neither is going to change by more. One that has not
@@ -71,6 +72,7 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
     uncertainty` shows more.
     """
     from bearing_sim.cli.uncertainty import bands_of
+    from bearing_sim.estimation.grading import graded
     from bearing_sim.estimation.two_states import laws_of_table
     from bearing_sim.messages.events import validity_event
     from bearing_sim.model.validity import outside
@@ -94,7 +96,7 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
         until = "" if seconds else f" until it has settled, at most {plan.longest:.4g} s"
         progress = stack.enter_context(progress_bar(f"running {scene.name}{until}", plan.longest))
         started = time.perf_counter()
-        announce_compilation(scene)
+        announce_compilation(scene, with_states=True)
         begin = skid_start(scene) if start == SKID else None
         simulation = Simulation(scene, table=corrected, start=begin)
         simulation.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
@@ -106,7 +108,8 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
         outcome = _advance(simulation, plan, sinks, progress, estimation)
         wall = time.perf_counter() - first
         others = other_states(scene, outcome, start)
-        warnings = outside(scene, outcome.window, laws=laws_of_table(scene, _table_temperatures(scene)))
+        exceedances = outside(scene, outcome.window, laws=laws_of_table(scene, _table_temperatures(scene)))
+        warnings = graded(scene, exceedances, outcome.window[-1])
         for sink in sinks:
             for each in warnings:
                 sink.write_event(validity_event(outcome.simulated, each))
@@ -117,7 +120,7 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
         print_json({**report, "uncertainty": bands} if bands else report)
     else:
         _print(report, scene, bands, estimation, state_rows(others, start))
-    warn_of_limits(scene, warnings)
+    warn_of_limits(scene, warnings, verbose)
     if seconds is None and not outcome.settled:
         raise Unsettled(f"not settled: {outcome.reason}; give more time with --at-most")
 
@@ -262,7 +265,6 @@ def _thermal_rows(report) -> list[tuple[str, str]]:
 
 def _print(report, scene, bands, estimation, states) -> None:
     from bearing_sim.cli.uncertainty import band_rows
-    from bearing_sim.model.characteristic_frequencies import frequencies_text
     from bearing_sim.model.losses import loss_text
     from bearing_sim.studies.clearance import clearance_row
 
@@ -274,11 +276,11 @@ def _print(report, scene, bands, estimation, states) -> None:
             ("settled", _settled(report)),
             *states,
             ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
-            ("characteristic frequencies", frequencies_text(report["characteristic_frequencies_hz"])),
+            ("characteristic frequencies", _frequencies(report)),
             clearance_row(scene, report),
             *_thermal_rows(report),
             *life_rows(scene, report),
-            *(live_band_rows(estimation.newest) if estimation is not None else []),
+            *(live_band_rows(estimation.newest, scene) if estimation is not None else []),
             ("friction", loss_text(report)),
             *_pressures(report, scene),
             ("largest roller load", f"inner {report['inner_load_maximum']:.4g} N, outer {report['outer_load_maximum']:.4g} N"),
@@ -309,6 +311,12 @@ def _slip(report) -> str:
     if math.isnan(report["cage_slip"]):
         return "none, the shaft is at rest"
     return f"{100 * report['cage_slip']:.2f} % ({100 * report['cage_slip_minimum']:.2f} to {100 * report['cage_slip_maximum']:.2f} %)"
+
+
+def _frequencies(report) -> str:
+    from bearing_sim.model.characteristic_frequencies import frequencies_text
+
+    return "none, the shaft is at rest" if math.isnan(report["cage_slip"]) else frequencies_text(report["characteristic_frequencies_hz"])
 
 
 def _settled(report) -> str:

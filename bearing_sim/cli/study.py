@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from bearing_sim.cli.lives import temperature_report, temperature_rows
 from bearing_sim.cli.options import (
     allow_outside_option,
     csv_option,
@@ -241,6 +242,68 @@ def support(scene_name, overrides, lowest, highest, points, level, table, pictur
         print_rows(f"{scene_name}: response over speed, level {level}", columns, texts, words=("model",))
 
 
+@click.command("resonances", cls=WritingCommand)
+@allow_outside_option
+@click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
+@set_option
+@click.option("--from", "lowest", type=click.FloatRange(1.0), metavar="RPM", help="Lowest shaft speed [default: 0.5 of the scene's].")
+@click.option("--to", "highest", type=click.FloatRange(1.0), metavar="RPM", help="Highest shaft speed [default: 1.3 of the scene's].")
+@click.option("--points", default=33, show_default=True, type=click.IntRange(2, 1000), help="Number of speeds.")
+@click.option("--level", default="planar", show_default=True, type=click.Choice(["planar", "spatial"]), help="Level with vibration.")
+@csv_option("Write the results to a table.")
+@picture_option("Draw the results")
+@json_option
+def resonances(scene_name, overrides, lowest, highest, points, level, table, picture, as_json):
+    """Show over speed where the passing rollers make the inner ring of SCENE vibrate on its contacts, and in which states it stays."""
+    import numpy as np
+
+    from bearing_sim.scene.loader import SceneError, load_scene
+
+    with as_usage_error(SceneError):
+        scene = load_scene(scene_name, [*overrides, f"level={level}"])
+    announce_compilation(scene)
+    from bearing_sim.studies.resonances import draw, resonances
+
+    own = abs(scene.operating.shaft_speed) * 30.0 / math.pi
+    if own == 0.0 and None in (lowest, highest):
+        raise UsageError("the scene's shaft stands still; give --from and --to")
+    speeds = np.linspace(0.5 * own if lowest is None else lowest, 1.3 * own if highest is None else highest, points) * (math.pi / 30.0)
+    with progress_bar("speeds", points) as show:
+        found = resonances(scene, speeds, show)
+    rows = [row for each in found for row in _resonance_rows(each)]
+    with as_file_error():
+        if table is not None:
+            write_csv(table, rows)
+        if picture is not None:
+            with picture.draft() as draft:
+                draw(draft, f"{' '.join([scene_name, *overrides])}: the inner ring on its rollers, level {level}", found)
+    if as_json:
+        print_json({"scene": scene_name, "level": level, "points": rows})
+    else:
+        columns = ("rpm", "over passage", "multiplier", "nearby", "slip, %", "life, h", "state")
+        texts = [tuple(cell if isinstance(cell, str) else format(cell, ".4g") for cell in _resonance_cells(row)) for row in rows]
+        print_rows(f"{scene_name}: the inner ring on its rollers over speed, level {level}", columns, texts, words=("over passage", "state"))
+
+
+def _resonance_rows(speed) -> list[dict]:
+    ring = speed.resonance
+    low, high = (math.nan, math.nan) if ring is None else ring.ratios
+    known = {
+        "shaft_speed_rpm": speed.shaft_speed * 30.0 / math.pi,
+        "lower_ratio": low,
+        "higher_ratio": high,
+        "multiplier": math.nan if ring is None else ring.multiplier,
+        "multiplier_nearby": math.nan if ring is None else ring.multiplier_nearby,
+    }
+    states = [(100.0 * state.cage_slip, state.rating_life, state.start) for state in speed.states] or [(math.nan, math.nan, "the run stopped early")]
+    return [known | {"slip_percent": slip, "rating_life_h": life, "state": start} for slip, life, start in states]
+
+
+def _resonance_cells(row) -> tuple:
+    ratios = f"{row['lower_ratio']:.2f}, {row['higher_ratio']:.2f}"
+    return row["shaft_speed_rpm"], ratios, row["multiplier"], row["multiplier_nearby"], row["slip_percent"], row["rating_life_h"], row["state"]
+
+
 def _response_row(one, relative) -> dict:
     return {
         "model": one.model,
@@ -410,10 +473,12 @@ def _print_slices(name, found) -> None:
 def friction(scene_name, overrides, series, table, as_json):
     """Compare the frictional moment with makers' models, for the bearings of the catalogue or for SCENE at its operating point.
 
+    With heat.law network SCENE is in thermal equilibrium, as in `bearing-sim run`; where there is none, the command fails and says why.
     Catalogue bearings stand in an oil bath under the conditions of ISO 15312, from 0.02 to 0.2 C_0 and from 500 rpm to the reference speed;
     a second table has the speeds at which friction reaches the standard's heat flow, against those that makers print.
     """
     from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.simulation import IntegrationError
     from bearing_sim.studies.friction import SERIES, compare, series_of
 
     announce_compilation()
@@ -428,10 +493,12 @@ def friction(scene_name, overrides, series, table, as_json):
     series = series or series_of(scene.bearing.name)
     if series not in SERIES:
         raise UsageError(f"--series: makers' factors are known for series {', '.join(SERIES)}; name that of {scene.bearing.name!r}")
-    with as_usage_error(ValueError):
+    warn_of_scene(scene, before_results=False)
+    with as_usage_error(ValueError), as_failed_run(IntegrationError):
         found = compare(scene, series)
+    temperatures = temperature_report(found.temperatures)
     if as_json:
-        print_json({"scene": scene.name, **found._asdict()})
+        print_json({"scene": scene.name, **found._replace(temperatures=temperatures)._asdict()})
         return
     rows = (
         ("model", found.model),
@@ -441,7 +508,8 @@ def friction(scene_name, overrides, series, table, as_json):
         ("coefficient 0.0011", found.coefficient),
     )
     title = f"{scene.name}: friction at {abs(scene.operating.shaft_speed) * 30 / math.pi:.6g} rpm and {scene.operating.radial_load:.6g} N"
-    print_table(title, [(name, f"{watts:.4g} W") for name, watts in rows])
+    warmth = [*temperature_rows(temperatures), ("viscosity", f"{found.viscosity:.4g} mm^2/s in the contacts")]
+    print_table(title, [(name, f"{watts:.4g} W") for name, watts in rows] + warmth)
 
 
 def _friction_of_catalogue(overrides, table, as_json) -> None:

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import click
 
+from bearing_sim.cli.lives import temperature_report, temperature_rows
 from bearing_sim.cli.options import json_option, scene_argument, set_option
 from bearing_sim.cli.outputs import OutputFile, WritingCommand
-from bearing_sim.cli.reporting import UsageError, announce_compilation, as_usage_error, print_json, print_table, progress_bar
+from bearing_sim.cli.reporting import UsageError, announce_compilation, as_failed_run, as_usage_error, print_json, print_table, progress_bar
 
 
 @click.command("table", cls=WritingCommand)
@@ -43,7 +44,7 @@ def table(scene_name, overrides, rebuild, workers, points, out, shared, against_
     """Build the table of operating points of SCENE at level steady, or show the existing one.
 
     Its range is given in the scene's block `table` (maximum_speed, maximum_load, minimum_temperature, maximum_temperature, tolerance);
-    it covers all directions of the load.
+    it covers all directions of the load. A point of --at is as warm as a run there: with heat.law network in thermal equilibrium.
     """
     from bearing_sim.scene.loader import SceneError, load_scene
 
@@ -156,15 +157,24 @@ def _condition(text, scene) -> tuple[float, float, float, float]:
 
 
 def _answers(scene, table, condition) -> dict:
+    """Return the solved and the interpolated answer at a condition, as warm as a run is there."""
     from bearing_sim.levels.steady.operating_point import ANSWER
-    from bearing_sim.levels.steady.table_builder import holds, look_up, solve_scene
+    from bearing_sim.levels.steady.table_builder import holds, look_up
+    from bearing_sim.model.sample import NODE_OBSERVABLES
+    from bearing_sim.simulation import Inputs, IntegrationError
+    from bearing_sim.sweep.thermal import operating_state, solved_answer, table_condition
 
     speed, load, kelvin, angle = condition
-    solved, interpolated = solve_scene(scene, *condition), look_up(table, [condition])[0]
+    inputs = Inputs(speed, load * math.cos(angle), load * math.sin(angle), kelvin)
+    with as_failed_run(IntegrationError):
+        state = operating_state(scene, inputs)
+    place = table_condition(state, inputs)
+    solved, interpolated = solved_answer(state, inputs), look_up(table, [place])[0]
     named = {name: [float(interpolated[column]), float(solved[column])] for name, column in ANSWER._asdict().items()}
     rpm, degrees = speed * 30 / math.pi, math.degrees(angle)
     where = {"speed_rpm": rpm, "load": load, "oil_temperature_c": kelvin - 273.15, "load_angle_deg": degrees}
-    return {**where, "held": holds(table, speed, load, kelvin), "table_and_solution": named}
+    where |= temperature_report(dict(zip(NODE_OBSERVABLES, state.temperatures.tolist())))
+    return {**where, "held": holds(table, *place[:3], growth=place[4]), "table_and_solution": named}
 
 
 def _report(scene, table, quality, answers) -> dict:
@@ -258,6 +268,7 @@ def _print(report) -> None:
         _print_correction(report["correction"])
     for point in report["points"]:
         rows = [(name, f"{of_table:.6g} (solved: {solved:.6g})") for name, (of_table, solved) in point["table_and_solution"].items()]
+        rows += temperature_rows(point)
         where = f"{point['speed_rpm']:.6g} rpm, {point['load']:.6g} N, {point['oil_temperature_c']:.6g} degC, {point['load_angle_deg']:.6g} deg"
         print_table(where + ("" if point["held"] else ": outside the table"), rows)
 

@@ -57,7 +57,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
 
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
-    warn_of_scene(scene)
+    warn_of_scene(scene, before_results=False)
     scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
     with as_file_error(), as_usage_error(JournalInUse):
         from bearing_sim.studies.uncertainty import rounded_up
@@ -96,18 +96,19 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, w
     course : `bearing_sim.studies.uncertainty.Stretches`, or None.
     """
     announce_compilation()
-    from bearing_sim.scene.uncertainty import ranges_of
-    from bearing_sim.studies.uncertainty import UncertaintyError, rounded_up, study
+    from bearing_sim.studies.uncertainty import UncertaintyError, lowest_level, rounded_up, study, varied_ranges
     from bearing_sim.sweep.tasks import ClusterError
 
     base = rounded_up(samples)
     began, given = time.perf_counter(), (course.conditions, course.seconds) if course is not None else None
+    with as_usage_error(UncertaintyError):
+        fields = len(varied_ranges(lowest_level(scene, level)[0]))
     with (
-        Points(f"uncertainty of {scene.name}", base * (len(ranges_of(scene)) + 2)) as points,
+        Points(f"uncertainty of {scene.name}", base * (fields + 2)) as points,
         as_usage_error(UncertaintyError, ClusterError, ValueError),
     ):
         found = study(scene, base, seed, level=level, course=given, journal=journal, workers=workers, dask=dask, progress=points.update)
-    return found, {**_report(found, seed, time.perf_counter() - began, course), "kept_from_before": points.kept}
+    return found, {**_report(scene, found, seed, time.perf_counter() - began, course), "kept_from_before": points.kept}
 
 
 def _course(log, scene, count):
@@ -128,11 +129,14 @@ def _course(log, scene, count):
     return scene, stretches(run.instants * 1e-9, run.inputs, run.in_gap, count), unknown_report(course)
 
 
-def _report(found, seed, seconds, course) -> dict:
+def _report(scene, found, seed, seconds, course) -> dict:
+    from bearing_sim.model.plausibility import left_out
+
     fields = [one.field for one in found.ranges]
     report = {
         "level": found.level,
         "level_reason": found.reason,
+        "left_out": left_out(scene),
         "samples": found.design.base,
         "seed": seed,
         "evaluations": len(found.design.points),
@@ -174,7 +178,9 @@ def _report(found, seed, seconds, course) -> dict:
 
 def band_rows(report) -> list[tuple[str, str]]:
     """Return table rows: the quantiles with their sampling errors, and the fields they depend on, most important first."""
-    rows = []
+    from bearing_sim.scene.uncertainty import without_dimensions
+
+    rows, note = [], without_dimensions(report["ranges"])
     for name, label, scale, unit in (("cage_slip", "cage slip", 100.0, "%"), ("life_hours", "life", 1.0, "h")):
         one = report[name]
 
@@ -185,7 +191,8 @@ def band_rows(report) -> list[tuple[str, str]]:
         rows.append(
             (
                 f"{label}: 5, 50, 95 % quantile",
-                f"{quantile('p05')}, {quantile('p50')}, {quantile('p95')} {unit}; scene's own values: {scale * one['own']:.4g}",
+                f"{quantile('p05')}, {quantile('p50')}, {quantile('p95')} {unit}{note if unit == 'h' else ''}; "
+                f"scene's own values: {scale * one['own']:.4g}",
             )
         )
         rows.append((f"{label} depends on", _shares(one["shares"])))
@@ -236,6 +243,7 @@ def print_bands(name, report) -> None:
             ),
             ("without a result", str(report["without_answer"])),
             ("level", report["level_reason"]),
+            *(("left out", text) for text in report["left_out"]),
         ],
     )
 

@@ -16,8 +16,9 @@ from bearing_sim.estimation.estimator import Estimator
 from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.messages.bands import BANDS, EDGES, ESTIMATES, Bands
 from bearing_sim.messages.events import Event
+from bearing_sim.model.turning import turns
 from bearing_sim.scene.scene import Scene, Thresholds
-from bearing_sim.scene.uncertainty import quantities
+from bearing_sim.scene.uncertainty import quantities, ranges_of, without_dimensions
 
 UNITS = ("", "h", "m", "h")
 """Of `bearing_sim.estimation.bands.QUANTITIES`."""
@@ -107,9 +108,10 @@ class LiveEstimation:
     @property
     def remark(self) -> str:
         """What is said about the estimates while there is nothing to report."""
+        note = without_dimensions(one.field for one in ranges_of(self._scene)) if self._scene.estimation.bands else ""
         if self._estimator is None:
-            return "bands by the ranges of the scene; nothing is calibrated"
-        return "calibrated by measurements" if self.is_calibrated else "waiting for measurements to calibrate by"
+            return f"bands by the ranges of the scene{note}; nothing is calibrated"
+        return f"{'calibrated by measurements' if self.is_calibrated else 'waiting for measurements to calibrate by'}{note}"
 
     def measure(self, time: float, cage_speed: float, standard_error: float = math.nan) -> None:
         """Take a measured cage speed and its standard error [rad/s], NaN where it is not known; ``time`` [s] may be later than the newest sample."""
@@ -150,7 +152,7 @@ class LiveEstimation:
         edges = self._bands.take(samples)
         if self.is_calibrated:
             numbers = np.concatenate([self._bands.medians[:, :, None], edges], axis=2)
-            turning = np.isfinite(numbers[:, _SLIP]).all(axis=1) & (np.abs(samples["shaft_speed"]) >= self._scene.thresholds.slip_from_speed)
+            turning = np.isfinite(numbers[:, _SLIP]).all(axis=1) & turns(samples["shaft_speed"], self._scene.thresholds.slip_from_speed)
             if turning.any():
                 numbers[turning, _SLIP] = self._calibrated_slip(samples[turning])
         else:

@@ -67,7 +67,7 @@ TEXTS = (
 RESULTS = (
     Column("log_hours", "h", "for how long the log has messages of both speed and load"),
     Column("simulated_hours", "h", "for how long the bearing was simulated: without gaps"),
-    Column("running_hours", "h", "for how long the shaft turned"),
+    Column("running_hours", "h", "for how long the shaft turned, at thresholds.slip_from_speed or faster"),
     Column("gap_hours", "h", "for how long the log is silent"),
     Column("unknown_hours", "h", "for how long inputs are unknown, because their messages were refused"),
     Column("revolutions", "", "turns of the shaft"),

@@ -51,15 +51,15 @@ class Event(NamedTuple):
 
 
 def validity_event(time: float, exceedance) -> Event:
-    """Return the event of a law that is used outside of its range.
+    """Return the event of a law that is used outside of its range: a warning, or for the record alone where it has no effect or is an assumption.
 
     Parameters
     ----------
     time : [s] since the start of the run.
     exceedance : `bearing_sim.model.validity.Exceedance`.
     """
-    law = exceedance.law
-    return Event(time, Level.WARN, law.kind, law.name, f"{law.law}: {exceedance.finding}", law.instead)
+    law, level = exceedance.law, Level.WARN if exceedance.grade == "warning" else Level.OK
+    return Event(time, level, law.kind, law.name, f"{law.law}: {exceedance.finding}; {exceedance.grade}: {exceedance.said_effect}", law.instead)
 
 
 class Measurement(NamedTuple):

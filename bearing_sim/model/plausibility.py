@@ -25,6 +25,7 @@ _BORE_OF_RACEWAY = 0.85  # assumption: bore over inner raceway diameter, where t
 _LEAST_FILL, _LARGEST_FILL = 0.4, 0.97  # assumption: rollers' widths over the pitch circle; cages of series leave 0.6 to 0.95
 # A maker's rating over that by the standards (assumption: catalogues give 0.85 to 1.17 times C, fatigue limits differ more).
 _RATING_RATIO = {"dynamic": (0.65, 1.5), "static": (0.65, 1.5), "fatigue_limit": (0.4, 2.5)}
+_RPM = 30.0 / math.pi
 _MINIMUM_OF_RATING = 0.02  # of C_r: the least load of roller bearings where a maker gives no factor (SKF, Schaeffler)
 
 
@@ -40,7 +41,18 @@ def plausibility(scene: Scene) -> list[str]:
         *_ring_mass(bearing),
         *_ratings(bearing),
         *_load(scene),
+        *_slip_from_speed(scene),
         *(each.text for each in outside(scene, still_sample(scene), ("oil_temperature", "speed_factor", "limiting_speed"))),
+    ]
+
+
+def left_out(scene: Scene) -> list[str]:
+    """Return what a scene leaves out by its own choice although it moves slip, one sentence each; empty if there is nothing."""
+    if scene.lubricant.rolling_resistance.law != "none":
+        return []
+    return [
+        "lubricant.rolling_resistance is none: contacts roll without resistance, as in Deng 2017; with resistance the cage slips more "
+        "(lubricant.rolling_resistance=hydrodynamic computes it)"
     ]
 
 
@@ -178,6 +190,17 @@ def _ring_mass(bearing: Bearing) -> list[str]:
     return [
         f"bearing.inner_raceway.ring_mass: {1e3 * ring.ring_mass:.4g} g; expected {1e3 * low:.4g} to {1e3 * high:.4g} g by raceway, bore and roller "
         f"length (within a factor of {_MASS_FACTOR:g}); give the mass of the ring; that of the shaft belongs into support.shaft.mass"
+    ]
+
+
+def _slip_from_speed(scene: Scene) -> list[str]:
+    speed, least = abs(scene.operating.shaft_speed), scene.thresholds.slip_from_speed
+    if not 0.0 < speed < least:
+        return []
+    return [
+        f"thresholds.slip_from_speed: slip enters means, maxima and thresholds from {least * _RPM:.4g} rpm on, and operating.shaft_speed is "
+        f"{speed * _RPM:.4g} rpm; expected a threshold that the shaft exceeds; if the machine is made to turn so slowly, set it to "
+        f"{0.5 * speed * _RPM:.2g} rpm or so"
     ]
 
 

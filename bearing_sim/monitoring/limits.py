@@ -1,7 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Watch whether the laws of a running model are used within their ranges (`bearing_sim.model.validity`).
 
-Samples in, events out.  All times are those of the samples.
+Samples in, events out.  All times are those of the samples.  What an exceedance does is not computed while the model runs: a range from a source is a
+warning, one that is an assumption is for the record.
 """
 
 import math
@@ -45,7 +46,7 @@ class _Range:
         """Take the value at an instant [s] and return the event if the warning begins or ends."""
         raised, before = [alarm.judge(now, value) for alarm in self._alarms], self.holding
         if value < self.low or value > self.high:
-            self.holding = Exceedance(self.law, value, self.low, self.high)
+            self.holding = self.law.exceeded(value, self.low, self.high)
         elif not any(raised):
             self.holding = None
         if (before is None) == (self.holding is None):
@@ -69,6 +70,8 @@ class LimitsMonitor:
     ----------
     worst : dict
         The worst exceedance of each law so far, by its name; hysteresis and hold times have no part in it.
+    worst_samples : dict
+        The sample of each of them, by the law's name; of those that the scene exceeds by itself the one of the fastest shaft.
     """
 
     def __init__(self, scene: Scene, laws: Iterable[Law] = ()):
@@ -84,6 +87,7 @@ class LimitsMonitor:
         self._ranges = [_Range(*each) for each in sample_laws(self._scene, self._laws)]
         self._next = -math.inf
         self.worst: dict[str, Exceedance] = {}
+        self.worst_samples: dict[str, np.void] = {}
 
     def adjust(self, thresholds: Thresholds) -> None:
         """Judge from ``thresholds.slip_from_speed`` on from now on."""
@@ -104,7 +108,8 @@ class LimitsMonitor:
         self._use(replace(scene, thresholds=self._scene.thresholds), laws)
         self._ranges = [_Range(*each).continuing(before.get(each[0].name)) for each in sample_laws(self._scene, self._laws)]
         if self._next > -math.inf:
-            self._note_worst(self._of_scene)
+            for each in self._of_scene:
+                self._note_worst(each)
 
     def take(self, block: np.ndarray) -> list[Event]:
         """Judge samples, only one of those within 0.1 s, and return the warnings that begin or end.
@@ -120,19 +125,32 @@ class LimitsMonitor:
         if block["time"][-1] < self._next:
             return changes
         block = block[self._due(block["time"].tolist())]
+        self._note_fastest(block)
         at, times = Conditions(self._scene, block, self._params), block["time"].tolist()
         for each in self._ranges:
             values = each.law.value(at)
             found = worst(each.law, each.low, each.high, values)
-            self._note_worst(found)
+            for one in found:
+                self._note_worst(one, block[np.flatnonzero(values == one.value)[0]])
             if found or each.is_pending:
                 for time, value in zip(times, values.tolist()):
                     changes += each.judge(time, value)
         return sorted(changes, key=lambda event: event.time)
 
-    def _note_worst(self, found: Iterable[Exceedance]) -> None:
-        for one in found:
-            self.worst[one.law.name] = max(self.worst.get(one.law.name, one), one, key=lambda exceedance: exceedance.excess)
+    def _note_fastest(self, block: np.ndarray) -> None:
+        if not self._of_scene:
+            return
+        fastest, known = block[np.argmax(np.abs(block["shaft_speed"]))], self.worst_samples.get(self._of_scene[0].law.name)
+        if known is None or abs(fastest["shaft_speed"]) > abs(known["shaft_speed"]):
+            self.worst_samples |= dict.fromkeys((each.law.name for each in self._of_scene), fastest.copy())
+
+    def _note_worst(self, found: Exceedance, sample: np.void | None = None) -> None:
+        name = found.law.name
+        if name in self.worst and self.worst[name].excess >= found.excess:
+            return
+        self.worst[name] = found
+        if sample is not None:
+            self.worst_samples[name] = sample.copy()
 
     def _due(self, times: list[float]) -> list[int]:
         """Return the places of the samples to judge."""

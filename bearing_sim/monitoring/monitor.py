@@ -10,6 +10,7 @@ import numpy as np
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import joined
+from bearing_sim.model.turning import turns
 from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.monitoring.residual import TemperatureResiduals
 from bearing_sim.scene.scene import Hold, Scene, Thresholds
@@ -204,7 +205,7 @@ class Monitor:
         block : samples in order, shape (n,), n at least 1; see `bearing_sim.model.sample`.
         """
         now = float(block["time"][-1])
-        turning = np.abs(block["shaft_speed"]) >= self._thresholds.slip_from_speed
+        turning = turns(block["shaft_speed"], self._thresholds.slip_from_speed)
         life = float(block["modified_rating_life"].min())
         self._latest = latest = {
             "slip": float(np.fmax.reduce(np.abs(block["cage_slip"][turning]), initial=math.nan)),
@@ -238,7 +239,7 @@ class Monitor:
         fastest = max(1.0 / (_HOUR * float(lives.min())), 0.0 if math.isnan(self._rate) else self._rate)
         damage = float(block["damage"][-1])
         shortest = np.array([(1.0 - damage) / (_HOUR * fastest) if fastest > 0.0 else math.inf])
-        turning = np.abs(block["shaft_speed"]) >= limits.slip_from_speed
+        turning = turns(block["shaft_speed"], limits.slip_from_speed)
         values = {
             "slip": np.abs(block["cage_slip"][turning]),
             "life": lives,

@@ -26,6 +26,7 @@ from bearing_sim.messages import topics
 from bearing_sim.messages.bands import ESTIMATES
 from bearing_sim.messages.diagnostics import WHOLE
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.model.turning import turns
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.reader import Recording
 from bearing_sim.ros.recordings import fresh_path
@@ -189,7 +190,7 @@ def summary(path: Path) -> str:
         return np.concatenate([block[name] for block in blocks])
 
     slip, speed = 100.0 * column("cage_slip"), np.abs(column("shaft_speed"))
-    slip = slip[np.isfinite(slip) & (speed > 0.01 * speed.max())]
+    slip = slip[np.isfinite(slip) & turns(speed, recording.scene.thresholds.slip_from_speed)]
     mean, quantile, largest = (slip.mean(), np.quantile(slip, 0.95), slip.max()) if slip.size else (math.nan,) * 3
     reports = _diagnostics(path)
     factors = [factor for report in reports if math.isfinite(factor := float(report.get("real-time factor possible", "nan")))] or [math.nan]
@@ -201,21 +202,21 @@ def summary(path: Path) -> str:
         ("life at the worst condition", f"{column('modified_rating_life').min():.4g} h"),
         ("life used", f"{100 * column('damage').max():.3g} %"),
         ("real time", f"{lost:.2f} s skipped; speed of the solver alone: median {np.median(factors):.1f}, minimum {min(factors):.1f} x real time"),
-        *_estimate_rows(recording),
+        *_estimate_rows(recording, column("time"), speed),
         ("warnings and errors", ", ".join(f"{kind} ({count} times)" for kind, count in warnings.items()) or "none"),
     ]
     width = max(len(name) for name, _ in rows)
     return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
 
 
-def _estimate_rows(recording: Recording) -> list[tuple[str, str]]:
-    """Return the rows of the band of the slip where it reaches highest, and of the calibrated fields before and after the run."""
+def _estimate_rows(recording: Recording, times: np.ndarray, speeds: np.ndarray) -> list[tuple[str, str]]:
+    """Return the rows of the slip's band where it reaches highest while the shaft turns, and of the calibrated fields before and after."""
     newest, first, slip, known = {}, {}, np.zeros(3), quantities(Scene)
     for bands in recording.bands():
         numbers = dict(zip(bands.names, bands.numbers[0]))
         if bands.topic == ESTIMATES:
             first, newest = first or numbers, numbers
-        elif numbers["cage_slip"][2] > slip[2]:
+        elif numbers["cage_slip"][2] > slip[2] and turns(np.interp(bands.times[0], times, speeds), recording.scene.thresholds.slip_from_speed):
             slip = numbers["cage_slip"]
     rows = [("band of cage slip at its highest", f"{100 * slip[1]:.2f} to {100 * slip[2]:.2f} %")] if slip[2] > 0.0 else []
     for path, after in newest.items():

@@ -23,7 +23,7 @@ _COLLECTIONS = 100_000, 50, 10  # thresholds of the garbage collector; with Pyth
 
 
 class Build(NamedTuple):
-    """Something to compile: a level, or the search for thermal equilibrium in its place."""
+    """Something to compile: a level, or the search for thermal equilibrium and for other states in its place."""
 
     level: str
     equilibrium: bool = False
@@ -40,14 +40,20 @@ def is_compiled(level: str) -> bool:
     return is_cached(LEVELS[level].advance)
 
 
-def is_compiled_for(scene: "Scene") -> bool:
-    """Return whether the cache of this version of the model holds the code with which a run of a scene starts."""
+def is_compiled_for(scene: "Scene", with_states: bool = False) -> bool:
+    """Return whether the cache of this version of the model holds the code with which a run of a scene starts.
+
+    Parameters
+    ----------
+    with_states : whether it also ends with a look for other states (`bearing_sim.sweep.states`).
+    """
     from bearing_sim.levels.level import LEVELS
-    from bearing_sim.levels.steady.model import solve_condition
+    from bearing_sim.levels.steady.operating_point import find_skid_load, solve_point
     from bearing_sim.numerics.compilation import is_cached
 
     searches = scene.heat.law == "network" and scene.heat.start == "equilibrium"
-    return is_cached(LEVELS[scene.level].advance) and (not searches or is_cached(solve_condition))
+    compiled = is_cached(LEVELS[scene.level].advance) and (not searches or is_cached(solve_point))
+    return compiled and (not with_states or is_cached(find_skid_load))
 
 
 def builds(levels: Sequence[str]) -> list[Build]:
@@ -95,9 +101,25 @@ def _compile(build: Build) -> None:
 
         scene = load_scene("deng2017_table1_cold", [f"level={build.level}"])
         thermal_equilibrium(scene, scene_inputs(scene))
+        _compile_search_for_skids(scene)
         return
     simulation = Simulation(load_scene("deng2017_table1", [f"level={build.level}"]))
     simulation.advance(_SECONDS, simulation.inputs, 1)
+    if build.level == "steady":
+        _compile_search_for_skids(simulation.scene)
+
+
+def _compile_search_for_skids(scene: "Scene") -> None:
+    from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
+    from bearing_sim.levels.steady.model import new_work
+    from bearing_sim.levels.steady.operating_point import find_skid_load
+    from bearing_sim.model.params import pack
+    from bearing_sim.model.temperatures import lubricate_scene
+
+    params, speed = pack(scene), scene.operating.shaft_speed
+    lubrication, work = lubricate_scene(scene, params, scene.lubricant.temperature), new_work(params)
+    model = Model(params, lubrication, Drive(0.0, speed, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), DEFAULT_TOLERANCES)
+    find_skid_load(0.05, 0.0, 1.0, 2.0, model, work.bearing, work.orbit)
 
 
 def remove_other_versions() -> int:

@@ -7,6 +7,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from bearing_sim.messages.bands import BANDS, Bands
 from bearing_sim.messages.diagnostics import condition, further_condition
 from bearing_sim.messages.events import Event
 from bearing_sim.model.sample import joined
-from bearing_sim.model.turning import turns
+from bearing_sim.model.turning import SLIP_FROM_SPEED, slip_statistics, turns
 from bearing_sim.model.validity import Exceedance, Law
 from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
@@ -36,6 +37,16 @@ _ENDLESS = 1e7  # [h]; longer lives are those of a shaft that hardly turns
 _ESTIMATED = 100  # outputs that bands are computed for at once
 _TOGETHER = 100  # outputs of a level that takes courses, written and judged at once: singly they take ten times as long as their computation
 _WATCHED_BLOCK = 100  # samples: views take one long block far faster than single samples
+# Assumptions on what a line through the outputs still shows: a point of slip is what people read, a fifth of a run's slip what they see.
+_COARSE_CHANGE, _COARSE_SHARE = 0.01, 0.2
+
+
+class Jump(NamedTuple):
+    """The largest change of cage slip from one output to the next: how much (a fraction), when it ends [s], and how long it took [s]."""
+
+    slip: float
+    time: float
+    interval: float
 
 
 @dataclass
@@ -49,12 +60,15 @@ class Replay:
     samples : outputs written.
     steps, rejected_steps, non_finite_steps : the integrator's work.
     failed_ticks, gap_seconds : stretches that could not be integrated, and time in gaps of the log; neither is simulated.
-    slip : cage slip at each output; ``speed`` [rad/s], ``load`` [N] and ``life`` [h] likewise; ``weight`` the time that each represents [s].
+    time : of each output [s]; ``slip``, the cage slip there, ``speed`` [rad/s], ``load`` [N] and ``life`` [h] likewise; ``weight`` the time that
+        each represents [s].
     damage : fraction of life used.
     events : number of events by kind.
     given_up : why the run ended before the log did, or ``""``.
     warnings : laws used outside of their ranges, each with its worst value.
-    bands : 5 and 95 % quantiles of the results (`bearing_sim.estimation.bands.QUANTITIES`), where the scene asks for them.
+    bands : 5 and 95 % quantiles of the results (`bearing_sim.estimation.bands.QUANTITIES`), where the scene asks for them; NaN for the slip while
+        the shaft does not turn.
+    slip_from_speed : speed from which on the shaft turns [rad/s] (`bearing_sim.model.turning`).
     """
 
     log_seconds: float
@@ -68,6 +82,7 @@ class Replay:
     failed_ticks: int = 0
     gap_seconds: float = 0.0
     damage: float = 0.0
+    time: list[float] = field(default_factory=list)
     slip: list[float] = field(default_factory=list)
     speed: list[float] = field(default_factory=list)
     load: list[float] = field(default_factory=list)
@@ -76,7 +91,9 @@ class Replay:
     events: Counter = field(default_factory=Counter)
     given_up: str = ""
     warnings: list[Exceedance] = field(default_factory=list)
+    worst_samples: dict[str, np.void] = field(default_factory=dict)
     bands: list[Bands] = field(default_factory=list)
+    slip_from_speed: float = SLIP_FROM_SPEED
 
     @property
     def real_time_factor(self) -> float:
@@ -89,18 +106,28 @@ class Replay:
         return self.sim_seconds / 3600 / self.damage if self.damage > 0 else math.inf
 
     def slip_statistics(self) -> dict[str, float]:
-        """Return mean, median, 95th and 99th percentile and maximum of the slip, weighted by time, while the shaft turns.
+        """Return mean, median, 95th and 99th percentile and maximum of the slip, weighted by time, while the shaft turns; NaN if it never does."""
+        return slip_statistics(np.array(self.slip), np.array(self.speed), np.array(self.weight), self.slip_from_speed)
 
-        It turns above a hundredth of the largest speed of the run; NaN if it never does.
+    def _turning(self) -> np.ndarray:
+        return turns(np.array(self.speed), self.slip_from_speed)
+
+    def jump(self) -> Jump | None:
+        """Return the largest change of slip between neighbouring outputs while the shaft turns, if it hides how the slip moved; else None.
+
+        It does from one point on, if it is a fifth of the whole range of the slip: whatever happened in between is drawn as a straight line.
         """
-        slip, weight = np.array(self.slip), np.array(self.weight)
-        turning = np.isfinite(slip) & turns(np.array(self.speed))
-        if not turning.any():
-            return dict.fromkeys(("mean", "median", "p95", "p99", "maximum"), math.nan)
-        slip, weight = slip[turning], weight[turning]
-        median, p95, p99 = np.percentile(slip, [50, 95, 99], weights=weight, method="inverted_cdf")
-        statistics = {"mean": np.average(slip, weights=weight), "median": median, "p95": p95, "p99": p99, "maximum": slip.max()}
-        return {name: float(value) for name, value in statistics.items()}
+        time, slip = np.array(self.time), np.where(self._turning(), self.slip, np.nan)
+        if len(time) < 2 or not np.isfinite(slip).any():
+            return None
+        intervals, changes = np.diff(time), np.abs(np.diff(slip))
+        changes[intervals > 1.5 * np.array(self.weight)[1:]] = np.nan  # a gap, in which nothing was simulated
+        if not np.isfinite(changes).any():
+            return None
+        k = int(np.nanargmax(changes))
+        if changes[k] < max(_COARSE_CHANGE, _COARSE_SHARE * (np.nanmax(slip) - np.nanmin(slip))):
+            return None
+        return Jump(float(changes[k]), float(time[k + 1]), float(intervals[k]))
 
     @property
     def revolutions(self) -> float:
@@ -110,7 +137,7 @@ class Replay:
     def seconds_above(self, slip: float) -> float:
         """Return for how long the shaft turned with more slip than that [s]."""
         slips, weight = np.array(self.slip), np.array(self.weight)
-        return float(weight[turns(np.array(self.speed)) & (slips > slip)].sum())
+        return float(weight[self._turning() & (slips > slip)].sum())
 
     def seconds_below(self, minimum_load: Callable[[np.ndarray], np.ndarray]) -> tuple[float, float]:
         """Return for how long the load was below a minimum while the shaft turned, and for how long it turned [s].
@@ -120,7 +147,7 @@ class Replay:
         minimum_load : of the shaft's speeds [rad/s], shape (n,), the minimum load [N], shape (n,).
         """
         speed, load, weight = np.array(self.speed), np.array(self.load), np.array(self.weight)
-        turning = turns(speed)
+        turning = self._turning()
         below = turning & (load < minimum_load(speed))
         return float(weight[below].sum()), float(weight[turning].sum())
 
@@ -212,7 +239,7 @@ class _Run:
         self._newest: np.void | None = None  # that the keeper has counted
         self._scene, self._profile, self._watchers, self._progress, self._rate = scene, profile, watchers, progress, rate
         self._recordings = (recording,) if recording is not None else ()
-        self._result = Replay(profile.log_seconds)
+        self._result = Replay(profile.log_seconds, slip_from_speed=scene.thresholds.slip_from_speed)
         self._pending_events = list(profile.events)
         self._pending_clearances = deque(profile.measured_clearance)
         self._changes = Changes()
@@ -284,7 +311,7 @@ class _Run:
             result.steps, result.rejected_steps, result.non_finite_steps = run.simulation.counters[:3]
         result.sim_seconds, result.gap_seconds = run.simulated_ns * 1e-9, run.in_gaps_ns * 1e-9
         result.failed_ticks, result.given_up = run.failures, run.given_up
-        result.warnings = self._limits.exceedances
+        result.warnings, result.worst_samples = self._limits.exceedances, self._limits.worst_samples
         result.wall_seconds, result.cpu_seconds = time.perf_counter() - began, time.process_time() - began_cpu
         return result
 
@@ -321,7 +348,7 @@ class _Run:
         block, result = output.block, self._result
         result.samples += len(block)
         result.weight += output.weights.tolist()
-        for kept, name in ((result.slip, "cage_slip"), (result.speed, "shaft_speed"), (result.life, "rating_life")):
+        for kept, name in ((result.time, "time"), (result.slip, "cage_slip"), (result.speed, "shaft_speed"), (result.life, "rating_life")):
             kept += block[name].tolist()
         result.load += np.hypot(block["load_y"], block["load_z"]).tolist()
         result.damage = float(block["damage"][-1])  # of this run alone
@@ -348,8 +375,9 @@ class _Run:
         """Write the bands of the outputs since the last call: those of many at once cost a fraction of single ones."""
         blocks, self._unestimated = self._unestimated, []
         if blocks:
-            for bands in self._estimation.take(joined(blocks)):
-                self._write_bands(bands)
+            whole = joined(blocks)
+            for bands in self._estimation.take(whole):
+                self._write_bands(bands, whole)
 
     def _judge_limits(self) -> None:
         """Write which limits of validity the outputs since the last call began or ceased to exceed: many at once cost little more than one."""
@@ -378,9 +406,11 @@ class _Run:
                 self._write_measured(compared)
             self._report(block[k], float(block["time"][k]))
 
-    def _write_bands(self, bands: Bands) -> None:
+    def _write_bands(self, bands: Bands, block: np.ndarray) -> None:
         if bands.topic == BANDS:
-            self._result.bands.append(bands)
+            numbers, speeds = bands.numbers.copy(), block["shaft_speed"][np.searchsorted(block["time"], bands.times)]
+            numbers[~turns(speeds, self._result.slip_from_speed), bands.names.index("cage_slip")] = math.nan
+            self._result.bands.append(bands._replace(numbers=numbers))
         for sink in (*self._recordings, *self._watchers):
             sink.write_bands(bands)
 

@@ -14,6 +14,7 @@ from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.messages.bands import ESTIMATES, Bands
 from bearing_sim.messages.topics import INPUTS, MEASURED, MEASURED_CHANNELS
+from bearing_sim.model.turning import turns
 from bearing_sim.recording.reader import Received, Recording, measured_numbers
 from bearing_sim.stored_state.state import StoredState
 
@@ -104,7 +105,7 @@ class ReproducedBands:
                 if float(part["time"][0]) in restarts:
                     self._estimation.restart()
                 found += self._estimation.take(part)
-        turning = dict(zip(block["time"].tolist(), (np.abs(block["shaft_speed"]) >= self._slowest).tolist()))
+        turning = dict(zip(block["time"].tolist(), turns(block["shaft_speed"], self._slowest).tolist()))
         for bands in found:
             self._enter(1, bands, [bands.topic == ESTIMATES or turning[time] for time in bands.times.tolist()])
         return found

@@ -20,7 +20,8 @@ class NoHeat:
 class GivenHeat:
     """Temperatures that are known, each constant; a part without one has the temperature of the oil.
 
-    A measured temperature of a ring replaces the one given here.
+    A measured temperature of a ring replaces the one given here.  With the dimensions of the running bearing (`bearing.dimensions_at`) temperatures
+    of rings and rollers change the films only, and those of shaft and housing are refused.
     """
 
     law: Literal["given"] = "given"
@@ -132,6 +133,24 @@ def sink_errors(heat, lubricant) -> list[str]:
     if no_flow and no_housing and no_shaft:
         return ["heat.oil_flow: no oil flows through, and housing and shaft give off no heat: the network has no sink; open one of the three"]
     return []
+
+
+def given_errors(heat, dimensions_at: str) -> list[str]:
+    """Return error messages for given temperatures that change nothing: films do not know shaft and housing, running dimensions no growth.
+
+    Parameters
+    ----------
+    heat : of the scene.
+    dimensions_at : of the bearing.
+    """
+    if heat.law != "given" or dimensions_at != "running":
+        return []
+    return [
+        f"heat.{name}: the dimensions are those of the running bearing, which the temperature of the {name} does not change; set "
+        "bearing.dimensions_at: cold, or leave it out"
+        for name in ("shaft", "housing")
+        if getattr(heat, name) is not None
+    ]
 
 
 Heat = Annotated[NoHeat | GivenHeat | NetworkHeat, Field(discriminator="law")]

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import yaml
 
+from bearing_sim.scene.fidelity import WHIRLING
 from bearing_sim.scene.loader import scene_from_mapping
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
@@ -28,6 +29,10 @@ _TEMPERATURES = {"oil_jet": "60 degC", "oil_bath": "40 degC", "grease": "40 degC
 _CLEANLINESS = {"oil": "bath_17_14", "grease": "grease_normal_cleanliness"}
 
 
+_STEEL = 7850.0  # kg/m^3
+_SHAFT_WIDTHS = (3.0, 1.0, 10.0)  # lengths of a shaft that moves with the inner ring, usual, least and most, over the bearing's width; assumptions
+
+
 class Wish(NamedTuple):
     """What somebody wants to know about a bearing; texts as a scene file has them.
 
@@ -38,6 +43,7 @@ class Wish(NamedTuple):
     speed, load : of the shaft, and on it.
     temperature : of lubricant and bearing; None: a thermal network computes the temperatures.
     level : of fidelity.
+    mass : of shaft and rotor that moves with the inner ring; None: estimated, with a range.  Levels steady and slip have no use for it.
     """
 
     bearing: str
@@ -46,6 +52,7 @@ class Wish(NamedTuple):
     load: str
     temperature: str | None = None
     level: str = "slip"
+    mass: str | None = None
 
 
 def new_scene(wish: Wish, name: str, command: str) -> tuple[str, Scene]:
@@ -75,9 +82,10 @@ def new_scene(wish: Wish, name: str, command: str) -> tuple[str, Scene]:
             "The temperatures follow from the losses. Assumptions: a plummer block of usual size, in air that a machine stirs.",
             "Where temperatures are known, give them: heat: {law: given, inner_ring: 70 degC, outer_ring: 60 degC}.",
         ],
+        "support": [] if wish.mass is not None else _about_mass(),
         "life": ["Assumption: normal cleanliness, for a_ISO of ISO 281; none: a_ISO = 1."],
     }
-    for block in ("bearing", "mounting", "lubricant", "operating", "heat", "life"):
+    for block in ("bearing", "mounting", "support", "lubricant", "operating", "heat", "life", "uncertainty"):
         if block in tree:
             written = yaml.dump({block: tree[block]}, sort_keys=False, allow_unicode=True, width=_WIDTH)
             lines += [*_comments(notes.get(block, ())), *written.splitlines(), ""]
@@ -120,8 +128,29 @@ def _choose(tree: dict, scene: Scene, wish: Wish) -> None:
         lubricant["temperature"] = _TEMPERATURES.get(law, _TEMPERATURES["oil_jet"])
         tree["heat"] = {"law": "network", "ambient_temperature": "20 degC"}
     tree["life"] = {"a_iso": _CLEANLINESS["grease" if is_grease else "oil"]}
+    if wish.mass is not None:
+        tree["support"] = {"shaft": {"mass": wish.mass}}
+    elif wish.level in WHIRLING:
+        usual, low, high = (f"{_shaft_mass(scene, widths):.3g} kg" for widths in _SHAFT_WIDTHS)
+        tree["support"] = {"shaft": {"mass": usual}}
+        source = "how much of shaft and rotor moves with the inner ring (assumption)"
+        tree["uncertainty"] = {"support.shaft.mass": {"low": low, "high": high, "distribution": "log_uniform", "source": source}}
     if scene.bearing.dimensions_at == "cold":
         tree["mounting"] = {"shaft": {"fit": shaft_fit(scene)}, "housing": {"fit": _HOUSING_FIT}}
+
+
+def _shaft_mass(scene: Scene, widths: float) -> float:
+    """Return the mass of a piece of a solid steel shaft, so many bearing widths long [kg]."""
+    return widths * _STEEL * math.pi / 4.0 * scene.bearing.bore_diameter**2 * scene.bearing.boundary_width
+
+
+def _about_mass() -> list[str]:
+    usual, low, high = _SHAFT_WIDTHS
+    return [
+        "The mass of shaft and rotor that moves with the inner ring, which vibrates on its rollers at some kHz: where the passing rollers excite it, "
+        "it decides slip and life. Nobody gave it (new --mass). "
+        f"Assumption: a solid shaft of {usual:g} bearing widths; the range in the block uncertainty is that of {low:g} to {high:g}."
+    ]
 
 
 def _title(scene: Scene, wish: Wish, command: str) -> list[str]:

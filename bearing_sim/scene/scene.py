@@ -21,7 +21,7 @@ from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
 from bearing_sim.scene.estimation import Estimation, estimation_errors
 from bearing_sim.scene.fidelity import LEVELS, WANTS, refusals
 from bearing_sim.scene.flanges import axial_errors
-from bearing_sim.scene.heat import Heat, NoHeat, sink_errors
+from bearing_sim.scene.heat import Heat, NoHeat, given_errors, sink_errors
 from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.mounting import Mounting, mounting_errors
 from bearing_sim.scene.quantity import check, quantity, record
@@ -283,8 +283,9 @@ class LifeRating:
     """The rating life that is shown, monitored and counted as damage: L_nm = a_1 a_ISO L_10.
 
     The method is `iso16281` (ISO/TS 16281:2008: the loads on laminae of every roller, with stress risers: L10r, L_nmr), `iso281` (ISO 281:2007:
-    the load on the bearing, (C/P)^(10/3): L10, L_nm), or `deng2017` (Deng et al. 2017, eq. 18: whole rollers, without stress risers;
-    two to three times a catalogue's life, for their figures only).
+    the radial load on the bearing alone, as in a catalogue, (C/P)^(10/3): L10, L_nm), or `deng2017` (Deng et al. 2017, eq. 18: the loads of whole
+    rollers, without stress risers; two to three times L10r under the same loads, for their figures only).  The loads of rollers contain preload and
+    centrifugal force, so that these lives of a preloaded bearing may be far shorter than that of a catalogue.
 
     a_iso names the oil's cleanliness by the end of its ISO 4406 code: `filtered`, circulating through an in-line filter,
     or `bath`, without a filter or with an off-line filter; or that of a grease in the words of ISO 281, such as `high cleanliness`;
@@ -306,8 +307,8 @@ class LifeRating:
         """By which loads the method rates, in words."""
         return {
             "iso16281": "the loads on the laminae of all rollers",
-            "iso281": "the load on the bearing",
-            "deng2017": "the loads on whole rollers, two to three times a catalogue's life",
+            "iso281": "the radial load on the bearing",
+            "deng2017": "the loads of whole rollers (eq. 18 of Deng et al. 2017)",
         }[self.method]
 
     @property
@@ -488,7 +489,8 @@ class Scene:
     @check
     def _operation_is_within_bounds(self) -> list[str]:
         errors = step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + support_errors(self)
-        errors += axial_errors(self) + sink_errors(self.heat, self.lubricant) + cleanliness_errors(self)
+        errors += axial_errors(self) + sink_errors(self.heat, self.lubricant) + given_errors(self.heat, self.bearing.dimensions_at)
+        errors += cleanliness_errors(self)
         return errors + range_errors(self) + estimation_errors(self)
 
 

@@ -24,6 +24,7 @@ from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
 from bearing_sim.scene.bearing import Bearing
+from bearing_sim.scene.fidelity import WHIRLING
 from bearing_sim.scene.quantity import SPEED, Quantity, check, record
 
 _MOST_ERRORS = 50  # that are listed
@@ -31,7 +32,14 @@ _LONGEST_PATH = 200  # characters of a path for which the nearest is looked for
 BLOCKS = ("bearing", "lubricant", "operating", "mounting", "heat", "support")  # of a scene; their quantities may have ranges
 _ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
 _LOW_RADIUS = "outer_raceway.low_radius"
+# Lengths there decide the clearance.
+_DIMENSIONS = ("bearing.clearance", "bearing.inner_raceway.", "bearing.outer_raceway.", "bearing.roller.", "mounting.")
 _TRACTION_FACTOR = 1.5  # assumption
+# Defaults of a scene that decide how an inner ring vibrates, with their ranges.
+_RING_RANGES = (
+    ("support.shaft.mass", 0.5, 0.05, 5.0, "how much of shaft and rotor moves with the inner ring (assumption: a factor of 10 to either side)"),
+    ("bearing.contact.damping_time", 2.5e-6, 0.4e-6, 25e-6, "Kraemer: 2.5 to 25 us; below it an assumption"),
+)
 _MIDDLE = 0.9  # of the values of an estimated field lie within its range
 _CLOSE_ENOUGH = 0.6  # of difflib's ratio
 
@@ -266,6 +274,31 @@ def lubricant_ranges(scene) -> Iterator[Range]:
     if oil.law == "custom" and oil.viscosity_100 is None and oil.name.startswith("ISO VG"):
         source = "a viscosity class reaches 10 % to either side (ISO 3448)"
         yield Range(field="lubricant.oil.viscosity_40", low=0.9 * oil.viscosity_40, high=1.1 * oil.viscosity_40, source=source)
+
+
+def ring_ranges(scene) -> Iterator[Range]:
+    """Yield the ranges of what decides how an inner ring vibrates on its rollers, at levels that compute it, where a scene has its defaults."""
+    declared = {one.field for one in scene.uncertainty}
+    if scene.level in WHIRLING:
+        for field, default, low, high, source in _RING_RANGES:
+            if value_at(scene, field) == default and field not in declared:
+                yield Range(field=field, low=low, high=high, distribution="log_uniform", source=source)
+
+
+def without_dimensions(fields: Iterable[str]) -> str:
+    """Return the note `` (no dimension is uncertain)`` for a band of life whose uncertain fields contain no dimension that decides the clearance.
+
+    Such dimensions are the lengths of raceways and rollers, the clearance, and the fits of shaft and housing.
+
+    Parameters
+    ----------
+    fields : the uncertain ones, by dotted path.
+    """
+    from bearing_sim.scene.scene import Scene  # here, because a scene is made of ranges
+
+    known = quantities(Scene)
+    lengths = (path for path in fields if path.startswith(_DIMENSIONS) and path in known and known[path].unit == "m")
+    return "" if any(lengths) else " (no dimension is uncertain)"
 
 
 def shown(known: Mapping[str, Quantity], path: str, value: float) -> str:

@@ -23,7 +23,8 @@ from bearing_sim.scene.scene import Scene
 SLIP_BOUNDS = (0.05, 0.1)
 KAPPA_BOUNDS = (0.1, 0.4, 1.0, 4.0)
 LOAD_BOUNDS = (0.02, 0.1, 0.5)
-_STOPPED = 0.5  # of the speed from which on the shaft turns: below, it has stopped, and the next turning is a start
+_LEAST_OF_OPERATING = 0.01  # of the operating speed: a shaft that is made to turn slower than slip counts runs from here on
+_STOPPED = 0.5  # of the speed from which on the shaft runs: below, it has stopped, and the next running is a start
 _HOUR = 3600.0  # [s]
 
 
@@ -39,14 +40,19 @@ class Criteria(NamedTuple):
 
     Attributes
     ----------
-    fastest : speed of which a hundredth is turning [rad/s], that of the scene's operating conditions.
-    slip_from_speed : speed from which on the largest slip is looked for [rad/s].
+    fastest : the speed of the scene's operating conditions [rad/s].
+    slip_from_speed : speed from which on the shaft turns, and its slip counts [rad/s] (`bearing_sim.model.turning`).
     dynamic_rating : C [N].
     """
 
     fastest: float
     slip_from_speed: float
     dynamic_rating: float
+
+    @property
+    def runs_from(self) -> float:
+        """Speed from which on the shaft runs [rad/s]: it also does where it is made to turn slower than slip counts."""
+        return min(self.slip_from_speed, _LEAST_OF_OPERATING * self.fastest or self.slip_from_speed)
 
 
 def criteria(scene: Scene) -> Criteria:
@@ -67,10 +73,10 @@ class Totals:
     damage : fraction of the rating life used, by the life that the scene counts (Miner).
     basic_damage : the same by the basic rating life of the scene's method, without reliability and oil.
     revolutions : of the shaft.
-    monitored_seconds, running_seconds : time that was simulated, and how much of it the shaft turned [s].
-    starts : how often the shaft began to turn after a stop.
+    monitored_seconds, running_seconds : time that was simulated, and how much of it the shaft ran [s].
+    starts : how often the shaft began to run after a stop.
     slip_seconds, lubrication_seconds, load_seconds : running time by regime [s], one more than there are bounds; the last of slip and of
-        lubrication is for samples without a slip or a viscosity ratio.
+        lubrication is for samples without a slip that counts or without a viscosity ratio.
     largest_slip : from the scene's ``thresholds.slip_from_speed`` on; a fraction.  None before the first.
     lowest_clearance : the lowest running clearance [m], likewise.
     """
@@ -157,9 +163,10 @@ def totals_of(block: np.ndarray, times_ns: np.ndarray, seconds: np.ndarray, used
     was_turning : whether the shaft turned before.
     """
     speeds = np.abs(block["shaft_speed"])
-    turning = turns(speeds, by.fastest)
-    running = np.where(turning, seconds, 0.0)
-    phases = turning.astype(int) - (~turning & ~turns(speeds / _STOPPED, by.fastest)) * 1  # 1 turns, -1 stands, 0 neither
+    runs = turns(speeds, by.runs_from)
+    running = np.where(runs, seconds, 0.0)
+    phases = runs.astype(int) - (~runs & ~turns(speeds / _STOPPED, by.runs_from)) * 1  # 1 runs, -1 stands, 0 neither
+    slips = np.where(turns(speeds, by.slip_from_speed), np.abs(block["cage_slip"]), np.nan)
     phases = np.concatenate(([1 if was_turning else -1], phases[(phases != 0) & (seconds > 0.0)]))
     lives = block["rating_life"]
     rates = np.where(lives > 0.0, 1.0 / np.where(lives > 0.0, lives, 1.0), 0.0) / _HOUR
@@ -170,10 +177,10 @@ def totals_of(block: np.ndarray, times_ns: np.ndarray, seconds: np.ndarray, used
         monitored_seconds=float(seconds.sum()),
         running_seconds=float(running.sum()),
         starts=int(((phases[1:] == 1) & (phases[:-1] == -1)).sum()),
-        slip_seconds=_by_class(np.abs(block["cage_slip"]), running, SLIP_BOUNDS, has_unknown=True),
+        slip_seconds=_by_class(slips, running, SLIP_BOUNDS, has_unknown=True),
         lubrication_seconds=_by_class(block["viscosity_ratio"], running, KAPPA_BOUNDS, has_unknown=True),
         load_seconds=_by_class(np.hypot(block["load_y"], block["load_z"]) / by.dynamic_rating, running, LOAD_BOUNDS),
-        largest_slip=_extreme(np.where(speeds >= by.slip_from_speed, np.abs(block["cage_slip"]), np.nan), times_ns, seconds, np.nanargmax),
+        largest_slip=_extreme(slips, times_ns, seconds, np.nanargmax),
         lowest_clearance=_extreme(block["running_clearance"], times_ns, seconds, np.nanargmin),
     )
     return totals, bool(phases[-1] == 1)

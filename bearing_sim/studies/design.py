@@ -11,7 +11,7 @@ each interval of radii, and narrows or withdraws what it refuses.
 import itertools
 import math
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
@@ -23,6 +23,7 @@ from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.scene.loader import SceneError, load_scene, scene_to_yaml
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import with_values
+from bearing_sim.studies.rating import loads_text
 from bearing_sim.sweep.conditions import Conditions, OperatingPoint, PointError, combined_life, scene_at_point
 from bearing_sim.sweep.grid import Axis, axis, one_line, scene_at
 from bearing_sim.sweep.point import OK, REFUSED, UNSETTLED, Column, point_row
@@ -43,6 +44,8 @@ ALIKE = {
     ("planar", "spatial"): "level spatial adds tilt and skew only; without a moment or misalignment it agrees with level planar",
 }
 CONFIRMED, NARROWED, WITHDRAWN, NOT_VERIFIED = "confirmed", "narrowed", "withdrawn", "not verified"
+END_OF_MAP = "end of the map"  # bounds an interval whose last raceway of the map meets the limits
+STATE = "each raceway in the state that its cage comes to from ideal rolling"
 _HALVINGS = 7
 _ROUNDS = 4  # of narrowing an interval until its edges and its centre meet the limits at the level that verifies
 _BELOW, _ABOVE, _RADII = 2.5e-6, 5e-6, 16  # default range of radii about the scene's [m], and their number
@@ -69,7 +72,7 @@ BORDER_COLUMNS = (
     Column(D_VALUE, "mm", "high-point radius minus low-point radius, D"),
     Column("low_radius_from", "mm", "smallest low-point radius that meets the limits"),
     Column("low_radius_to", "mm", "largest low-point radius that meets the limits"),
-    Column("bound_below_by", "", "what bounds the region at low_radius_from: slip, life, no result, or the searched range"),
+    Column("bound_below_by", "", "what bounds the region at low_radius_from: slip, life, no result, or the end of the map"),
     Column("bound_above_by", "", "what bounds it at low_radius_to"),
     Column("verdict", "", "of the level that verifies: confirmed, narrowed, withdrawn; or not verified"),
     Column("verified_from", "mm", "smallest low-point radius that meets the limits at both levels; NaN if there is none or none was verified"),
@@ -195,6 +198,17 @@ class Designed(NamedTuple):
         found = self.recommended(WORST) or self.recommended(NOMINAL)
         return max(found, key=lambda border: border.low_to - border.low_from, default=None)
 
+    def open_ends(self, kind: str) -> str:
+        """Return where the map ends at raceways that meet the limits, so that the limit lies beyond it; empty if it does nowhere."""
+        borders, d_values = [border for border in self.borders if border.kind == kind], self.grid.values(D_VALUE)
+        d_ends = sorted({border.d_value for border in borders} & {min(d_values), max(d_values)})
+        lows = [border.low_from for border in borders if border.below_by == END_OF_MAP]
+        highs = [border.low_to for border in borders if border.above_by == END_OF_MAP]
+        ends = [f"D = {' and '.join(f'{d_value:.4f}' for d_value in d_ends)} mm"] if d_ends else []
+        radii = sorted({*lows, *highs})
+        ends += [f"R_low = {' and '.join(f'{radius:.5f}' for radius in radii)} mm"] if radii else []
+        return f"the map ends at {', and at '.join(ends)}, where raceways meet both limits: the region goes on beyond it" if ends else ""
+
     @property
     def border_table(self) -> Table:
         """The intervals as a table."""
@@ -236,7 +250,7 @@ def read_design(path: Path) -> Designed:
 def life_name(scene: Scene) -> str:
     """Return the name of the life that a scene chooses, which a design keeps above its limit."""
     life = scene.life
-    name = f"{life.symbols[0 if life.is_basic else 1]}, by {life.loads}"
+    name = f"{life.symbols[0 if life.is_basic else 1]}, by {loads_text(scene)}"
     return name if life.is_basic else f"{name}; reliability {100 * life.reliability:g} %, cleanliness {life.a_iso}"
 
 
@@ -661,7 +675,7 @@ def _ends(kind, d_value, rows, limits) -> list[tuple[_Edge, _Edge]]:
         edges = []
         for inside, outside in ((first, first - 1), (last, last + 1)):
             beyond = radii[outside] if 0 <= outside < len(radii) else None
-            broken_by = "range" if beyond is None else limits.broken_by(rows[beyond, d_value], kind)
+            broken_by = END_OF_MAP if beyond is None else limits.broken_by(rows[beyond, d_value], kind)
             edges.append(_Edge(kind, d_value, radii[inside], beyond, broken_by))
         found.append(tuple(edges))
     return found
@@ -669,13 +683,26 @@ def _ends(kind, d_value, rows, limits) -> list[tuple[_Edge, _Edge]]:
 
 _SLIP, _LIFE, _REFUSED = "#b2451f", "#0072b2", "#c1121f"
 _REGIONS = {NOMINAL: {"facecolor": "#cfe8d8", "edgecolor": "#3d8b5e"}, WORST: {"facecolor": "#7fc49b", "edgecolor": "#1d5c39"}}
-_WORDS = {NOMINAL: "meets both limits", WORST: "meets both limits within the tolerances"}
+
+
+def condition_name(kind: str, wanted: Mapping) -> str:
+    """Return in words in which conditions a kind of result meets the limits.
+
+    Parameters
+    ----------
+    kind : one of `KINDS`.
+    wanted : the limits and conditions of a design, as they stand in its table.
+    """
+    if kind == WORST:
+        return f"in the worst case of {wanted['spread']}"
+    return "at nominal speeds and loads" if wanted["points"] else "at nominal speed and load"
 
 
 def draw(path: Path | BinaryIO, designed: Designed, beside: tuple[str, tuple[float, float], tuple[float, float]] | None = None) -> None:
     """Draw the regions and isolines of slip and life into a file.
 
-    After verification the region that is left is filled, and the one before is outlined.
+    The region of the worst case and the nominal one each stand under their own name, also where there is none.  After verification the region
+    that is left is filled, and the one before is outlined.
 
     Parameters
     ----------
@@ -687,12 +714,21 @@ def draw(path: Path | BinaryIO, designed: Designed, beside: tuple[str, tuple[flo
     axes = figure.subplots()
     about, d_values = designed.grid.about, sorted(set(designed.grid.values(D_VALUE)))
     verify_level, limits = about["verify_level"], about["wanted"]
+    at = f"{about['level']} and {verify_level}" if verify_level else about["level"]
+    absent, beyond = [], {}
     for kind, look in _REGIONS.items():
-        both = f"{_WORDS[kind]}, at {verify_level} too" if verify_level else _WORDS[kind]
-        _fill(axes, designed.recommended(kind), d_values, look | {"label": both})
+        condition, borders = condition_name(kind, limits), designed.recommended(kind)
+        _fill(axes, borders, d_values, look | {"label": f"{condition}: meets both limits at {at}"})
+        found = [border for border in designed.borders if border.kind == kind]
         if verify_level:
-            found = [border for border in designed.borders if border.kind == kind]
-            _outline(axes, found, d_values, {"color": look["edgecolor"], "label": f"{_WORDS[kind]} at {about['level']}"})
+            _outline(axes, found, d_values, {"color": look["edgecolor"], "label": f"{condition}: meets both limits at {about['level']}"})
+        if not borders:
+            absent.append(f"{condition}: no raceway of the map meets both limits at {at}")
+        if ends := designed.open_ends(kind):
+            beyond.setdefault(ends, []).append(condition)
+    if absent:
+        box = {"facecolor": "white", "edgecolor": _REFUSED, "boxstyle": "round"}
+        axes.text(0.5, 0.97, "\n".join(absent), transform=axes.transAxes, ha="center", va="top", fontsize=10, color=_REFUSED, bbox=box, zorder=5)
     refused = [check for check in designed.checks if not check.verified_meets]
     if refused:
         places = [check.d_value for check in refused], [check.low_radius for check in refused]
@@ -710,7 +746,10 @@ def draw(path: Path | BinaryIO, designed: Designed, beside: tuple[str, tuple[flo
     verified = f", verified at {verify_level}" if verify_level else ""
     points = f"{len(limits['points'])} operating points, " if limits["points"] else ""
     title = f"{about['name']} at level {about['level']}{verified}: slip below {limits['slip_below']:g} %, life above {limits['life_above']:g} h"
-    figure.suptitle("\n".join([title, *textwrap.wrap(f"{about['life']}; {points}tolerances: {limits['spread']}", 120)]), fontsize=10)
+    figure.suptitle("\n".join([title, *textwrap.wrap(f"{about['life']}; {points}{STATE}", 120)]), fontsize=10)
+    if beyond:
+        texts = [ends if len(conditions) == len(KINDS) else f"{conditions[0]} {ends}" for ends, conditions in beyond.items()]
+        axes.set_title("\n".join(line for text in texts for line in textwrap.wrap(text, 140)), fontsize=8)
     figure.savefig(path, dpi=130)
 
 

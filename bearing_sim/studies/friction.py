@@ -6,19 +6,22 @@ oil bath to the middle of the lowest roller, at 70 degC, in a mineral oil of 12 
 moments are those of level ``steady``.
 """
 
+import dataclasses
 import math
 import re
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-import numpy as np
-
+from bearing_sim.levels.steady.model import Work, new_work
 from bearing_sim.levels.steady.operating_point import ANSWER
-from bearing_sim.levels.steady.table_builder import solve_points
-from bearing_sim.model.params import lubricate, pack
+from bearing_sim.model.params import pack
+from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.physics.drag import bath_moment
 from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.lubricant import NoRollingResistance
 from bearing_sim.scene.scene import Scene
+from bearing_sim.simulation import Inputs, scene_inputs
+from bearing_sim.sweep.thermal import OperatingState, operating_state, solved_answer
 
 LOADS = (0.02, 0.05, 0.1, 0.2)  # of C_0
 SPEEDS = (0.25, 0.5, 1.0)  # of the maker's reference speed, beside 500 rpm
@@ -183,7 +186,7 @@ def moments(scene: Scene, series: str, conditions: Sequence[tuple[float, float]]
 
     Parameters
     ----------
-    scene : its oil, at its temperature, and its supply count.
+    scene : its oil, its temperatures and its supply count, and the direction of its load.
     series : of `SERIES`.
     conditions : speed [rpm] and load [N] of each.
 
@@ -191,40 +194,45 @@ def moments(scene: Scene, series: str, conditions: Sequence[tuple[float, float]]
     ------
     ValueError
         No operating point was found.
+    IntegrationError
+        There is no thermal equilibrium.
     """
-    params = pack(scene)
-    temperature, dimensions = scene.lubricant.temperature, dimensions_of(scene)
-    viscosity = 1e6 * lubricate(scene.lubricant, params, temperature).kinematic_viscosity
-    supply = scene.lubricant.supply
+    angle, kelvin = scene.operating.load_angle, scene.lubricant.temperature
+    asked = [Inputs(speed * _RPM, load * math.cos(angle), load * math.sin(angle), kelvin) for speed, load in conditions]
+    work = new_work(pack(scene))
+    return [_moment(scene, series, inputs, operating_state(scene, inputs), work) for inputs in asked]
+
+
+def _moment(scene: Scene, series: str, inputs: Inputs, state: OperatingState, work: Work) -> Moment:
+    """Return the moments at one condition, see `moments`."""
+    params, lubrication, _ = state
+    speed, load = abs(inputs.shaft_speed) / _RPM, math.hypot(inputs.load_y, inputs.load_z)
+    if speed == 0.0:
+        raise ValueError(f"{scene.name}: operating.shaft_speed: 0; friction is compared with makers' models while the shaft turns: give a speed")
+    answer = solved_answer(state, inputs, work)
+    if not math.isfinite(answer[ANSWER.cage_slip]):
+        raise ValueError(f"{scene.name}: no operating point at {speed:g} rpm and {load:g} N")
+    dimensions, viscosity, supply = dimensions_of(scene), 1e6 * lubrication.kinematic_viscosity, scene.lubricant.supply
     level = 1e3 * (supply.level if getattr(supply, "level", None) is not None else params.rollers.radius)
-    points = np.array([[speed * _RPM, load, temperature, 0.0] for speed, load in conditions])
-    found = []
-    for (speed, load), answer in zip(conditions, solve_points(scene, points)):
-        if not math.isfinite(answer[ANSWER.cage_slip]):
-            raise ValueError(f"{scene.name}: no operating point at {speed:g} rpm and {load:g} N")
-        per_watt = 1e3 / (speed * _RPM)
-        parts = {name: float(answer[column]) * per_watt for name, column in ANSWER._asdict().items() if name.endswith("_power")}
-        viscous, by_load = simple_moment(series, dimensions, speed, load, viscosity)
-        found.append(
-            Moment(
-                scene.bearing.name,
-                series,
-                speed,
-                load / params.life.static_rating,
-                parts["shaft_power"],
-                parts["inner_rolling_power"] + parts["outer_rolling_power"],
-                parts["inner_sliding_power"] + parts["outer_sliding_power"],
-                parts["churning_power"] + parts["windage_power"] + parts["land_power"],
-                parts["pocket_power"],
-                parts["seal_power"],
-                parts["flange_power"],
-                viscous,
-                by_load,
-                skf_moment(series, dimensions, speed, load, viscosity, level),
-                float(answer[ANSWER.cage_slip]),
-            )
-        )
-    return found
+    parts = {name: float(answer[column]) * 1e3 / (speed * _RPM) for name, column in ANSWER._asdict().items() if name.endswith("_power")}
+    viscous, by_load = simple_moment(series, dimensions, speed, load, viscosity)
+    return Moment(
+        scene.bearing.name,
+        series,
+        speed,
+        load / params.life.static_rating,
+        parts["shaft_power"],
+        parts["inner_rolling_power"] + parts["outer_rolling_power"],
+        parts["inner_sliding_power"] + parts["outer_sliding_power"],
+        parts["churning_power"] + parts["windage_power"] + parts["land_power"],
+        parts["pocket_power"],
+        parts["seal_power"],
+        parts["flange_power"],
+        viscous,
+        by_load,
+        skf_moment(series, dimensions, speed, load, viscosity, level),
+        float(answer[ANSWER.cage_slip]),
+    )
 
 
 def moment_table(progress: Callable[[str], None] = lambda name: None, overrides: Sequence[str] = ()) -> list[Moment]:
@@ -276,7 +284,7 @@ def thermal_speeds(progress: Callable[[str], None] = lambda name: None, override
         dimensions, printed = dimensions_of(scene), scene.bearing.ratings.reference_speed / _RPM
         load = REFERENCE_LOAD * scene.bearing.ratings.static
         level = 500.0 * scene.bearing.roller.diameter
-        viscosity = 1e6 * lubricate(scene.lubricant, pack(scene), TEMPERATURE).kinematic_viscosity
+        viscosity = 1e6 * operating_state(scene).lubrication.kinematic_viscosity
         laws = (
             lambda speed: moments(scene, series, [(speed, load)])[0].model,
             lambda speed: sum(simple_moment(series, dimensions, speed, load, viscosity)),
@@ -296,11 +304,13 @@ class Comparison(NamedTuple):
     """Friction of one bearing at one condition [W]."""
 
     series: str
-    without_resistance: float
+    without_resistance: float  # at the same temperatures
     model: float
     simple: float
     skf: float
     coefficient: float  # by 0.0011 P d/2, the simplest of makers' rules
+    viscosity: float  # of the oil in the contacts, as all models take it [mm^2/s]
+    temperatures: dict[str, float]  # of the parts, by the names of the observables [K]; NaN where the scene's law of heat says nothing
 
 
 def compare(scene: Scene, series: str) -> Comparison:
@@ -308,16 +318,26 @@ def compare(scene: Scene, series: str) -> Comparison:
 
     Parameters
     ----------
-    scene : its operating conditions count.
+    scene : its operating conditions count; with a thermal network it is in equilibrium.
     series : of `SERIES`.
+
+    Raises
+    ------
+    ValueError
+        The shaft is at rest, or no operating point was found.
+    IntegrationError
+        There is no thermal equilibrium.
     """
-    import dataclasses
-
-    from bearing_sim.scene.lubricant import NoRollingResistance
-
-    speed, load = abs(scene.operating.shaft_speed) / _RPM, scene.operating.radial_load
+    inputs, state = scene_inputs(scene), operating_state(scene)
     plain = dataclasses.replace(scene, lubricant=dataclasses.replace(scene.lubricant, rolling_resistance=NoRollingResistance()))
-    bare, full = (moments(each, series, [(speed, load)])[0] for each in (plain, scene))
-    watts = 1e-3 * speed * _RPM
-    coefficient = 0.0011 * load * 0.5 * dimensions_of(scene).bore
-    return Comparison(series, *(watts * moment for moment in (bare.model, full.model, full.simple, full.skf, coefficient)))
+    work = new_work(state.params)
+    bare = _moment(plain, series, inputs, operating_state(plain, inputs, state.temperatures), work)
+    full = _moment(scene, series, inputs, state, work)
+    watts, load = 1e-3 * abs(inputs.shaft_speed), scene.operating.radial_load
+    return Comparison(
+        series,
+        *(watts * moment for moment in (bare.model, full.model, full.simple, full.skf)),
+        0.0011 * load * 0.5 * dimensions_of(scene).bore * watts,
+        1e6 * state.lubrication.kinematic_viscosity,
+        dict(zip(NODE_OBSERVABLES, state.temperatures.tolist())),
+    )

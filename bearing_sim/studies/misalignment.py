@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.simulation import Simulation
 from bearing_sim.studies.statics import Statics, statics
 from bearing_sim.sweep.point import mean_life
 from bearing_sim.sweep.table import COLOURS, MARKERS, new_figure
+from bearing_sim.sweep.thermal import simulation_in_equilibrium
 
 CROWNS = ("none", "iso_log")
 _SAMPLES_PER_TURN = 20
@@ -78,7 +78,7 @@ def _run(scene, crown, misalignment, slices, turns):
     speed = 0.5 * abs(scene.operating.shaft_speed) * (1.0 - scene.bearing.diameter_ratio)
     if speed == 0.0:
         raise ValueError("operating.shaft_speed: 0; this study needs a rotating shaft, for the balance at rest use `bearing-sim loads`")
-    run, turn = Simulation(scene), 2 * np.pi / speed
+    run, turn = simulation_in_equilibrium(scene), 2 * np.pi / speed
     run.advance(turns[0] * turn)
     block = run.advance(turns[1] * turn, samples=max(round(turns[1] * _SAMPLES_PER_TURN), 1))
     return Misaligned(

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearing_sim.model.sample import OBSERVABLES, RING_TEMPERATURES
-from bearing_sim.model.validity import Exceedance, outside
+from bearing_sim.model.validity import Exceedance, Grade, outside
 from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import ranges_of, without_dimensions
 from bearing_sim.sweep.point import DURATION, RESULTS, positive_seconds, results_of, run_until_settled
 from bearing_sim.sweep.settling import Outcome
 from bearing_sim.sweep.states import ROLLING, SKID, Others, other_states, skid_start, state_rows
@@ -103,8 +104,10 @@ class Settled:
 
     @cached_property
     def warnings(self) -> tuple[Exceedance, ...]:
-        """Laws that are used outside of their ranges, each with its worst value."""
-        return tuple(outside(self.scene, self.outcome.window))
+        """Laws that are used outside of their ranges, each with its worst value, what it moves, and its grade."""
+        from bearing_sim.estimation.grading import graded  # here, because it takes long to import
+
+        return tuple(graded(self.scene, outside(self.scene, self.outcome.window), self.outcome.window[-1]))
 
     def __getattr__(self, name: str) -> Any:
         if name in _RESULTS:
@@ -150,12 +153,17 @@ class Settled:
         if math.isfinite(last[RING_TEMPERATURES[0]]):
             inner, outer = (last[name] - _CELSIUS for name in RING_TEMPERATURES)
             lines.append(f"  ring temperatures    inner {inner:.4g} degC, outer {outer:.4g} degC")
-        lines += [f"  beyond its range     {each.law.law} ({each.short}), see warnings" for each in self.warnings]
+        lines += [
+            f"  beyond its range     {each.law.law} ({each.short}): {each.said_effect}, see warnings"
+            for each in self.warnings
+            if each.grade == Grade.WARNING
+        ]
         return "\n".join(lines)
 
     def _band(self, name: str, factor: float = 1.0, unit: str = "h") -> str:
         band = self.bands.get(name)
-        return "" if band is None else f", 90 % of cases between {factor * band.low:.3g} and {factor * band.high:.3g} {unit}"
+        note = without_dimensions(one.field for one in ranges_of(self.scene)) if unit == "h" else ""
+        return "" if band is None else f", 90 % of cases between {factor * band.low:.3g} and {factor * band.high:.3g} {unit}{note}"
 
 
 def settle(

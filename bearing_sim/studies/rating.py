@@ -6,6 +6,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from bearing_sim.messages.topics import ARRAYS, LIFE_SYMBOLS
+from bearing_sim.model.running_clearance import clearance_at_speed
+from bearing_sim.model.turning import turns
 from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.physics.rating_life import reliability_factor
 from bearing_sim.scene.ratings import rate
@@ -13,6 +15,16 @@ from bearing_sim.scene.scene import Scene
 from bearing_sim.sweep.point import LIVES, mean_life
 
 FACTORS = ARRAYS["life_factors"].fields
+
+
+def loads_text(scene: Scene) -> str:
+    """Return by which loads the life of a scene is rated, in words: those of rollers contain the preload of its raceways, if it has any."""
+    bearing, loads = scene.bearing, scene.life.loads
+    if scene.life.method == "iso281" or clearance_at_speed(bearing, scene.mounting, scene.operating.shaft_speed) >= 0.0:
+        return loads
+    outer = bearing.outer_raceway
+    lobed = outer.d_value > 0.0 or outer.contour is not None or bool(outer.low_points)
+    return f"{loads} with the {'preload of the lobes' if lobed else 'preload'}"
 
 
 def life_report(scene: Scene, samples: np.ndarray) -> dict:
@@ -24,7 +36,8 @@ def life_report(scene: Scene, samples: np.ndarray) -> dict:
     samples : of a settled bearing, shape (n,), see `bearing_sim.model.sample`.
     """
     lives, films = {name: mean_life(samples[name]) for name in LIVES}, ThinnestFilm(scene)
-    return report_of(scene, lives | {name: float(np.mean(samples[name])) for name in FACTORS}, float(np.mean(films.least(samples))))
+    film = np.where(turns(samples["shaft_speed"], 0.0), films.least(samples), np.nan)  # none at rest
+    return report_of(scene, lives | {name: float(np.mean(samples[name])) for name in FACTORS}, float(np.mean(film)))
 
 
 def report_of(scene: Scene, values: Mapping[str, float], film: float) -> dict:
@@ -34,7 +47,7 @@ def report_of(scene: Scene, values: Mapping[str, float], film: float) -> dict:
     ----------
     scene : whose ratings and choice of life stand in the report.
     values : by the names of `LIVES` [h] and `FACTORS` [SI].
-    film : least film thickness [m].
+    film : least film thickness [m], NaN without a film.
     """
     rated, roughness = rate(scene.bearing), scene.bearing.roughness
     return {

@@ -16,8 +16,9 @@ import numpy as np
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.characteristic_frequencies import frequencies_text, mean_frequencies
-from bearing_sim.model.plausibility import plausibility
+from bearing_sim.model.plausibility import left_out, plausibility
 from bearing_sim.model.sample import OBSERVABLES, joined
+from bearing_sim.model.turning import DIVIDED, slip_statistics, stands_text, turns
 from bearing_sim.model.validity import counted
 from bearing_sim.recording.bag import ACTIVE, RecordingError
 from bearing_sim.recording.provenance import versions
@@ -37,6 +38,7 @@ _RECORDINGS, _TABLES = (".mcap", ACTIVE), (".parquet", ".csv")
 _MOST_ROWS = 1000  # of a table on a page; the files have all
 _MOST_POINTS = 4000  # of a line in a picture
 _LAST = 0.2  # of a recording, over which its final results are averaged
+_GAP = 10.0  # usual intervals of samples from which on a pause counts as a gap
 _SECTORS = 72  # of the circle, for the load distribution
 
 
@@ -165,7 +167,7 @@ def _table_part(path: Path, table: Table) -> _Part:
 def _reasons(rows: Sequence[Mapping]) -> list[str]:
     """Return how many rows have each status other than ok, and why, and which laws are used outside of their ranges."""
     found = Counter(f"{row['status']}: {row.get('reason', '')}" for row in rows if row.get("status", OK) != OK)
-    return [f"{count} of {len(rows)} rows {text}" for text, count in found.most_common(10)] + counted(row.get("warnings") or "" for row in rows)
+    return [f"{count} of {len(rows)} rows {text}" for text, count in found.most_common(10)] + counted((row.get("warnings") or "" for row in rows), with_assumptions=True)
 
 
 def _statuses(table: Table) -> dict:
@@ -214,12 +216,16 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
                 told.append(
                     f"{count} of {sum(band.found.kind == kind for band in designed.bands)} intervals ({kind}) {verdict} at level {verify_level}"
                 )
+    for kind in studied.KINDS:
+        if ends := designed.open_ends(kind):
+            told.append(f"{studied.condition_name(kind, wanted)} {ends}")
     told += _reasons(designed.grid.rows)
     told += [f"verification: {text}" for text in _reasons([check._asdict() for check in designed.checks])]
     widest = designed.widest
-    answer = "No raceway of the map meets both limits."
+    nowhere = [studied.condition_name(kind, wanted) for kind in studied.KINDS if not designed.recommended(kind)]
+    answer = f"No raceway of the map meets both limits {', nor '.join(nowhere)}."
     if widest is not None:
-        where = "in the worst case" if widest.kind == studied.WORST else "at nominal conditions only"
+        where = "in the worst case" if widest.kind == studied.WORST else "at nominal conditions, none in the worst case"
         answer = f"Widest interval ({where}): D = {widest.d_value:.4f} mm, R_low = {widest.low_from:.5f} to {widest.low_to:.5f} mm."
     points = [Column("share", "", "of the time"), Column("shaft_speed_rpm", "rpm", "shaft speed"), Column("radial_load", "N", "radial load")]
     if any("oil_temperature_degC" in point for point in wanted["points"]):
@@ -230,6 +236,7 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
         "life": about["life"],
         "tolerances": wanted["spread"],
         "level": about["level"],
+        "state": studied.STATE,
         "verified at level": verify_level or "none",
         "raceways of the map": len(designed.grid.rows),
         **_varied(about),
@@ -284,14 +291,16 @@ def _recording_part(recording: Recording) -> _Part:
         "commit": metadata.get("git_hash", ""),
     } | {name.removeprefix("version_"): text for name, text in metadata.items() if name.startswith("version_")}
     used = float(block["damage"][-1] - block["damage"][0])
-    turning = block["cage_slip"][np.isfinite(block["cage_slip"])]
+    slips = [np.concatenate([each[name] for each in blocks]) for name in ("cage_slip", "shaft_speed", "time")]
+    slip, at_end = _slip(*slips, scene), _while_turning(settled, scene) if _turns(block[-1:], scene).all() else settled[:0]
+    none, at_rest = f"none: {stands_text(scene.thresholds.slip_from_speed)}", f"none: {stands_text(scene.thresholds.slip_from_speed)} there"
     summary = {
         "recording": ", ".join(file.name for file in recording.files),
         "simulated": f"{recording.duration:.6g} s, {recording.samples} samples",
         "level": scene.level,
-        "cage slip while turning": f"mean {100 * turning.mean():.2f} %, largest {100 * turning.max():.2f} %" if len(turning) else "none: at rest",
-        "cage slip at the end": f"{100 * np.nanmean(settled['cage_slip']):.2f} %" if np.isfinite(settled["cage_slip"]).any() else "none: at rest",
-        "characteristic frequencies at the end": frequencies_text(mean_frequencies(settled)),
+        "cage slip while turning": none if math.isnan(slip["mean"]) else f"mean {100 * slip['mean']:.2f} %, largest {100 * slip['maximum']:.2f} %",
+        "cage slip at the end": f"{100 * np.nanmean(at_end['cage_slip']):.2f} %" if np.isfinite(at_end["cage_slip"]).any() else at_rest,
+        "characteristic frequencies at the end": frequencies_text(mean_frequencies(at_end)) if len(at_end) else at_rest,
         "life used": f"{100 * used:.4g} %",
         f"life under these conditions ({studied.life_name(scene)})": f"{recording.duration / 3600 / used:.4g} h" if used > 0.0 else "not used",
         "events": ", ".join(f"{count} x {kind}" for kind, count in Counter(event.kind for event in events).most_common()) or "none",
@@ -309,7 +318,7 @@ def _recording_part(recording: Recording) -> _Part:
                 "Load distribution",
                 f"Roller loads over the azimuth from +y, mean over the last {100 * _LAST:g} % of the recording.",
             ),
-            "Observables": _observables(block, settled),
+            "Observables": _observables(blocks, settled, scene),
             "Events": rows_table(columns, listed, f"{len(events)} events") if events else "",
             **_origin(about),
         },
@@ -331,10 +340,26 @@ def _grouped(events: Sequence[Event]) -> list[tuple[str, float, int]]:
     return [(each[-1].text, each[0].time, sum(event.count for event in each)) for each in found.values()]
 
 
-def _observables(block: np.ndarray, settled: np.ndarray) -> str:
+def _slip(slips: np.ndarray, speeds: np.ndarray, times: np.ndarray, scene: Scene) -> dict[str, float]:
+    """Return the statistics of the slip of samples, each of which stands for the time since the one before; a gap counts as a usual interval."""
+    intervals = np.diff(times, prepend=times[0])
+    usual = float(np.median(intervals[1:])) if len(times) > 1 else 1.0
+    weight = np.where(intervals > _GAP * usual, usual, intervals)
+    return slip_statistics(slips, speeds, weight if len(times) > 1 else np.ones(1), scene.thresholds.slip_from_speed)
+
+
+def _turns(samples: np.ndarray, scene: Scene) -> np.ndarray:
+    return turns(samples["shaft_speed"], scene.thresholds.slip_from_speed)
+
+
+def _while_turning(samples: np.ndarray, scene: Scene) -> np.ndarray:
+    return samples[_turns(samples, scene)]
+
+
+def _observables(blocks: Sequence[np.ndarray], settled: np.ndarray, scene: Scene) -> str:
     """Return a table of all observables that are single numbers and not always 0: the mean at the end, and the range.
 
-    Lives are averaged by their damage rates, because damage adds up.
+    Lives are averaged by their damage rates, because damage adds up.  What is divided by the speed of the shaft counts while that turns.
     """
     columns = (
         Column("observable", "", "name"),
@@ -346,10 +371,14 @@ def _observables(block: np.ndarray, settled: np.ndarray) -> str:
     )
     rows = []
     for one in OBSERVABLES:
-        values = block[one.name] if not one.per_roller else np.empty(0)
+        if one.per_roller or one.name == "time":
+            continue
+        is_divided = one.name in DIVIDED
+        values = np.concatenate([each[one.name][_turns(each, scene)] if is_divided else each[one.name] for each in blocks])
         finite = values[np.isfinite(values)]
-        if one.name != "time" and finite.any():
-            end = settled[one.name][~np.isnan(settled[one.name])]
+        if finite.any():
+            last = _while_turning(settled, scene) if is_divided and one.unit != "h" else settled  # lives: no damage at rest is part of their mean
+            end = last[one.name][~np.isnan(last[one.name])]
             mean = mean_life(end) if one.unit == "h" else end.mean()
             numbers = (float(mean) if len(end) else math.nan, float(finite.min()), float(finite.max()))
             rows.append(dict(zip((column.name for column in columns), (one.name, one.unit, *numbers, one.meaning))))
@@ -386,7 +415,7 @@ def _opening(about: Mapping, told: Sequence[str]) -> str:
             f"the scene was written by another version of bearing_sim ({about.get('version') or 'unknown'}) and is shown as text only: {scene}",
         ]
     elif scene is not None:
-        told = [*told, *plausibility(scene)]
+        told = [*told, *plausibility(scene), *left_out(scene)]
     return made + again + warnings(told)
 
 

@@ -33,7 +33,7 @@ DRAWS = 64  # of the fields' scores at each operating point, the scene's own val
 _POINTS = 16_384  # that a response is fitted to, a power of two
 _BATCH = 64  # points of a task
 _LONG = 1e4  # s; longer than any lag of a cage; at level steady simulated time costs nothing
-_NEAR, _BALANCED = 0.05, 1e-3  # K, and of the shaft power: where the search of the level's equilibrium ends, and rounds go on
+_NEAR = 0.05  # K: where the search of the level's equilibrium ends, and rounds go on
 _EQUAL, _EQUAL_PART = 2e-3, 0.01  # K, and of the range of temperatures: losses of one operating point scatter by about that with its temperatures
 _ROUNDS, _FARTHEST = 12, 60.0  # of losses and temperatures in turn, and K of one
 _TELLING, _DECISIVE = 10.0, 0.1  # times that, the least step that teaches how temperatures feed back; least part of it that the update must see
@@ -153,7 +153,7 @@ def _in_equilibrium(simulation: Simulation, start: np.ndarray | None, nearby: _E
     simulation.thermal.held = True
     if start is not None and (sample := _refined(simulation, nearby)) is not None:
         return sample
-    found = thermal_equilibrium(simulation.scene, simulation.inputs, start, _NEAR, _BALANCED)
+    found = thermal_equilibrium(simulation.scene, simulation.inputs, start, _NEAR)
     if not found.converged:
         raise IntegrationError(found.reason)
     simulation.set_temperatures(found.temperatures)

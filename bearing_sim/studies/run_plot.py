@@ -15,11 +15,13 @@ import numpy as np
 
 from bearing_sim.messages.bands import BANDS, ESTIMATES, Bands
 from bearing_sim.messages.topics import ZERO_CELSIUS
+from bearing_sim.model.loads import largest_loads
 from bearing_sim.model.plausibility import minimum_load
 from bearing_sim.model.sample import RING_TEMPERATURES
-from bearing_sim.model.turning import turns
+from bearing_sim.model.turning import stands_text, turns
 from bearing_sim.recording.reader import Recording
 from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import ranges_of, without_dimensions
 from bearing_sim.simulation import Inputs
 from bearing_sim.sweep.table import COLOURS, MARKERS, NotDrawable, new_figure, set_limits
 
@@ -87,7 +89,7 @@ PANELS = {
     "damage": Panel("life used [%]", (Line("", _observable("damage", 100.0)),)),
     "roller_load": Panel(
         "largest roller load [N]",
-        (Line("inner raceway", lambda block: block["inner_load"].max(axis=1)), Line("outer raceway", lambda block: block["outer_load"].max(axis=1))),
+        (Line("inner raceway", lambda block: largest_loads(block, "inner")), Line("outer raceway", lambda block: largest_loads(block, "outer"))),
     ),
     "power": Panel("power loss [W]", (Line("", _observable("shaft_power")),)),
 }
@@ -225,12 +227,13 @@ def course_of(
         times = block["time"]
         if not len(times):
             continue
+        block = _without_slip_at_rest(block, scene)
         spacings = np.diff(times, prepend=before if math.isfinite(before) else times[0])
         usual = usual or float(np.median(spacings[spacings > 0])) if (spacings > 0).any() else usual
         breaks = np.flatnonzero(spacings > max(_BREAK * usual, _BREAK * np.quantile(spacings, 0.9))) if len(times) > 2 else np.zeros(0, int)
         for panel in panels:
             for k, line in enumerate(PANELS[panel].lines):
-                parts.setdefault((panel, k), []).append(thinned(times, line.values(block), window, breaks, block["shaft_speed"]))
+                parts.setdefault((panel, k), []).append(thinned(times, line.values(block), window, breaks))
         results = block[1:] if not course.samples and samples > 1 else block  # a recording begins with the state of rolling without slip
         loaded.append(_one_per_cell(np.stack([results["shaft_speed"] * _RPM, _load(results), 100 * results["cage_slip"], results[_LIFE]], -1)))
         chosen = block[-course.samples % every :: every]
@@ -240,21 +243,25 @@ def course_of(
         before = course.last
         progress(course.last)
     course.loaded, course.conditions = np.concatenate([course.loaded, *loaded]), np.concatenate([course.conditions, *instants])
-    _leave_out_slip_at_rest(course, {key: np.concatenate(pieces, axis=1) for key, pieces in parts.items()})
+    course.lines |= {key: tuple(np.concatenate(pieces, axis=1)) for key, pieces in parts.items()}
     return course
 
 
-def _leave_out_slip_at_rest(course: Course, lines: Mapping[tuple[str, int], np.ndarray]) -> None:
-    """Enter lines, each with times, values and speeds, into a course, without the slip where the shaft hardly turns: it may have any size there."""
-    fastest = max((float(np.nanmax(np.abs(speeds), initial=0.0)) for _, _, speeds in lines.values()), default=0.0)
-    for key, (times, values, speeds) in lines.items():
-        course.lines[key] = times, np.where(turns(speeds, fastest), values, np.nan) if key[0] == "slip" else values
-    course.loaded[~turns(course.loaded[:, 0]), 2] = np.nan
+def _without_slip_at_rest(block: np.ndarray, scene: Scene) -> np.ndarray:
+    """Return samples whose slip is NaN where the shaft does not turn."""
+    turning = turns(block["shaft_speed"], scene.thresholds.slip_from_speed)
+    if turning.all():
+        return block
+    block = block.copy()
+    block["cage_slip"][~turning] = np.nan
+    return block
 
 
-def thinned(
-    times: np.ndarray, values: np.ndarray, window: int, breaks: Sequence[int] = (), speeds: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _turning(course: Course) -> np.ndarray:
+    return turns(course.loaded[:, 0] / _RPM, course.scene.thresholds.slip_from_speed)
+
+
+def thinned(times: np.ndarray, values: np.ndarray, window: int, breaks: Sequence[int] = ()) -> tuple[np.ndarray, np.ndarray]:
     """Return a line with the least and the largest value of each window of samples, in order of time.
 
     Parameters
@@ -262,14 +269,12 @@ def thinned(
     times, values : of the samples, shape (n,).
     window : number of samples of which two remain; all remain where it is 2 or less.
     breaks : samples before which the line is interrupted, by a value that is NaN.
-    speeds : of the shaft, shape (n,).
 
     Returns
     -------
-    Times and values of the line, and the speeds there; values that are not finite become NaN.
+    Times and values of the line; values that are not finite become NaN.
     """
     values = np.where(np.isfinite(values), values, np.nan)
-    speeds = np.full(len(times), np.nan) if speeds is None else speeds
     if window > 2 and len(values):
         starts = np.arange(0, len(values), window)
         ends = np.append(starts[1:], len(values))
@@ -285,7 +290,7 @@ def thinned(
         index = np.arange(len(values))
     breaks = np.asarray(breaks, int)
     places, between = np.searchsorted(index, breaks), times[np.maximum(breaks - 1, 0)]
-    return np.insert(times[index], places, between), np.insert(values[index], places, np.nan), np.insert(speeds[index], places, np.nan)
+    return np.insert(times[index], places, between), np.insert(values[index], places, np.nan)
 
 
 def _one_per_cell(rows: np.ndarray) -> np.ndarray:
@@ -373,7 +378,9 @@ def _draw_panel(axes, name: str, panel: Panel, courses: Sequence[Course], starts
     if len(shown) > 1:
         axes.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
     if not len(values[values > 0]) and panel.is_logarithmic or not len(values):
-        axes.text(0.5, 0.5, "no values that are finite", ha="center", va="center", transform=axes.transAxes, fontsize=9, color="0.4")
+        slowest = max(course.scene.thresholds.slip_from_speed for course in courses)
+        why = stands_text(slowest) if name == "slip" else "no values that are finite"
+        axes.text(0.5, 0.5, why, ha="center", va="center", transform=axes.transAxes, fontsize=9, color="0.4")
 
 
 def _draw_recorded(axes, band: RecordedBand, start: float, divisor: float, colour: str) -> list[np.ndarray]:
@@ -398,7 +405,8 @@ def _name_courses(figure, courses: Sequence[Course]) -> None:
         text = "5 to 95 % as the run published it" + (", dashed: as measurements calibrated it" if calibrated else "")
         symbols = dict.fromkeys(each.own_value for course in courses for each in course.recorded.values() if each.own_value)
         text += "".join(f"; life: about {symbol}, dashed" for symbol in symbols)
-        handles.append(Patch(color=COLOURS[0], alpha=0.22, label=text))
+        notes = dict.fromkeys(without_dimensions(one.field for one in ranges_of(each.scene)) for each in courses if "life" in each.recorded)
+        handles.append(Patch(color=COLOURS[0], alpha=0.22, label=text + "".join(notes)))
     if any(course.band is not None for course in courses):
         handles.append(Patch(color=COLOURS[0], alpha=0.22, label="settled slip, 5 to 95 % by the scene's uncertainty"))
     if handles:
@@ -443,7 +451,7 @@ def draw_over_load(path: Path | BinaryIO, courses: Sequence[Course], title: str 
         slip.plot(rows[:, 1], np.where(np.isfinite(rows[:, 2]), rows[:, 2], np.nan), **look)
         life.plot(rows[:, 1], np.where(np.isfinite(rows[:, 3]), rows[:, 3], np.nan), **look)
     rows = np.concatenate([course.loaded for course in courses])
-    handles = _draw_minimum_loads((slip, life), [(course.scene, course.loaded[:, 0], course.name) for course in courses])
+    handles = _draw_minimum_loads((slip, life), [(course.scene, course.loaded[_turning(course), 0], course.name) for course in courses])
     _finish_over_load(figure, (slip, life), rows[:, 1], rows[:, 2], rows[:, 3], handles, courses)
     _entitle(figure, title)
     figure.savefig(path, dpi=_DPI, format=form)
@@ -471,8 +479,7 @@ def _draw_minimum_loads(axes, runs: Sequence[tuple[Scene, np.ndarray, str]]) -> 
     """Draw the minimum load of each run, as a line or, where it depends on a speed that changes, as a strip; return the legend's entries."""
     found: dict[tuple[str, str], tuple[float, float, int, list[str]]] = {}
     for k, (scene, speeds, name) in enumerate(runs):
-        turning = np.abs(speeds[np.isfinite(speeds)])
-        turning = turning[turning >= 0.01 * turning.max(initial=0.0)]
+        turning = np.abs(speeds[np.abs(speeds) > 0.0])
         if not len(turning):
             continue
         least, most = (minimum_loads(scene, np.array([turning.min(), turning.max()])) / 1e3).tolist()

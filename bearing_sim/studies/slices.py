@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.scene.scene import Scene
-from bearing_sim.simulation import Simulation
 from bearing_sim.studies.statics import statics
 from bearing_sim.sweep.point import mean_life
+from bearing_sim.sweep.thermal import simulation_in_equilibrium
 
 SLICES = (None, 10, 20, 30, 50, 100, 200)
 _RATE = 2000.0  # Hz, of samples
@@ -51,7 +51,7 @@ def by_slices(
         progress("quadrature" if count is None else f"{count} slices")
         roller = dataclasses.replace(scene.bearing.roller, slices=count)
         cut = dataclasses.replace(scene, bearing=dataclasses.replace(scene.bearing, roller=roller))
-        block, step_seconds, factor = _timed(Simulation(cut), settle, duration)
+        block, step_seconds, factor = _timed(simulation_in_equilibrium(cut), settle, duration)
         still = (math.nan, math.nan) if count is None else _in_balance(statics(cut, count))
         found.append(
             Sliced(

@@ -3,23 +3,26 @@
 
 import dataclasses
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.levels.common.slice_balance import about_yz, balance, leaning, roller_loads, roller_tilts
-from bearing_sim.model.oil import oil_at
-from bearing_sim.model.params import pack
-from bearing_sim.model.temperatures import lubricate_scene
-from bearing_sim.physics.film import DOWSON_HIGGINSON, films
+from bearing_sim.model.params import Life
+from bearing_sim.model.sample import NODE_OBSERVABLES
+from bearing_sim.model.validity import still_sample
+from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.physics.growth import Clearance, clearance_at, total_growth
-from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads, stress_risers
-from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, oil_factors, rate_lives
+from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads
+from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, OilFactors, oil_factors, rate_lives
 from bearing_sim.scene.scene import Scene
 from bearing_sim.sweep.table import new_figure
+from bearing_sim.sweep.thermal import operating_state
 
-_PITCH_POSITIONS = 10  # cage angles over one roller pitch for the lives
+_PITCH_POSITIONS, _MOST_PITCH_POSITIONS = 20, 320  # cage angles over one roller pitch for the lives, at first and at most
+_LIFE_CHANGE = 2e-3  # of both lives by laminae, by which twice as many may change them
 
 
 class Statics(NamedTuple):
@@ -40,7 +43,8 @@ class Statics(NamedTuple):
     equivalent_loads: EquivalentLoads  # over one roller pitch; those by laminae are of the slices
     lives: Lives  # with the lives in hours; infinite at rest
     clearance: Clearance  # of the running bearing, with its parts
-    film: float  # least film thickness of the most heavily loaded contact [m]; NaN at rest and without load
+    film: float  # least film thickness [m]; NaN at rest and without load
+    sample: np.ndarray  # block of one sample with all this in it, for laws and reports; its cage does not slip
 
 
 def with_slices(scene: Scene, slices: int) -> Scene:
@@ -50,7 +54,7 @@ def with_slices(scene: Scene, slices: int) -> Scene:
 
 
 def statics(scene: Scene, slices: int) -> Statics:
-    """Return the statics of a scene at its constant conditions and without cage slip.
+    """Return the statics of a scene at its constant conditions and without cage slip, in thermal equilibrium where it has a thermal network.
 
     Parameters
     ----------
@@ -61,36 +65,39 @@ def statics(scene: Scene, slices: int) -> Statics:
     ------
     ArithmeticError
         No balance was found.
+    IntegrationError
+        There is no thermal equilibrium: it says why.
     """
     scene = with_slices(scene, slices)
     scene = dataclasses.replace(scene, life=dataclasses.replace(scene.life, laminae=slices))  # the slices are the laminae
-    params, operating = pack(scene), scene.operating
-    count, raceways = params.rollers.count, params.raceways
+    (params, lubrication, temperatures), operating = operating_state(scene), scene.operating
+    count, raceways, speed = params.rollers.count, params.raceways, abs(operating.shaft_speed)
     cage_speed = 0.5 * operating.shaft_speed * (1.0 - raceways.diameter_ratio)
     load = (operating.radial_load * math.cos(operating.load_angle), operating.radial_load * math.sin(operating.load_angle))
     moment = about_yz(operating.moment or 0.0, operating.moment_angle)
     tilts = about_yz(operating.misalignment, operating.misalignment_angle) if operating.moment is None else None
-
-    lubrication = lubricate_scene(scene, params, scene.lubricant.temperature)
     growth = total_growth(operating.shaft_speed, lubrication.growth)
 
-    inner_means, outer_means, risers = np.zeros(slices), np.zeros(slices), stress_risers(slices)
-    rotating, stationary, at = 0.0, 0.0, None
-    for position in reversed(range(_PITCH_POSITIONS)):  # the last one has roller 0 on the load line
-        angle = operating.load_angle + 2 * math.pi * position / (_PITCH_POSITIONS * count)
-        at = balance(params, angle, cage_speed, load, moment, tilts, at, growth)
-        inner, outer = roller_loads(at)
-        rotating += np.mean(inner**ROTATING_EXPONENT) / _PITCH_POSITIONS
-        stationary += np.mean(outer**STATIONARY_EXPONENT) / _PITCH_POSITIONS
-        add_lamina_powers(at.inner, at.outer, risers, 1.0 / (_PITCH_POSITIONS - position), inner_means, outer_means)
+    def balance_at(turned, start=None):
+        return balance(params, operating.load_angle + turned, cage_speed, load, moment, tilts, start, growth)
 
-    whole = float(rotating ** (1 / ROTATING_EXPONENT)), float(stationary ** (1 / STATIONARY_EXPONENT))
-    speed = abs(operating.shaft_speed)
     oil = oil_factors(speed, lubrication.kinematic_viscosity, 2 * raceways.pitch_radius, params.life)
-    equivalent = equivalent_lamina_loads(*whole, inner_means, outer_means, oil, params.life)
-    lives = rate_lives(operating.radial_load, equivalent, oil, params.life)
-    hours = 2 * math.pi / (3600 * speed) if speed > 0.0 else math.inf
-    width = params.rollers.length / slices
+    equivalent, lives = _over_pitch(balance_at, oil, params.life, operating.radial_load, 2 * math.pi / count)
+    at = balance_at(0.0)
+    inner, outer = roller_loads(at)
+    hours, width = 2 * math.pi / (3600 * speed) if speed > 0.0 else math.inf, params.rollers.length / slices
+    lives = lives._replace(**{name: hours * getattr(lives, name) for name in ("basic", "modified", "l10", "lnm", "l10r", "lnmr")})
+    pressures = [
+        _pressure(loads.max() / width, radius, raceways.reduced_modulus)
+        for loads, radius in ((at.inner, raceways.inner_curvature_radius), (at.outer, raceways.outer_curvature_radius))
+    ]
+
+    sample = still_sample(scene)
+    sample["inner_load"], sample["outer_load"] = inner, outer
+    sample["reference_load"], sample["viscosity_ratio"] = lives.reference_load, lives.viscosity_ratio
+    sample["inner_pressure"], sample["outer_pressure"] = pressures
+    for name, temperature in zip(NODE_OBSERVABLES, temperatures):
+        sample[name] = temperature
     return Statics(
         azimuths=operating.load_angle + 2 * math.pi * np.arange(count) / count,
         inner=inner,
@@ -99,27 +106,46 @@ def statics(scene: Scene, slices: int) -> Statics:
         slice_middles=at.position * at.half_length,
         inner_slices=at.inner.copy(),
         outer_slices=at.outer.copy(),
-        inner_pressure=_pressure(at.inner.max() / width, raceways.inner_curvature_radius, raceways.reduced_modulus),
-        outer_pressure=_pressure(at.outer.max() / width, raceways.outer_curvature_radius, raceways.reduced_modulus),
+        inner_pressure=pressures[0],
+        outer_pressure=pressures[1],
         ring=(float(at.ring[0]), float(at.ring[1])),
         tilt=leaning(float(at.ring[2]), float(at.ring[3])),
         moment=leaning(float(at.reaction[2]), float(at.reaction[3])),
         equivalent_loads=equivalent,
-        lives=lives._replace(**{name: hours * getattr(lives, name) for name in ("basic", "modified", "l10", "lnm", "l10r", "lnmr")}),
+        lives=lives,
         clearance=clearance_at(operating.shaft_speed, lubrication.growth, params),
-        film=_least_film(scene, params, speed, float(inner.max())),
+        film=float(ThinnestFilm(scene).least(sample)[0]) if speed > 0.0 else math.nan,
+        sample=sample,
     )
 
 
-def _least_film(scene, params, shaft_speed, load) -> float:
-    """Return the least film thickness of the inner contact under a load [N] in ideal rolling, the thinnest of all [m]."""
-    if not shaft_speed > 0.0 or not load > 0.0:
-        return math.nan
-    raceways = params.raceways
-    rolling = 0.5 * shaft_speed * raceways.inner_radius * (1.0 + raceways.diameter_ratio)  # both surfaces, seen from the contact
-    oil = oil_at(scene.lubricant.oil, scene.lubricant.temperature)
-    contact = raceways.inner_curvature_radius, raceways.reduced_modulus, params.rollers.length
-    return float(films(DOWSON_HIGGINSON, oil, *contact, np.array(load), np.array(rolling), np.array(0.0)))
+def _over_pitch(balance_at: Callable, oil: OilFactors, life: Life, radial_load: float, pitch: float) -> tuple[EquivalentLoads, Lives]:
+    """Return equivalent loads, and lives in revolutions, by means over the cage angles of a pitch.
+
+    Angles are doubled until that changes neither L10r nor L_nmr by more than `_LIFE_CHANGE`, or there are `_MOST_PITCH_POSITIONS`.
+
+    Parameters
+    ----------
+    balance_at : returns the bearing in balance with the cage turned by an angle [rad] from the load line, from a balance nearby.
+    oil, life, radial_load : as of `rate_lives`.
+    pitch : [rad].
+    """
+    risers = life.laminae.risers
+    inner_means, outer_means, whole_means = np.zeros(len(risers)), np.zeros(len(risers)), np.zeros(2)
+    places, at, done, before = np.arange(_PITCH_POSITIONS) / _PITCH_POSITIONS, None, 0, None
+    while True:
+        for place in places:
+            at, done = balance_at(pitch * place, at), done + 1
+            inner, outer = roller_loads(at)
+            whole_means += (np.array([np.mean(inner**ROTATING_EXPONENT), np.mean(outer**STATIONARY_EXPONENT)]) - whole_means) / done
+            add_lamina_powers(at.inner, at.outer, risers, 1.0 / done, inner_means, outer_means)
+        whole = (float(mean ** (1 / exponent)) for mean, exponent in zip(whole_means, (ROTATING_EXPONENT, STATIONARY_EXPONENT)))
+        equivalent = equivalent_lamina_loads(*whole, inner_means, outer_means, oil, life)
+        lives = rate_lives(radial_load, equivalent, oil, life)
+        rates = np.array([1.0 / lives.l10r, 1.0 / lives.lnmr])
+        if done >= _MOST_PITCH_POSITIONS or (before is not None and (np.abs(rates - before) <= _LIFE_CHANGE * before).all()):
+            return equivalent, lives
+        before, places = rates, (np.arange(done) + 0.5) / done  # in the middles of those that are done
 
 
 def _pressure(line_load, curvature_radius, reduced_modulus) -> float:

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.simulation import Simulation
 from bearing_sim.sweep.table import COLOURS, MARKERS, new_figure
+from bearing_sim.sweep.thermal import simulation_in_equilibrium
 
 STILL, HELD, CARRIED = "slip", "rigid support", "support"
 _SETTLING, _SHOWN, _PER_TURN = 60.0, 20.0, 60  # cage turns before and in the means, and samples in each
@@ -72,7 +72,7 @@ def respond(
 
 def _run(scene, model):
     turn = 4.0 * np.pi / (abs(scene.operating.shaft_speed) * (1.0 - scene.bearing.diameter_ratio))
-    run = Simulation(scene)
+    run = simulation_in_equilibrium(scene)
     run.advance(_SETTLING * turn)
     block = run.advance(_SHOWN * turn, samples=round(_SHOWN * _PER_TURN))
     return Response(

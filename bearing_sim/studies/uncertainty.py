@@ -20,9 +20,11 @@ from scipy.stats import qmc
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.scene import fidelity
 from bearing_sim.scene.errors import SceneError
+from bearing_sim.scene.fidelity import WHIRLING
 from bearing_sim.scene.scene import Integration, Scene
-from bearing_sim.scene.uncertainty import Range, messages, quantities, ranges_of, shown, value_at, with_values
+from bearing_sim.scene.uncertainty import Range, messages, quantities, ranges_of, ring_ranges, shown, value_at, with_values, without_dimensions
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
+from bearing_sim.sweep.ring_resonance import ring_resonance
 from bearing_sim.sweep.table import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 from bearing_sim.sweep.thermal import equilibrium_temperatures
@@ -258,6 +260,8 @@ class Study(NamedTuple):
 def lowest_level(scene: Scene, level: str | None = None) -> tuple[Scene, str]:
     """Return a scene at the given level or at the lowest level that has everything it asks for, and the reason.
 
+    A scene whose inner ring may vibrate on its rollers stays at its own level: the lower ones have no such motion.
+
     Raises
     ------
     UncertaintyError
@@ -265,10 +269,19 @@ def lowest_level(scene: Scene, level: str | None = None) -> tuple[Scene, str]:
     """
     found = fidelity.choose(replace(scene, integration=Integration()))  # a fixed step would need a level that takes steps
     chosen, reason = (level, "as requested") if level else (found.level or scene.level, found.reason)
+    if level is None and scene.level in WHIRLING and chosen not in WHIRLING:
+        resonance = ring_resonance(scene)
+        if resonance is not None and resonance.may_vibrate:
+            chosen, reason = scene.level, f"level {scene.level}, the scene's own: the inner ring may vibrate on its rollers"
     try:
         return scene.at_level(chosen), reason
     except SceneError as error:
         raise UncertaintyError(f"level {chosen}: {'; '.join(each.reason for each in error.errors)}") from None
+
+
+def varied_ranges(scene: Scene) -> tuple[Range, ...]:
+    """Return the ranges that a study at a scene's level varies: those of `ranges_of`, and of the ring's motion where the level has it."""
+    return (*ranges_of(scene), *ring_ranges(scene))
 
 
 def rounded_up(samples: int) -> int:
@@ -306,7 +319,7 @@ def study(
         See `bearing_sim.sweep.tasks.run_tasks`.
     """
     scene, reason = lowest_level(scene, level)
-    ranges = ranges_of(scene)
+    ranges = varied_ranges(scene)
     _check(scene, course is not None)
     conditions, seconds = course if course is not None else (None, np.ones(1))
     designed = design([distribution(one, value_at(scene, one.field)) for one in ranges], base, seed)
@@ -363,7 +376,7 @@ def settled_batch(
 
 
 def _check(scene: Scene, on_course: bool) -> None:
-    if not ranges_of(scene):
+    if not varied_ranges(scene):
         raise UncertaintyError(
             "the scene has no uncertain fields; give ranges in its block `uncertainty`, such as "
             '--set "uncertainty.lubricant.mixture_fraction=[0.015, 0.05]"'
@@ -479,6 +492,7 @@ def draw(path: Path, title: str, found: Study, times: np.ndarray | None = None) 
     figure = new_figure(12, 4 * len(layout))
     axes = figure.subplot_mosaic(layout)
     slip, life = ("cage slip [%]", "rating life [h]") if times is None else ("mean cage slip [%]", "life under the course [h]")
+    life += without_dimensions(one.field for one in found.ranges)
     _draw_distribution(axes["slip"], 100 * found.answers["cage_slip"], found, "cage_slip", 100.0, slip, _SLIP)
     _draw_distribution(axes["life"], found.answers["life_hours"], found, "life_hours", 1.0, life, _LIFE)
     _draw_indices(axes["slip indices"], found, "cage_slip", "slip")

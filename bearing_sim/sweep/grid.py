@@ -18,7 +18,7 @@ from bearing_sim.scene.diameters import diameters
 from bearing_sim.scene.loader import SceneError, did_you_mean, load_scene, scene_to_yaml
 from bearing_sim.scene.quantity import Quantity, QuantityOrName, to_si, unit_registry
 from bearing_sim.scene.scene import OPERATING_POINT, Scene
-from bearing_sim.sweep.point import DURATION, REFUSED, RESULTS, TEXTS, Column, empty_row, point_row, positive_seconds
+from bearing_sim.sweep.point import DURATION, OTHER_STATE, REFUSED, RESULTS, TEXTS, Column, empty_row, point_row, positive_seconds
 from bearing_sim.sweep.table import Table
 from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
 
@@ -269,7 +269,7 @@ def run_sweep(
 
     Returns
     -------
-    one row per point: the varied fields, then `bearing_sim.sweep.point.RESULTS` and `TEXTS`; see `bearing_sim.sweep.table.Table.to_xarray`.
+    one row per point: the varied fields, then `bearing_sim.sweep.point.RESULTS`, `OTHER_STATE` and `TEXTS`; see `bearing_sim.sweep.table.Table.to_xarray`.
 
     Raises
     ------
@@ -322,7 +322,7 @@ class Plan(NamedTuple):
         for combination, scene in zip(self.combinations, self.scenes):
             shown = {axis.field.path: axis.field.shown(value) for axis, value in zip(self.axes, combination)}
             rows.append(shown | (_complete(next(results)) if isinstance(scene, Scene) else empty_row(REFUSED, one_line(scene))))
-        columns = tuple(Column(axis.field.path, axis.field.unit, axis.field.meaning) for axis in self.axes) + RESULTS + TEXTS
+        columns = tuple(Column(axis.field.path, axis.field.unit, axis.field.meaning) for axis in self.axes) + RESULTS + OTHER_STATE + TEXTS
         return Table(columns, rows, self._about())
 
     def _about(self) -> dict:

@@ -14,6 +14,7 @@ from bearing_sim.scene.quantity import to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, shortest_run
+from bearing_sim.sweep.states import other_states
 from bearing_sim.sweep.thermal import begin_in_equilibrium
 
 DURATION = 0.5  # s of the shortest run, as Deng 2017 simulates
@@ -61,6 +62,10 @@ RESULTS = (
     *_observed(_POWERS),
     Column("simulated", "s", "simulated time; results are of its end"),
 )
+OTHER_STATE = (
+    Column("other_slip", "%", "cage slip of another state in which the bearing stays under the same conditions; NaN where none was found", 100.0),
+    Column("other_rating_life", "h", "rating life in that state"),
+)
 TEXTS = (
     Column("status", "", "ok; unsettled: slip or life was still changing at the end; failed: the run stopped early; refused: the scene is invalid"),
     Column("reason", "", "why the status is not ok"),
@@ -106,7 +111,7 @@ def run_until_settled(scene: Scene, duration: float = DURATION, longest: float |
 
 
 def point_row(scene: Scene, duration: float = DURATION, longest: float | None = None) -> dict:
-    """Return the results of a scene by the names of `RESULTS` and `TEXTS`, in their units; NaN if the run failed.
+    """Return the results of a scene by the names of `RESULTS`, `OTHER_STATE` and `TEXTS`, in their units; NaN if the run failed.
 
     Parameters
     ----------
@@ -119,7 +124,15 @@ def point_row(scene: Scene, duration: float = DURATION, longest: float | None = 
     found = results_of(outcome)
     row = {column.name: column.factor * found[column.name] for column in RESULTS}
     judged = {"status": OK if outcome.settled else UNSETTLED, "reason": outcome.reason}
-    return row | judged | {"warnings": cell(outside(scene, outcome.window))}
+    return row | _other_state(scene, outcome) | judged | {"warnings": cell(outside(scene, outcome.window))}
+
+
+def _other_state(scene: Scene, outcome: Outcome) -> dict[str, float]:
+    """Return the results of the other state whose slip is farthest from that of a run; NaN where there is none."""
+    others = other_states(scene, outcome, skid_load=False).states
+    other = max(others, key=lambda state: abs(state.cage_slip - outcome.slip), default=None)
+    slip, life = (math.nan, math.nan) if other is None else (other.cage_slip, other.rating_life)
+    return {"other_slip": 100.0 * slip, "other_rating_life": life}
 
 
 def results_of(outcome: Outcome) -> dict[str, float]:
@@ -143,4 +156,4 @@ def mean_life(lives: np.ndarray) -> float:
 
 def empty_row(status: str, reason: str) -> dict:
     """Return the row of a point without results."""
-    return {column.name: math.nan for column in RESULTS} | {"status": status, "reason": reason, "warnings": ""}
+    return {column.name: math.nan for column in (*RESULTS, *OTHER_STATE)} | {"status": status, "reason": reason, "warnings": ""}

@@ -28,6 +28,7 @@ _BATCHES = 8  # in a window
 _SIGNIFICANT = 3.0  # standard errors of a change that is not chance
 _INTERVALS = 256  # even intervals over which a wandering observable is described
 _REPEATS = 0.6  # least autocorrelation of what is called an oscillation
+_GROWS = 1.2  # ratio of successive means of the square of a motion from which on it grows
 _SAMPLES = 1000  # of the shortest run: 200 in the last window
 _KEPT = 1000  # at least, of longer stretches
 _TOGETHER = 25  # samples of a call of the model
@@ -73,6 +74,8 @@ OBSERVED = (
     Observed("rating_life", "rating life", lambda rate: 1.0 / rate if rate else math.inf, "h", "h", Tolerance(0.0, 0.02)),
 )
 TOLERANCES = tuple(each.tolerance for each in OBSERVED)
+GROWING = ("the tilt of the cage", "the whirl of the cage", "the largest roller load")
+"""Motions whose squares stand behind the columns of `OBSERVED` in the course of a run: what grows changes everything else later."""
 
 
 class Trend(NamedTuple):
@@ -179,14 +182,25 @@ def _standard_error(batches: np.ndarray, times: np.ndarray) -> float:
 
 
 def has_settled(course: Course, tolerances: Sequence[Tolerance]) -> bool:
-    """Return whether all observables rest at the end of a course and did so when it was two thirds as long.
+    """Return whether all observables rest at the end of a course and did so when it was two thirds as long, and no motion grows.
 
     Parameters
     ----------
-    course, tolerances : see `trends`.
+    course, tolerances : see `trends`; further columns are squares of motions, see `growing`.
     """
     before = course.until(course.times[0] + (course.times[-1] - course.times[0]) / _GROWTH)
-    return all(trend.rests for part in (before, course) for trend in trends(part, tolerances))
+    return all(trend.rests for part in (before, course) for trend in trends(part, tolerances)) and not growing(course, len(tolerances)).any()
+
+
+def growing(course: Course, first: int) -> np.ndarray:
+    """Return which motions grow at the end of a course, however small they are: an instability begins from nothing.
+
+    Parameters
+    ----------
+    course : whose columns from ``first`` on are squares of motions.
+    """
+    one, two, three = course.means(course.edges())[:, first:]
+    return (two > _GROWS * one) & (three > _GROWS * two) & (one > 0.0)
 
 
 def describe(course: Course, trend: Trend, index: int, observed: Observed) -> tuple[str, str]:
@@ -264,7 +278,7 @@ class _Record:
 
     def __init__(self, start: np.ndarray):
         self._blocks = [start]
-        self._times, self._turns, self._integrals = [start["time"]], [np.zeros(1)], [np.zeros((1, len(OBSERVED)))]
+        self._times, self._turns, self._integrals = [start["time"]], [np.zeros(1)], [np.zeros((1, len(OBSERVED) + len(GROWING)))]
 
     def take(self, block: np.ndarray) -> None:
         """Take the samples that follow."""
@@ -276,7 +290,9 @@ class _Record:
             slip = steps - np.diff(block["cage_angle"], prepend=before["cage_angle"]) / ideal
             rate = 1.0 / block["rating_life"]
         slip[ideal == 0.0] = math.nan
-        integrals = np.stack([slip, steps * block["oil_temperature"], steps * rate], axis=1)
+        tilt, whirl = (block[f"{name}_y"] ** 2 + block[f"{name}_z"] ** 2 for name in ("cage_tilt", "cage"))
+        squares = (np.nan_to_num(tilt), np.nan_to_num(whirl), block["inner_load_maximum"] ** 2)
+        integrals = np.stack([slip, steps * block["oil_temperature"], steps * rate, *(steps * square for square in squares)], axis=1)
         self._times.append(block["time"].copy())
         self._turns.append((block["cage_angle"] - self._blocks[0]["cage_angle"][0]) / (2.0 * math.pi))
         self._integrals.append(last + np.cumsum(integrals, axis=0))
@@ -353,6 +369,8 @@ def _outcome(simulation: Simulation, record: _Record, settled: bool) -> Outcome:
     elif counters.unsettled_points:
         verdict, reason = NO_STEADY_STATE, "no steady state was found at this operating point"
     elif not settled:
+        grows = [f"{name} still grows" for name, each in zip(GROWING, growing(course, len(OBSERVED))) if each]
+        restless, doing = restless or [(DRIFTING, each) for each in grows], "; ".join(filter(None, (doing, *grows)))
         verdict = restless[0][0] if restless else TOO_SHORT
         reason = f"after {length:.4g} s {doing or 'slip and life rest, but did not before'}"
     slip, window = found[0].mean, record.window

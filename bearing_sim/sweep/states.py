@@ -95,7 +95,7 @@ def states(scene: Scene, inputs: Inputs | None = None, nodes: np.ndarray | None 
     return States(found, float(below))
 
 
-def other_states(scene: Scene, outcome: Outcome, start: str = ROLLING) -> Others:
+def other_states(scene: Scene, outcome: Outcome, start: str = ROLLING, skid_load: bool = True) -> Others:
     """Return the other states of a bearing under the conditions of a run that has ended.
 
     Levels steady and slip have those of the mean drive of the cage.  Levels planar and spatial start once more from each of these, and, where the
@@ -107,12 +107,13 @@ def other_states(scene: Scene, outcome: Outcome, start: str = ROLLING) -> Others
     scene : under constant conditions.
     outcome : of its run.
     start : from where it began, such as `ROLLING`.
+    skid_load : as of `states`.
     """
     sample, slip = outcome.window[-1], outcome.slip
     inputs, nodes = inputs_of(sample), np.array([float(sample[name]) for name in NODE_OBSERVABLES])
     if not math.isfinite(slip):
         return Others((), math.nan, None)
-    known = states(scene, inputs, nodes)
+    known = states(scene, inputs, nodes, skid_load)
     if scene.level in ("steady", "slip"):
         return Others(known.beside(slip), known.skid_load, None)
     resonance, own, found = ring_resonance(scene, slip, inputs, nodes), _state_of(outcome, ""), []
@@ -232,6 +233,7 @@ def standing_cage(scene: Scene, inputs: Inputs | None = None) -> np.void:
     faster = rolling["shaft_speed"] / (rolling["shaft_speed"] - rolling["cage_speed"])
     sample["roller_spin"] = rolling["roller_spin"] * faster
     sample["cage_speed"] = sample["orbital_speed"] = math.copysign(_STANDSTILL, rolling["shaft_speed"])
+    sample["cage_slip"] = 1.0
     return sample
 
 

@@ -21,7 +21,7 @@ from bearing_sim.files.reading import NO_FILE, read_text, why_not_readable
 from bearing_sim.scene.quantity import conversion
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities
-from bearing_sim.sweep.point import OK, RESULTS, UNSETTLED, Column
+from bearing_sim.sweep.point import OK, OTHER_STATE, RESULTS, UNSETTLED, Column
 from bearing_sim.sweep.tasks import Journal
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ _ABOUT = b"bearing_sim"
 _CSV = b"bearing_sim_csv_sha256"
 _POINTS = "csv_sha256"
 _HEADED = re.compile(r"(.*?)(?: \[(.*)\])?")
-_RESULTS = {each.name: each for each in RESULTS}
+_RESULTS = {each.name: each for each in (*RESULTS, *OTHER_STATE)}
 
 
 class Table(NamedTuple):

@@ -34,6 +34,9 @@ _SOURCES = (
     "sweep/point.py",
     "sweep/settling.py",
     "sweep/conditions.py",
+    "sweep/ring_resonance.py",
+    "sweep/states.py",
+    "sweep/thermal.py",
 )
 
 

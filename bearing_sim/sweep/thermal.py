@@ -1,15 +1,26 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The thermal equilibrium that a run under constant conditions ends in, found before the run instead of by minutes of it."""
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 
+from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
+from bearing_sim.levels.steady.model import Work, forget, new_work, solve_condition
+from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.model.params import Lubrication, Params, pack
+from bearing_sim.model.sample import NODE_OBSERVABLES
+from bearing_sim.model.temperatures import given_temperatures, local_model, lubricate_scene
+from bearing_sim.physics.growth import excess_growth
 from bearing_sim.scene.scene import Scene
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation, thermal_nodes
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs, thermal_nodes
 from bearing_sim.sweep.settling import advance_until_settled
 
 _ROUNDS, _AVERAGED_FROM = 8, 3
-_EQUAL, _BALANCED = 1e-2, 1e-4  # K, and of the shaft power; slip then errs by less than 0.01 points, temperatures by 0.02 K
+_SKIDS = 0.05  # slip from which on a start is one in a skid
+_EQUAL = 1e-2  # K; slip then errs by less than 0.01 points, temperatures by 0.02 K
 _AGREED = 0.3  # K; temperatures by the losses of two rounds
 
 
@@ -20,7 +31,7 @@ def equilibrium_temperatures(scene: Scene, inputs: Inputs, start: np.void | None
     ----------
     scene : whose `heat.law` is network.
     inputs : constant conditions.
-    start : sample whose temperatures the search begins with where it has them.
+    start : sample whose temperatures the search begins with where it has them; the losses are those of a cage that begins with its slip.
 
     Raises
     ------
@@ -29,10 +40,87 @@ def equilibrium_temperatures(scene: Scene, inputs: Inputs, start: np.void | None
     """
     known = None if start is None else thermal_nodes(start)
     nearby = known if known is not None and np.isfinite(known).all() else None
-    found = thermal_equilibrium(scene, inputs, nearby, _EQUAL, _BALANCED)
+    slip = 0.0 if start is None else float(start["cage_slip"])
+    found = thermal_equilibrium(scene, inputs, nearby, _EQUAL, slip if slip > _SKIDS else 0.0)
     if not found.converged:
         raise IntegrationError(found.reason)
     return found.temperatures
+
+
+class OperatingState(NamedTuple):
+    """A bearing as warm as it runs under constant conditions."""
+
+    params: Params
+    lubrication: Lubrication
+    temperatures: np.ndarray  # as a sample holds them, in the order of `NODE_OBSERVABLES` [K]; NaN where the scene's law of heat says nothing
+
+
+def operating_state(scene: Scene, inputs: Inputs | None = None, nodes: np.ndarray | None = None) -> OperatingState:
+    """Return parameters, lubrication and temperatures with which every answer about a scene under constant conditions is computed.
+
+    With a thermal network these are those of `equilibrium_temperatures`, otherwise those that the scene gives, or the oil's.
+
+    Parameters
+    ----------
+    scene : of any level.
+    inputs : constant conditions; the scene's operating block where absent.
+    nodes : temperatures of the thermal network's nodes where they are known [K], shape (NODES,); NaN or absent where they are not.
+
+    Raises
+    ------
+    IntegrationError
+        There is no thermal equilibrium: it says why.
+    """
+    inputs, params = scene_inputs(scene) if inputs is None else inputs, pack(scene)
+    if scene.heat.law == "network":
+        known = nodes is not None and np.isfinite(nodes).all()
+        temperatures = np.array(nodes, float) if known else equilibrium_temperatures(scene, inputs)
+        return OperatingState(*local_model(scene, params, inputs.oil_temperature, temperatures), temperatures)
+    oil, measured = inputs.oil_temperature, inputs[4:6]
+    temperatures = np.full(len(NODE_OBSERVABLES), math.nan)
+    if scene.heat.law == "given":
+        solids = given_temperatures(scene.heat, oil, measured)
+        temperatures[: len(solids)] = solids
+    return OperatingState(params, lubricate_scene(scene, params, oil, measured), temperatures)
+
+
+def solved_answer(state: OperatingState, inputs: Inputs, work: Work | None = None) -> np.ndarray:
+    """Return the answer of level steady to an operating point, solved for, columns `ANSWER`; NaN where none was found, shape (len(ANSWER),).
+
+    Parameters
+    ----------
+    state : of the bearing under the inputs.
+    inputs : constant conditions.
+    work : memory of a bearing with as many rollers, for many points one after the other.
+    """
+    work = new_work(state.params) if work is None else work
+    drive = Drive(0.0, inputs.shaft_speed, 0.0, inputs.load_y, 0.0, inputs.load_z, 0.0, 0.0)
+    forget(work)  # the model is another one
+    found = solve_condition(*inputs[:3], Model(state.params, state.lubrication, drive, DEFAULT_TOLERANCES), work)
+    return work.solved.copy() if found else np.full(len(ANSWER), math.nan)
+
+
+def table_condition(state: OperatingState, inputs: Inputs) -> tuple[float, float, float, float, float]:
+    """Return where a run at level steady looks a state up: shaft speed [rad/s], load [N], films [K], direction of the load [rad], growth [m]."""
+    speed, films = inputs.shaft_speed, state.lubrication.film_temperature
+    growth = excess_growth(speed, films, state.lubrication.growth, state.params.mounted)
+    return speed, math.hypot(inputs.load_y, inputs.load_z), films, math.atan2(inputs.load_z, inputs.load_y), growth
+
+
+def simulation_in_equilibrium(scene: Scene) -> Simulation:
+    """Return a simulation of a scene at its constant conditions, held at the temperatures of `operating_state` where it has a thermal network.
+
+    Raises
+    ------
+    IntegrationError
+        There is no thermal equilibrium: it says why.
+    """
+    if scene.heat.law != "network":
+        return Simulation(scene)
+    nodes = equilibrium_temperatures(scene, scene_inputs(scene))
+    simulation = Simulation(scene, nodes=nodes)
+    simulation.set_temperatures(nodes)
+    return simulation
 
 
 def begin_in_equilibrium(simulation: Simulation, shortest: float, longest: float, start: np.void | None = None) -> None:

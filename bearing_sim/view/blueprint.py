@@ -10,6 +10,7 @@ import rerun.blueprint as rrb
 
 from bearing_sim.messages.topics import FREQUENCIES, LIFE_SYMBOLS, MEASURED, MEASURED_CLEARANCE, RING_TEMPERATURES
 from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import ranges_of, without_dimensions
 from bearing_sim.view import section
 from bearing_sim.view.bands import REMAINING_LIFE, field_plots, field_title
 from bearing_sim.view.drawings import BODIES, CLEARANCES, HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, causes_of, heat_bounds
@@ -239,8 +240,9 @@ def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView | rrb.Tabs:
         paths, shown = [*paths, "/life/modified_log10_hours"], [*shown, f"purple {modified}"]
     if not scene.estimation.bands:
         return axes.plot(f"Lives, log10 of hours ({', '.join(shown)})", paths, from_zero=False)
-    lives = axes.plot(f"Lives, log10 of hours ({', '.join(shown)}, shaded: 5 to 95 %)", ["/life/band", *paths], from_zero=False)
-    remaining = axes.plot("Remaining life, log10 of hours (shaded: 5 to 95 %)", [REMAINING_LIFE.path, REMAINING_LIFE.line], from_zero=False)
+    shaded = f"shaded: 5 to 95 %){without_dimensions(one.field for one in ranges_of(scene))}"
+    lives = axes.plot(f"Lives, log10 of hours ({', '.join(shown)}, {shaded}", ["/life/band", *paths], from_zero=False)
+    remaining = axes.plot(f"Remaining life, log10 of hours ({shaded}", [REMAINING_LIFE.path, REMAINING_LIFE.line], from_zero=False)
     return rrb.Tabs(lives, remaining, active_tab=0)
 
 

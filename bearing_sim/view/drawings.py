@@ -446,6 +446,7 @@ CAUSES = {
     "pocket": ("pockets", colours.PURPLE),
     "damping": ("damping", colours.YELLOW),
     "seal": ("seals", colours.LIME),
+    "flange": ("flanges", colours.BRONZE),
     "support": ("support", colours.SAND),
 }
 """Causes with their names and colours, in the order of the bars; a scene has those of `causes_of`."""
@@ -529,6 +530,7 @@ def causes_of(scene: Scene) -> dict[str, tuple]:
     """Return the causes of losses that a scene can have."""
     absent = {"inner_rolling", "outer_rolling"} if scene.lubricant.rolling_resistance.law == "none" else set()
     absent |= {"seal"} if scene.bearing.seals.law == "none" else set()
+    absent |= set() if scene.bearing.flanges.present else {"flange"}
     absent |= set() if scene.support.is_active else {"support"}
     return {cause: shown for cause, shown in CAUSES.items() if cause not in absent}
 

@@ -3,6 +3,7 @@
 
 import io
 import math
+from collections import deque
 
 import numpy as np
 from PIL import Image
@@ -15,6 +16,8 @@ NOT_YET = (13, 14, 17)
 NO_LOAD = (44, 47, 55)
 _PIXELS = (3, 4)  # height and width of a cell
 _NARROW = 2  # times the height in a narrow picture
+_SPACINGS = 200  # of samples, whose median is the usual one
+_GAP = 3.0  # usual spacings of samples above which nothing is known of the time between two
 _PALETTE = np.concatenate(([NOT_YET], load_palette(254), [NO_LOAD])).astype(np.uint8)
 
 
@@ -23,6 +26,8 @@ class LoadMap:
 
     Load zones stand still in azimuth, while a roller passes them hundreds of times a second, far more often than most recordings
     take samples: so the map by azimuth shows the bearing at any sampling, the one by roller what a roller meets in fine ones.
+
+    A column narrower than the spacing of samples may have none: it shows what lies between its neighbours.
 
     Parameters
     ----------
@@ -40,13 +45,17 @@ class LoadMap:
         self._rollers = rollers
         self._sums = np.zeros((rollers or AZIMUTH_BINS, COLUMNS))
         self._counts = np.zeros((rollers or AZIMUTH_BINS, COLUMNS))
+        self._newest = math.nan  # time of the newest sample [s]
+        self._spacings: deque[float] = deque(maxlen=_SPACINGS)
 
     def add(self, block: np.ndarray) -> None:
         """Add the samples of a block, which must not be older than the previous ones."""
         times = block["time"]
         if self.start is None:
             self.start = float(times[0])
-        self._make_room(float(times[-1]))
+        self._spacings.extend(spacing for spacing in np.diff(times[-_SPACINGS - 1 :], prepend=self._newest).tolist() if spacing > 0.0)
+        self._newest = float(times[-1])
+        self._make_room(self._newest)
         columns = np.floor((times - self.start) / self.span * COLUMNS).astype(int)
         kept = (columns >= 0) & (columns <= COLUMNS)  # a sample on the right edge belongs to the last column
         columns = np.minimum(columns[kept], COLUMNS - 1)
@@ -78,10 +87,25 @@ class LoadMap:
                 table[:, COLUMNS // 2 :] = 0.0
 
     def loads(self) -> np.ndarray:
-        """Return mean loads [N], shape (AZIMUTH_BINS or rollers, COLUMNS); NaN where there is no sample yet.
+        """Return mean loads [N], shape (AZIMUTH_BINS or rollers, COLUMNS); NaN where there is no sample yet, or in a gap of the run.
 
-        A bin that no roller met while its column lasted takes the value between its neighbours in azimuth.
+        A bin that no roller met while its column lasted takes the value between its neighbours in azimuth, a column without a sample that
+        between its neighbours in time.
         """
+        means = self._by_column()
+        sampled = np.flatnonzero((self._counts > 0).any(axis=0))
+        if not len(sampled) or not self._spacings:
+            return means
+        apart = float(np.median(self._spacings)) * COLUMNS / self.span  # usual spacing of samples, in columns
+        for left, right in zip(sampled[:-1].tolist(), sampled[1:].tolist()):
+            if 1 < right - left <= _GAP * apart + 1.0:
+                share = np.arange(1, right - left) / (right - left)
+                means[:, left + 1 : right] = means[:, [left]] + share * (means[:, [right]] - means[:, [left]])
+        last = int(sampled[-1])
+        means[:, last + 1 : last + 1 + int(apart)] = means[:, [last]]
+        return means
+
+    def _by_column(self) -> np.ndarray:
         with np.errstate(invalid="ignore", divide="ignore"):
             means = self._sums / self._counts
         if self._rollers:

@@ -23,6 +23,8 @@ from bearing_sim.messages.topics import (
     ZERO_CELSIUS,
     characteristic_frequencies,
 )
+from bearing_sim.model.loads import largest_loads
+from bearing_sim.model.turning import SLIP_FROM_SPEED, turns
 from bearing_sim.scene.fidelity import LEVELS, level_of
 from bearing_sim.scene.scene import NO_CLEARANCE_LIMIT, Scene
 from bearing_sim.view import colours, section
@@ -119,20 +121,22 @@ def dim(colour: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
     return (*(int(0.6 * part) for part in colour[:3]), 255)
 
 
-def series(block: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what is plotted of a block, in the units that people read, by entity path."""
+def series(block: np.ndarray, slip_from_speed: float = SLIP_FROM_SPEED) -> dict[str, np.ndarray]:
+    """Return what is plotted of a block, in the units that people read, by entity path.
+
+    There is no slip where the shaft does not turn, slower than ``slip_from_speed`` [rad/s].
+    """
     return {
         "/speed/shaft": RPM * block["shaft_speed"],
         "/speed/cage": RPM * block["cage_speed"],
         "/speed/ideal_cage": RPM * block["ideal_cage_speed"],
-        "/slip/cage": 100 * block["cage_slip"],
+        "/slip/cage": np.where(turns(block["shaft_speed"], slip_from_speed), 100 * block["cage_slip"], np.nan),
         "/life/log10_hours": log10_hours(block["rating_life"]),
         "/life/hours": block["rating_life"],
         "/damage/ppm": 1e6 * block["damage"],
         "/load/radial": np.hypot(block["load_y"], block["load_z"]),
         "/oil/temperature": block["oil_temperature"] - ZERO_CELSIUS,
-        "/loads/inner_largest": block["inner_load"].max(axis=1),
-        "/loads/outer_largest": block["outer_load"].max(axis=1),
+        **{f"/loads/{ring}_largest": largest_loads(block, ring) for ring in ("inner", "outer")},
         "/loads/pocket_largest": np.abs(block["pocket_force"]).max(axis=1),
         "/loads/each/inner": block["inner_load"],
         "/loads/each/outer": block["outer_load"],
@@ -175,17 +179,25 @@ def threshold_lines(scene: Scene) -> dict[str, float]:
     return lines
 
 
-def measured_series(times: np.ndarray, cage_speed: np.ndarray, residual: np.ndarray, block: np.ndarray) -> dict[str, np.ndarray]:
+def measured_series(
+    times: np.ndarray, cage_speed: np.ndarray, residual: np.ndarray, block: np.ndarray, slip_from_speed: float = SLIP_FROM_SPEED
+) -> dict[str, np.ndarray]:
     """Return what is plotted of a measured cage, by entity path.
 
     Parameters
     ----------
     times, cage_speed, residual : of the measurements [s, rad/s, fraction], shape (n,).
     block : samples around these times; they know how fast a cage without slip would be.
+    slip_from_speed : of the shaft [rad/s], below which there is no slip.
     """
-    ideal = np.interp(times, block["time"], block["ideal_cage_speed"])
-    slip = np.divide(cage_speed, ideal, out=np.full(len(times), np.nan), where=ideal != 0.0)
-    return {"/speed/cage_measured": RPM * cage_speed, "/slip/measured": 100 * (1 - slip), "/slip/residual": 100 * residual}
+    shaft, ideal = (np.interp(times, block["time"], block[name]) for name in ("shaft_speed", "ideal_cage_speed"))
+    turning = turns(shaft, slip_from_speed)
+    slip = np.divide(cage_speed, ideal, out=np.full(len(times), np.nan), where=turning)
+    return {
+        "/speed/cage_measured": RPM * cage_speed,
+        "/slip/measured": 100 * (1 - slip),
+        "/slip/residual": np.where(turning, 100 * residual, np.nan),
+    }
 
 
 def compared_life(scene: Scene) -> str:
@@ -425,7 +437,6 @@ class RunSeries:
         self._ranges: dict[str, tuple[float, float]] = {}  # lowest and highest value so far, by entity path
         self._slip_ranges: dict[int, tuple[float, float]] = {}  # the same for the slip, by octave of the shaft speed
         self._waiting: dict[str, list[tuple[float, ...]]] = {}  # time and numbers of measurements, by channel
-        self._fastest_cage = 0.0  # that was measured [rad/s]
         self._newest: list[np.ndarray] = []  # the last two blocks written: measurements come before or after those of their times
         self._started: float | None = None
         self.bucket: float | None = None
@@ -453,11 +464,11 @@ class RunSeries:
     def write(self, block: np.ndarray) -> None:
         """Send the columns of a block, in one piece per series."""
         self._started = float(block["time"][0]) if self._started is None else self._started
-        values = series(block) | roller_series(self._scene, block) | further_series(self._scene, block)
+        values = series(block, self._scene.thresholds.slip_from_speed) | roller_series(self._scene, block) | further_series(self._scene, block)
         lines = Lines(block["time"], {path: plottable(rows) for path, rows in values.items()})
         for path, rows in lines.values.items():
             _widen(self._ranges, path, rows)
-        self._note_slip(block)
+        self._note_slip(block["shaft_speed"], lines.values["/slip/cage"])
         self._choose_thinning(block["time"])
         self._send(lines, self._overview)
         self._write_lanes(block)
@@ -519,11 +530,9 @@ class RunSeries:
 
     def _cage_lines(self, rows: np.ndarray) -> dict[str, np.ndarray]:
         """Return what is plotted of a measured cage's times, speeds and residuals, shape (n, 3), by entity path."""
-        self._fastest_cage = max(self._fastest_cage, float(np.abs(rows[:, 1]).max()))
-        turning = np.abs(rows[:, 1]) >= 0.1 * self._fastest_cage  # as for the predicted slip, see `ranges`
-        lines = measured_series(*rows.T, np.concatenate(self._newest))
+        lines = measured_series(*rows.T, np.concatenate(self._newest), self._scene.thresholds.slip_from_speed)
         for path, column in lines.items():
-            _widen(self._ranges, path, column if path.startswith("/speed") else column[turning])
+            _widen(self._ranges, path, column)
         self._send_level("/slip/no_residual", rows[[0, -1], 0], 0.0)
         return lines
 
@@ -541,16 +550,16 @@ class RunSeries:
     def _send_level(self, path: str, ends: np.ndarray, value: float) -> None:
         send_columns(self._recording, Lines(ends, {path: np.full(len(ends), value)}))
 
-    def _note_slip(self, block: np.ndarray) -> None:
-        octaves = np.floor(np.log2(np.maximum(np.abs(block["shaft_speed"]), 1e-3)))
+    def _note_slip(self, speeds: np.ndarray, slips: np.ndarray) -> None:
+        octaves = np.floor(np.log2(np.maximum(np.abs(speeds), 1e-3)))
         for octave in np.unique(octaves):
-            _widen(self._slip_ranges, int(octave), 100 * block["cage_slip"][octaves == octave])
+            _widen(self._slip_ranges, int(octave), slips[octaves == octave])
 
     def ranges(self) -> dict[str, tuple[float, float]]:
         """Return lowest and highest value of each series so far, by entity path.
 
-        The slip counts only where the shaft turns at a good tenth of its highest speed: of a shaft that hardly turns it may
-        be anything, and says nothing.
+        Those of the slip are what its axis needs: a start lasts a moment and may have much more slip than the rest of the run, which would then be
+        a flat line; what lies below a good tenth of the highest speed is drawn, but does not choose the axis.
         """
         fast = [span for octave, span in self._slip_ranges.items() if octave >= max(self._slip_ranges) - 3]
         slip = {"/slip/cage": (min(low for low, _ in fast), max(high for _, high in fast))} if fast else {}
@@ -558,7 +567,8 @@ class RunSeries:
 
     def _write_lanes(self, block: np.ndarray) -> None:
         limits = self._scene.thresholds
-        for time, slip, level in zip(block["time"].tolist(), block["cage_slip"].tolist(), block["level"].tolist()):
+        slips = np.where(turns(block["shaft_speed"], limits.slip_from_speed), block["cage_slip"], np.nan)
+        for time, slip, level in zip(block["time"].tolist(), slips.tolist(), block["level"].tolist()):
             now = section.regime(slip, limits.slip_warning, limits.slip_error, self._regime)
             if now != self._regime:
                 self._regime = now
@@ -588,7 +598,8 @@ class RunSeries:
     def write_readout(self, sample: np.void, dropped: int) -> None:
         """Log the numbers of one sample as text at the recording's present time."""
         limits = self._scene.thresholds
-        slip, life = float(sample["cage_slip"]), float(sample["rating_life"])
+        slip = float(sample["cage_slip"]) if turns(sample["shaft_speed"], limits.slip_from_speed) else math.nan
+        life = float(sample["rating_life"])
         lines = [
             ("level", _level_state(level_of(sample), self._scene.level)),
             ("cage slip", f"**{100 * slip:.2f} %**" if math.isfinite(slip) else "none (at rest)"),
@@ -601,7 +612,7 @@ class RunSeries:
             ("running clearance", _micrometres(float(sample["running_clearance"]))),
             ("oil", f"{float(sample['oil_temperature']) - ZERO_CELSIUS:.1f} °C"),
             ("rollers loaded", f"{np.count_nonzero(sample['inner_load'] > 0)} of {len(sample['inner_load'])}"),
-            ("largest load", f"inner {_newton(sample['inner_load'])}, outer {_newton(sample['outer_load'])}"),
+            ("largest load", ", ".join(f"{ring} {_newton(largest_loads(sample, ring))}" for ring in ("inner", "outer"))),
         ]
         if dropped:
             lines.append(("not shown", f"{dropped} blocks dropped"))

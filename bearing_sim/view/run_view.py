@@ -88,8 +88,10 @@ the contour change; the bars are means of the newest samples.
 {_HEAT if scene.uses_ring_temperatures else ""}**Thresholds**: slip {100 * limits.slip_warning:g} % warning,
 {100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.
 
-**Loads** are those of the sampled instants: at constant speed samples may meet the rollers in the same places again and
-again, and then the largest load changes with the speed while the bearing's does not.
+**Loads** of rollers are those of the sampled instants; the largest loads are those of any roller since the sample before, whatever the
+interval of samples. The map fills a column without a sample from its neighbours.
+
+**Slip** counts, and is drawn, while the shaft turns at {limits.slip_from_speed * 30 / math.pi:.4g} rpm or faster (thresholds.slip_from_speed).
 """
 
 

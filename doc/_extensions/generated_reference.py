@@ -487,11 +487,19 @@ def validity() -> str:
     sections = []
     for kind in dict.fromkeys(law.kind for law in LAWS):
         rows = [
-            [code(law.name), f"{law.law}: {law.quantity}", law.general_range, law.source, law.instead, code(tests[law.name])]
+            [
+                code(law.name),
+                f"{law.law}: {law.quantity}",
+                law.general_range,
+                law.source,
+                "; ".join(each.otherwise for each in law.variations) or "not known",
+                law.instead,
+                code(tests[law.name]),
+            ]
             for law in LAWS
             if law.kind == kind
         ]
-        head = ["name", "law and quantity", "range", "source", "outside: a warning, and the advice", "tests"]
+        head = ["name", "law and quantity", "range", "source", "effect computed with", "advice outside", "tests"]
         sections.append(f"### `{kind}`\n\n{table(head, rows)}")
     return "\n\n".join(sections)
 

@@ -19,9 +19,13 @@ HOLDS, IN_PART, FAILS = "holds", "holds in part", "does not hold"
 NOISE = 0.01  # relative; smaller changes between points do not count
 VIBRATES = 1.15  # ratio of the equivalent inner load to that of level slip, which has no vibration
 DENG_TEN_PERCENT = 0.105  # mm; D value above which Deng's slip exceeds 10 % at R_low = 34.8650 mm
+DENG_LIFE = 300.0  # h
+DENG_SHORT_LIFE_D, DENG_SHORT_LIFE_ROUNDNESS = 0.095, 6.0  # mm, um: Deng's life is below `DENG_LIFE` under this D, and above this roundness
+_SAME = 1e-6  # relative; values nearer to a limit are at it
 # An independent calculation at level slip with the same parameters: D value [mm] and slip [%] at R_low = 34.8650 mm.
 INDEPENDENT_SLIP = {0.085: 9.2, 0.095: 10.5, 0.098: 10.9, 0.105: 11.8, 0.12: 14.1}
 VIBRATION = f"the inner ring vibrates there: its equivalent load exceeds {VIBRATES} times that of level slip, which has no vibration"
+FREE_RING = "a free ring shifts until the three different low points carry alike"
 AT_RADII = f"at R_low = {', '.join(f'{low:.4f}' for low in LOW_RADII)} mm"
 Tables = Mapping[tuple[str, str], Table]
 
@@ -255,7 +259,7 @@ def roundness(tables: Tables, level: str) -> Judged:
         off.append(f"slip rises by {highest:.3f} points at most, within the accuracy of the means")
     if fall > -5:
         off.append(f"life falls by {-fall:.1f} %, by 12 % in an independent calculation whose ring moves only along the load")
-    why = "a free ring shifts until the three different low points carry alike; "
+    why = f"{FREE_RING}; "
     why += "held on the load line it loses as much as in the independent calculation (test_roundness.py)"
     return Judged(HOLDS if falls and rises else IN_PART if falls or rises else FAILS, gives, "; ".join(off), why if off else "")
 
@@ -305,6 +309,50 @@ def table2(tables: Tables, level: str) -> Judged:
     return Judged(_verdict(len(wrong), len(slip.x) - 1), gives, *_deviation(wrong, "rpm"))
 
 
+def short_life_of_low_lobes(tables: Tables, level: str) -> Judged:
+    """Judge claim 10."""
+    life = course(tables, "d_value", level, D_VALUE, "rating_life")
+    judged = _short_life(life, life.x < DENG_SHORT_LIFE_D * (1 - _SAME), "D", "mm")
+    if not judged.off:
+        return judged
+    shared = [d for d in sorted(set(tables["map", level].values(D_VALUE))) if d < DENG_SHORT_LIFE_D]
+    reached = _crossing(course(tables, "map", level, LOW, "rating_life", d_value=shared[0]), DENG_LIFE) if shared else np.nan
+    if not np.isfinite(reached):
+        return judged._replace(why="not explained")
+    why = f"R_low decides life more than D does: at D = {shared[0]:g} mm it falls to {DENG_LIFE:g} h at R_low = {reached:.4f} mm, by interpolation"
+    return judged._replace(why=why)
+
+
+def short_life_of_uneven_lobes(tables: Tables, level: str) -> Judged:
+    """Judge claim 11."""
+    life = course(tables, "roundness", level, ROUNDNESS, "rating_life")
+    judged = _short_life(life, life.x > DENG_SHORT_LIFE_ROUNDNESS * (1 + _SAME), "roundness", "um")
+    if not judged.off:
+        return judged
+    why = f"{FREE_RING}; held on the load line it keeps 343 h at 10 um in an independent calculation, which is not below {DENG_LIFE:g} h either"
+    return judged._replace(why=why)
+
+
+def _short_life(life: Course, is_short: np.ndarray, name: str, unit: str) -> Judged:
+    """Judge whether life is below Deng's limit at some points, and at these alone.
+
+    Parameters
+    ----------
+    life : over a variable.
+    is_short : where Deng says that it is below, shape of the course.
+    name, unit : of the variable.
+    """
+    below, gives = life.y < DENG_LIFE, f"life {_ends(life)} h from {name} = {life.x[0]:g} to {life.x[-1]:g} {unit}"
+    off = []
+    if (~below)[is_short].any():
+        least = np.flatnonzero(is_short)[np.argmin(life.y[is_short])]
+        off.append(f"where Deng has less than {DENG_LIFE:g} h, life is {life.y[least]:.0f} h at least, at {name} = {life.x[least]:g} {unit}")
+    if below[~is_short].any():
+        off.append(f"life is below {DENG_LIFE:g} h at {', '.join(f'{x:g}' for x in life.x[below & ~is_short])} {unit}, too")
+    shown = below[is_short].any()  # a life that is long everywhere does not show the limit anywhere
+    return Judged(HOLDS if not off else IN_PART if shown else FAILS, gives, _joined(*off))
+
+
 CLAIMS: tuple[tuple[int, str, str, Callable[[Tables, str], Judged]], ...] = (
     (1, "11", "Slip and life both rise with R_low, slip ever faster (34.8600 to 34.8675 mm, D = 0.098 mm)", low_radius),
     (2, "13, 21", "Slip and life rise with D; about 10 % slip at R_low = 34.8650 mm, over 10 % once D > 0.105 mm", d_value),
@@ -315,6 +363,8 @@ CLAIMS: tuple[tuple[int, str, str, Callable[[Tables, str], Judged]], ...] = (
     (7, "12", "Life of 300 h is met at R_low = 34.8625 to 34.8650 mm, not at 34.8600; fewer rollers loaded and lower loads as R_low grows", preload),
     (8, "16", "The inner contact force falls and the outer rises with speed (centrifugal force)", loads_over_speed),
     (9, "23", "Bearing of Table 2: slip rises steadily from 15,000 to 52,000 rpm", table2),
+    (10, "14", "Life is below 300 h where D is below 0.095 mm (R_low = 34.8625 mm)", short_life_of_low_lobes),
+    (11, "22", "Life is below 300 h where roundness of the low points exceeds 6 um (R_low = 34.8625 mm, D = 0.095 mm)", short_life_of_uneven_lobes),
 )
 
 

@@ -3,13 +3,27 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.files.outputs import replaced
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.deng2017.pictures import DENG_REGION, Pictured
-from bearing_sim.studies.design import D_VALUE, LOW, NOMINAL, WORST, Border, Designed, Limits, default_axes, design, draw
+from bearing_sim.studies.design import (
+    D_VALUE,
+    END_OF_MAP,
+    KINDS,
+    LOW,
+    STATE,
+    Border,
+    Designed,
+    Limits,
+    condition_name,
+    default_axes,
+    design,
+    draw,
+)
 from bearing_sim.sweep.conditions import Conditions
 from bearing_sim.sweep.grid import Axis, axis
 from bearing_sim.sweep.point import DURATION
@@ -39,24 +53,54 @@ def answer(journal: Journal, quick: bool, workers: int | None = None, dask: str 
     return design(SCENE, overrides, _LIMITS, *axes, journal, DURATION, workers, dask)
 
 
-def radii_within(borders: Sequence[Border], d_values: tuple[float, float] = D_VALUES) -> tuple[float, float] | None:
-    """Return the range of radii [mm] that meet the limits at every D value between two, interpolated linearly.
+class Within(NamedTuple):
+    """The radii that meet the limits at every D value between two.
 
-    None if there are none, or if the map has several regions at a D value or does not cover the D values.
+    Attributes
+    ----------
+    low_from, low_to : the ends [mm]; None where there are none.
+    text : them in words, or why there are none; says where the map ends before the limit does.
+    """
+
+    low_from: float | None
+    low_to: float | None
+    text: str
+
+
+def radii_within(borders: Sequence[Border], mapped: Sequence[float], d_values: tuple[float, float] = D_VALUES) -> Within:
+    """Return the range of radii [mm] that meet the limits at every D value between two, interpolated linearly.
 
     Parameters
     ----------
     borders : of one kind.
+    mapped : all D values of the map [mm].
     d_values : the smallest and the largest D value [mm].
     """
-    left, right = d_values
-    ours = sorted(borders, key=lambda border: border.d_value)
-    known = [border.d_value for border in ours]
-    if not ours or len(set(known)) < len(known) or known[0] > left + 1e-9 or known[-1] < right - 1e-9:
-        return None
-    covered = [left, right, *(d for d in known if left < d < right)]
-    low, high = (np.interp(covered, known, [getattr(border, end) for border in ours]) for end in ("low_from", "low_to"))
-    return (round(float(low.max()), 6), round(float(high.min()), 6)) if low.max() <= high.min() else None
+    (left, right), known = d_values, sorted(set(mapped))
+    if known[0] > left + 1e-9 or known[-1] < right - 1e-9:
+        return Within(None, None, f"unknown, because the map ends at D = {known[0]:.4f} and {known[-1]:.4f} mm: the limit may lie beyond it")
+    first, last = (max(d for d in known if d <= left + 1e-9), min(d for d in known if d >= right - 1e-9))
+    needed, by_d_value = [d for d in known if first <= d <= last], {}
+    for border in borders:
+        by_d_value.setdefault(border.d_value, []).append(border)
+    if missing := [f"{d:.4f}" for d in needed if d not in by_d_value]:
+        return Within(None, None, f"none in the map, because no raceway meets both limits at D = {', '.join(missing)} mm")
+    if several := [f"{d:.4f}" for d in needed if len(by_d_value[d]) > 1]:
+        return Within(None, None, f"several intervals at D = {', '.join(several)} mm, see the table")
+    ours, covered = [by_d_value[d][0] for d in needed], [left, right, *(d for d in needed if left < d < right)]
+
+    def ends(end: str, by: str) -> tuple[np.ndarray, np.ndarray]:
+        """Return an end of the interval at each D value, and whether the map ends there."""
+        at = np.interp(covered, needed, [getattr(border, end) for border in ours])
+        return at, np.interp(covered, needed, [getattr(border, by) == END_OF_MAP for border in ours]) > 0.0
+
+    (lows, opens_below), (highs, opens_above) = ends("low_from", "below_by"), ends("low_to", "above_by")
+    low, high = round(float(lows.max()), 6), round(float(highs.min()), 6)
+    is_open = [f"{radius:.5f} mm" for radius, opens in ((low, opens_below[lows.argmax()]), (high, opens_above[highs.argmin()])) if opens]
+    beyond = f"; the map ends at R_low = {' and '.join(is_open)}, where raceways meet both limits: the limit lies beyond it" if is_open else ""
+    if low > high:
+        return Within(None, None, f"none in the map{beyond}")
+    return Within(low, high, f"R_low {low:.5f} to {high:.5f} mm{beyond}")
 
 
 def write_answer(folder: Path, designed: Designed) -> Pictured:
@@ -65,11 +109,12 @@ def write_answer(folder: Path, designed: Designed) -> Pictured:
     write_table(folder / "tables" / "design_borders", designed.border_table)
     with replaced(folder / "figures" / "design.png") as draft:
         draw(draft, designed, BESIDE)
-    ranges = []
-    for kind, when in ((NOMINAL, "at nominal speed and load"), (WORST, "with speeds within 2 % and loads within 10 %")):
-        found = radii_within([border for border in designed.borders if border.kind == kind])
-        ranges.append(f"{f'R_low = {found[0]:.4f} to {found[1]:.4f} mm' if found else 'no radius of the map'} {when}")
+    ranges, mapped = [], designed.grid.values(D_VALUE)
+    for kind in KINDS:
+        found = radii_within([border for border in designed.borders if border.kind == kind], mapped)
+        ranges.append(f"{condition_name(kind, designed.grid.about['wanted'])}: {found.text}")
     (left, right), (low, high) = D_VALUES, RADII
-    caption = f"Level steady, 45,000 rpm and 800 N. At every D from {left} to {right} mm, slip is below {SLIP_BELOW:g} % and "
-    caption += f"life above {LIFE_ABOVE:g} h for {' and '.join(ranges)}. Black: Deng's answer, {low:.4f} to {high:.4f} mm."
+    caption = f"Level steady, 45,000 rpm and 800 N, {STATE}. Radii with slip below {SLIP_BELOW:g} % and "
+    caption += f"life above {LIFE_ABOVE:g} h at every D from {left} to {right} mm: {'; '.join(ranges)}. Black: Deng's answer, "
+    caption += f"{low:.4f} to {high:.4f} mm."
     return Pictured("design.png", "The design question: slip below 10 % and life above 300 h", caption, ("design", "design_borders"))

@@ -11,10 +11,11 @@ import numpy as np
 
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
-from bearing_sim.simulation import IntegrationError, Simulation
+from bearing_sim.simulation import IntegrationError
 from bearing_sim.sweep.grid import Plan, plan_sweep, read_axis
 from bearing_sim.sweep.point import DURATION, run_until_settled
 from bearing_sim.sweep.tasks import Task, task
+from bearing_sim.sweep.thermal import simulation_in_equilibrium
 
 LEVELS = ("slip", "planar")
 LOW, D_VALUE, SPEED, LOAD = "bearing.outer_raceway.low_radius", "bearing.outer_raceway.d_value", "operating.shaft_speed", "operating.radial_load"
@@ -194,9 +195,10 @@ def trajectory(scene: Scene, duration: float) -> dict:
     scene : of a level whose cage whirls.
     duration : simulated before [s].
     """
-    bearing, run = scene.bearing, Simulation(scene)
+    bearing = scene.bearing
     ideal = 0.5 * scene.operating.shaft_speed * (1.0 - bearing.diameter_ratio)
     try:
+        run = simulation_in_equilibrium(scene)
         run.advance(duration)
         window = run.advance(_ORBIT_TURNS * 2 * np.pi / ideal, samples=_ORBIT_TURNS * _PER_TURN)
     except IntegrationError as error:
