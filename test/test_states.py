@@ -57,7 +57,7 @@ def test_a_start_that_is_neither_rolling_nor_skidding_is_refused():
 
 @pytest.mark.parametrize("ratio, grows", [(0.5, True), (0.7, False), (1.0, True), (1.3, False)])
 def test_the_multiplier_of_a_ring_is_that_of_mathieus_equation(ratio, grows):
-    """x'' + 2 d w x' + w^2 (1 + 0.5 cos p t) x = 0 along y, twice as stiff along z, integrated by SciPy over a period."""
+    """Compare with x'' + 2 d w x' + w^2 (1 + 0.5 cos p t) x = 0, integrated by SciPy over a period."""
     passage, count, modulation = 2.0 * math.pi, 400, 0.5
     square, damping = (ratio * passage) ** 2, 2.0 * 0.01 * ratio * passage
     times = (np.arange(count) + 0.5) / count

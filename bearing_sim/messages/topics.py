@@ -21,7 +21,9 @@ import numpy as np
 from bearing_sim.messages.bands import BANDS, ESTIMATES, Bands
 from bearing_sim.messages.point_cloud import ROLLER_FIELDS, RollerField, point_cloud, roller_fields, roller_points
 from bearing_sim.model.characteristic_frequencies import FREQUENCIES, characteristic_frequencies
+from bearing_sim.model.loads import largest_loads  # noqa: F401 - for rooms that show samples and import messages only
 from bearing_sim.model.sample import NODE_OBSERVABLES, OBSERVABLES, RING_TEMPERATURES
+from bearing_sim.model.turning import SLIP_FROM_SPEED, turns  # noqa: F401 - likewise
 
 SHAFT_JOINT, CAGE_JOINT, CLEARANCE_JOINT = "shaft", "cage", "running_clearance"
 FRAME = "bearing"  # unless the bearing has another frame; x along the shaft

@@ -63,7 +63,7 @@ def vortex_factor(taylor):
 def heated_shear(nahme):
     """Return the shear stress of oil that heats itself between walls of one temperature over that of oil that does not.
 
-    arsinh(x)/(x sqrt(1 + x^2)) with x^2 = Na/8 and the viscosity exp(-beta T): exact (R. Nahme, Ing.-Arch. 11 (1940) 191); 0.92 at Na = 1.
+    arsinh(x)/(x sqrt(1 + x^2)) with x^2 = Na/8 and the viscosity exp(-beta T): exact (R. Nahme, Ing.-Arch. 11 (1940) 191; not read); 0.92 at Na = 1.
     """
     root = np.sqrt(np.maximum(nahme, 1e-12) / 8.0)
     return np.arcsinh(root) / (root * np.sqrt(1.0 + root**2))

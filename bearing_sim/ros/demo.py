@@ -26,7 +26,6 @@ from bearing_sim.messages import topics
 from bearing_sim.messages.bands import ESTIMATES
 from bearing_sim.messages.diagnostics import WHOLE
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.model.turning import turns
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.reader import Recording
 from bearing_sim.ros.recordings import fresh_path
@@ -190,7 +189,7 @@ def summary(path: Path) -> str:
         return np.concatenate([block[name] for block in blocks])
 
     slip, speed = 100.0 * column("cage_slip"), np.abs(column("shaft_speed"))
-    slip = slip[np.isfinite(slip) & turns(speed, recording.scene.thresholds.slip_from_speed)]
+    slip = slip[np.isfinite(slip) & topics.turns(speed, recording.scene.thresholds.slip_from_speed)]
     mean, quantile, largest = (slip.mean(), np.quantile(slip, 0.95), slip.max()) if slip.size else (math.nan,) * 3
     reports = _diagnostics(path)
     factors = [factor for report in reports if math.isfinite(factor := float(report.get("real-time factor possible", "nan")))] or [math.nan]
@@ -216,7 +215,7 @@ def _estimate_rows(recording: Recording, times: np.ndarray, speeds: np.ndarray) 
         numbers = dict(zip(bands.names, bands.numbers[0]))
         if bands.topic == ESTIMATES:
             first, newest = first or numbers, numbers
-        elif numbers["cage_slip"][2] > slip[2] and turns(np.interp(bands.times[0], times, speeds), recording.scene.thresholds.slip_from_speed):
+        elif numbers["cage_slip"][2] > slip[2] and topics.turns(np.interp(bands.times[0], times, speeds), recording.scene.thresholds.slip_from_speed):
             slip = numbers["cage_slip"]
     rows = [("band of cage slip at its highest", f"{100 * slip[1]:.2f} to {100 * slip[2]:.2f} %")] if slip[2] > 0.0 else []
     for path, after in newest.items():

@@ -167,7 +167,8 @@ def _table_part(path: Path, table: Table) -> _Part:
 def _reasons(rows: Sequence[Mapping]) -> list[str]:
     """Return how many rows have each status other than ok, and why, and which laws are used outside of their ranges."""
     found = Counter(f"{row['status']}: {row.get('reason', '')}" for row in rows if row.get("status", OK) != OK)
-    return [f"{count} of {len(rows)} rows {text}" for text, count in found.most_common(10)] + counted((row.get("warnings") or "" for row in rows), with_assumptions=True)
+    limits = counted((row.get("warnings") or "" for row in rows), with_assumptions=True)
+    return [f"{count} of {len(rows)} rows {text}" for text, count in found.most_common(10)] + limits
 
 
 def _statuses(table: Table) -> dict:

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The inner ring on its rollers over speed: natural frequencies over the passage of rollers, where that excites it, and what becomes of slip and life."""
+"""The inner ring on its rollers over speed: where the passing rollers excite it, and what becomes of slip and life."""
 
 import math
 from collections.abc import Callable, Sequence

@@ -20,11 +20,12 @@ from bearing_sim.messages.topics import (
     MEASURED_CHANNELS,
     MEASURED_CLEARANCE,
     RING_TEMPERATURES,
+    SLIP_FROM_SPEED,
     ZERO_CELSIUS,
     characteristic_frequencies,
+    largest_loads,
+    turns,
 )
-from bearing_sim.model.loads import largest_loads
-from bearing_sim.model.turning import SLIP_FROM_SPEED, turns
 from bearing_sim.scene.fidelity import LEVELS, level_of
 from bearing_sim.scene.scene import NO_CLEARANCE_LIMIT, Scene
 from bearing_sim.view import colours, section
