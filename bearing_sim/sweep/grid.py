@@ -269,7 +269,8 @@ def run_sweep(
 
     Returns
     -------
-    one row per point: the varied fields, then `RESULTS`, `OTHER_STATE` and `TEXTS` of `bearing_sim.sweep.point`; see `bearing_sim.sweep.table.Table.to_xarray`.
+    one row per point: the varied fields, then `RESULTS`, `OTHER_STATE` and `TEXTS` of `bearing_sim.sweep.point`; see
+    `bearing_sim.sweep.table.Table.to_xarray`.
 
     Raises
     ------
