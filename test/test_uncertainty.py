@@ -16,7 +16,18 @@ from bearing_sim.cli.main import main
 from bearing_sim.model.plausibility import left_out
 from bearing_sim.scene.loader import SceneError, load_scene, scene_from_yaml, scene_names, scene_to_yaml
 from bearing_sim.scene.uncertainty import Range, quantities, value_at, with_values, without_dimensions
-from bearing_sim.studies.uncertainty import UncertaintyError, band, design, distribution, indices, lowest_level, settled, stretches, study
+from bearing_sim.studies.uncertainty import (
+    UncertaintyError,
+    band,
+    design,
+    distribution,
+    indices,
+    lowest_level,
+    settled,
+    stretches,
+    study,
+    varied_ranges,
+)
 from bearing_sim.sweep.tasks import Journal
 
 NONE = [
@@ -207,8 +218,18 @@ def test_what_is_sampled_at_level_steady_is_where_level_slip_settles():
     assert scene.level == "slip" and slip == pytest.approx(steady_slip, abs=1e-3) and life == pytest.approx(steady_life, rel=0.01)
 
 
+def test_a_ring_that_may_vibrate_keeps_its_level_and_its_mass_and_damping_vary():
+    scene, reason = lowest_level(load_scene("deng2017_table1", ["level=planar"]))
+    assert scene.level == "planar" and "may vibrate" in reason
+    added = {one.field for one in varied_ranges(scene)} - {one.field for one in varied_ranges(scene.at_level("steady"))}
+    assert added == {"support.shaft.mass", "bearing.contact.damping_time"}
+    given = load_scene("deng2017_table1", ["level=planar", "support.shaft.mass=2 kg"])
+    assert "support.shaft.mass" not in {one.field for one in varied_ranges(given)}, "the scene gives it"
+
+
 def test_the_level_is_the_lowest_that_has_what_the_scene_asks_for():
-    assert lowest_level(load_scene("deng2017_table1", ["level=planar", "integration.fixed_step=5 us"]))[0].level == "steady"
+    still = "bearing.inner_raceway.ring_mass=2 kg"  # far from a resonance with the passing rollers
+    assert lowest_level(load_scene("deng2017_table1", ["level=planar", still, "integration.fixed_step=5 us"]))[0].level == "steady"
     assert lowest_level(load_scene("deng2017_table1", ["level=spatial", "wants=[cage_orbit]"]))[0].level == "planar"
     assert lowest_level(load_scene("deng2017_table1"), "slip") == (load_scene("deng2017_table1"), "as requested")
     with pytest.raises(UncertaintyError, match="needs level spatial"):
