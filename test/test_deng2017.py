@@ -177,7 +177,7 @@ def test_a_step_back_within_noise_is_no_fall_and_one_beyond_is():
 
 def test_the_design_question_is_answered_beside_the_papers_answer(folder, about):
     (shown,) = [each for each in about["figures"] if each["file"] == "design.png"]
-    found = re.search(r"R_low = ([\d.]+) to ([\d.]+) mm at nominal speed and load", shown["caption"])
+    found = re.search(r"at nominal speed and load: R_low ([\d.]+) to ([\d.]+) mm", shown["caption"])
     assert 34.861 < float(found[1]) < 34.8625 < float(found[2]) < 34.8655 and "34.8625 to 34.8650 mm" in shown["caption"]
     borders = read_table(folder / "tables" / "design_borders.parquet")
     assert {row["kind"] for row in borders.rows} == {"nominal", "worst"} and (folder / "figures" / "design.png").stat().st_size > 20_000

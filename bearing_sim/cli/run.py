@@ -119,7 +119,7 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
     if as_json:
         print_json({**report, "uncertainty": bands} if bands else report)
     else:
-        _print(report, scene, bands, estimation, state_rows(others, start))
+        _print(report, scene, bands, estimation, state_rows(others, start) if math.isfinite(outcome.slip) else [])
     warn_of_limits(scene, warnings, verbose)
     if seconds is None and not outcome.settled:
         raise Unsettled(f"not settled: {outcome.reason}; give more time with --at-most")

@@ -149,7 +149,8 @@ class Settled:
         lines.append(f"  largest roller load  inner {self.inner_load_maximum:.4g} N, outer {self.outer_load_maximum:.4g} N")
         lines.append(f"  running clearance    {1e6 * self.running_clearance:.4g} um")
         lines.append(f"  power loss           {self.shaft_power:.4g} W")
-        lines += [f"  {name:<20} {text}" for name, text in state_rows(self.others, self.start)]
+        rows = state_rows(self.others, self.start) if math.isfinite(self.cage_slip) else []
+        lines += [f"  {name:<20} {text}" for name, text in rows]
         if math.isfinite(last[RING_TEMPERATURES[0]]):
             inner, outer = (last[name] - _CELSIUS for name in RING_TEMPERATURES)
             lines.append(f"  ring temperatures    inner {inner:.4g} degC, outer {outer:.4g} degC")

@@ -25,6 +25,7 @@ from bearing_sim.simulation import Inputs, scene_inputs
 from bearing_sim.sweep.thermal import operating_state
 
 _POSITIONS = 64  # of the cage over a pitch; the multiplier then errs by less than 0.001
+_HARDLY_DECAYS = 0.99  # multiplier of a motion that decays by no more than a per cent from roller to roller
 _HIGHEST = 12  # multiple of one half that is looked at
 _SOFTER, _STIFFER, _BETWEEN = 0.8, 1.05, 6  # frequencies of a ring that lifts off its rollers in part, over those of one that does not (assumption)
 
@@ -58,8 +59,8 @@ class Resonance(NamedTuple):
 
     @property
     def may_vibrate(self) -> bool:
-        """Whether a ring that vibrates may go on, as its frequency falls with its amplitude; mass and stiffness are not known much better."""
-        return self.multiplier_nearby >= 1.0
+        """Whether a ring that vibrates may go on: its frequency falls with its amplitude, and mass and stiffness are not known much better."""
+        return self.multiplier_nearby >= _HARDLY_DECAYS
 
 
 def ring_resonance(scene: Scene, slip: float = 0.0, inputs: Inputs | None = None, nodes: np.ndarray | None = None) -> Resonance | None:

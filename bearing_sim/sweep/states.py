@@ -99,8 +99,8 @@ def other_states(scene: Scene, outcome: Outcome, start: str = ROLLING, skid_load
     """Return the other states of a bearing under the conditions of a run that has ended.
 
     Levels steady and slip have those of the mean drive of the cage.  Levels planar and spatial start once more from each of these, and, where the
-    passing rollers may keep the inner ring vibrating (`bearing_sim.sweep.ring_resonance`), with a ring that does not vibrate if this one does,
-    otherwise with one that is displaced against its load.
+    passing rollers may keep the inner ring vibrating (`bearing_sim.sweep.ring_resonance`), with a ring that is displaced against its load, and one
+    that does not vibrate if this one does.  A run that has not settled has no other states.
 
     Parameters
     ----------
@@ -117,15 +117,15 @@ def other_states(scene: Scene, outcome: Outcome, start: str = ROLLING, skid_load
     if scene.level in ("steady", "slip"):
         return Others(known.beside(slip), known.skid_load, None)
     resonance, own, found = ring_resonance(scene, slip, inputs, nodes), _state_of(outcome, ""), []
-    starts = [(state.start, _start_in(scene, state.basin, inputs, nodes)) for state in known.beside(slip)]
-    if resonance is not None and resonance.may_vibrate:
+    beside = known.beside(slip) if outcome.settled else ()  # a bearing that wanders visits what it may
+    starts = [(state.start, _start_in(scene, state.basin, inputs, nodes)) for state in beside]
+    if outcome.settled and resonance is not None and resonance.may_vibrate:
         quiet = min(known.found, key=lambda state: abs(state.cage_slip - slip), default=None)
         if quiet is not None and not own.rating_life > (1.0 - _OTHER_LIFE) * quiet.rating_life:
             starts.append(("from a ring that does not vibrate", _start_in(scene, quiet.basin, inputs, nodes)))
-        else:
-            starts.append(("from a displaced ring", _lifted(sample)))
+        starts.append(("from a displaced ring", _lifted(sample)))
     starts = [(words, sample) for words, sample in starts if sample is not None]
-    if start != ROLLING:
+    if start != ROLLING and outcome.settled:
         starts.append(("from ideal rolling", None))
     for words, begin in starts:
         state = _state_from(scene, begin, words, inputs, nodes, outcome)
