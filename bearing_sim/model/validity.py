@@ -342,6 +342,11 @@ SHOWN = ("slip", "life", "power loss", "film")
 """Numbers that an exceedance may move."""
 
 
+def _two_digits(value: float) -> str:
+    """Return a change with its sign, to two digits, without a power of ten."""
+    return f"{value:+.0f}" if abs(value) >= 9.95 else f"{value:+.2g}"
+
+
 class Effect(NamedTuple):
     """By how much printed numbers move if a scene is computed otherwise."""
 
@@ -360,8 +365,8 @@ class Effect(NamedTuple):
         slip_band = max(BANDS.slip, BANDS.slip_ratio * abs(self.from_slip))
         life_band = BANDS.life_factor if self.is_of_life else BANDS.life
         parts = ("life", self.life, life_band), ("power loss", self.power, BANDS.power), ("film", self.film, BANDS.film)
-        found = {f"slip by {100.0 * self.slip:+.2g} points": abs(self.slip) / slip_band} if "slip" in self.shown else {}
-        return found | {f"{name} by {100.0 * change:+.2g} %": abs(change) / band for name, change, band in parts if name in self.shown}
+        found = {f"slip by {_two_digits(100.0 * self.slip)} points": abs(self.slip) / slip_band} if "slip" in self.shown else {}
+        return found | {f"{name} by {_two_digits(100.0 * change)} %": abs(change) / band for name, change, band in parts if name in self.shown}
 
     @property
     def size(self) -> float:
