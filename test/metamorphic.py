@@ -17,6 +17,7 @@ from bearing_sim.sweep.states import ROLLING, SKID, skid_start, states
 SLIP, LIFE, POWER = 1e-3, 0.04, 0.04  # largest differences: absolute, and relative; settling allows half of each
 LOSSES = [each.name for each in OBSERVABLES if each.name.endswith("_power") and each.name != "shaft_power"]
 _TURN = 0.7368  # rad, by which a round bearing is turned: no multiple of a pitch
+_LONGEST = 5.0  # s of a run; cages that rattle never settle
 _PIECES, _SAMPLES, _MORE_SAMPLES = 5, 100, 370
 
 
@@ -68,7 +69,7 @@ def _wrapped(angle: float) -> float:
 
 def settled_answer(scene: Scene, start: str = ROLLING) -> Answer:
     """Return what a scene settles to from ideal rolling or a skid."""
-    window = run_until_settled(scene, start=skid_start(scene) if start == SKID else None)
+    window = run_until_settled(scene, longest=_LONGEST, start=skid_start(scene) if start == SKID else None)
     return Answer(window.slip, _life(window.window), power_loss(window.window), window.settled)
 
 
@@ -139,7 +140,7 @@ def _run(scene: Scene, duration: float, pieces: int, samples: int) -> Answer:
 
 def missing_power(scene: Scene) -> float:
     """Return by which part of it the shaft's power of a settled bearing misses the sum of its losses."""
-    window = run_until_settled(scene).window
+    window = run_until_settled(scene, longest=_LONGEST).window
     total = sum(float(window[name].mean()) for name in LOSSES)
     return _apart(power_loss(window), total)
 
