@@ -12,7 +12,7 @@ from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.sweep.point import run_until_settled
-from bearing_sim.sweep.states import ROLLING, SKID, skid_start, states
+from bearing_sim.sweep.states import ROLLING, SKID, skid_start, state_of, states
 
 SLIP, LIFE, POWER = 1e-3, 0.04, 0.04  # largest differences: absolute, and relative; settling allows half of each
 LOSSES = [each.name for each in OBSERVABLES if each.name.endswith("_power") and each.name != "shaft_power"]
@@ -69,13 +69,9 @@ def _wrapped(angle: float) -> float:
 
 def settled_answer(scene: Scene, start: str = ROLLING) -> Answer:
     """Return what a scene settles to from ideal rolling or a skid."""
-    window = run_until_settled(scene, longest=_LONGEST, start=skid_start(scene) if start == SKID else None)
-    return Answer(window.slip, _life(window.window), power_loss(window.window), window.settled)
-
-
-def _life(samples) -> float:
-    with np.errstate(divide="ignore"):
-        return float(1.0 / np.mean(1.0 / samples["rating_life"]))
+    outcome = run_until_settled(scene, longest=_LONGEST, start=skid_start(scene) if start == SKID else None)
+    state = state_of(outcome, start)
+    return Answer(state.cage_slip, state.rating_life, state.shaft_power, outcome.settled)
 
 
 def solved_answers(scene: Scene) -> list[Answer]:

@@ -14,7 +14,6 @@ from scipy.integrate import solve_bvp
 
 from bearing_sim import Simulation, load_scene
 from bearing_sim.cli.main import main
-from bearing_sim.estimation import grading
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import new_block
 from bearing_sim.model.validity import (
@@ -39,6 +38,7 @@ from bearing_sim.recording.reader import Recording
 from bearing_sim.runtime.live import LiveModel, warmed_up
 from bearing_sim.scene.ratings import rate
 from bearing_sim.studies.operating_point import settle
+from bearing_sim.sweep import grading
 from bearing_sim.sweep.point import point_row
 
 MOTOR = """

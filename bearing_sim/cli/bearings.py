@@ -60,9 +60,9 @@ def loads(scene_name, overrides, slices, picture, verbose, as_json):
         scene = load_scene(scene_name, overrides)
     warn_of_scene(scene)
     announce_compilation()
-    from bearing_sim.estimation.grading import graded
     from bearing_sim.model.validity import outside
     from bearing_sim.studies.statics import statics
+    from bearing_sim.sweep.grading import graded
 
     slices = slices or scene.life.laminae
     with as_failed_run(IntegrationError, ArithmeticError):

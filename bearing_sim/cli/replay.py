@@ -88,7 +88,6 @@ def replay(
         return
     import numpy as np
 
-    from bearing_sim.estimation.grading import graded
     from bearing_sim.inputs.log import InputLogError, read_input_log
     from bearing_sim.inputs.profile import judge
     from bearing_sim.recording.writer import COMMAND, McapSink
@@ -97,6 +96,7 @@ def replay(
     from bearing_sim.simulation import Inputs, IntegrationError, Simulation
     from bearing_sim.stored_state.keeper import RECORD, StateKeeper
     from bearing_sim.stored_state.state_file import checked_serial
+    from bearing_sim.sweep.grading import graded
 
     names, constants = channel_sources(**channels)
     with as_usage_error(SceneError, InputLogError), as_file_error():

@@ -227,7 +227,7 @@ def warn_of_limits(scene, exceedances: Iterable, verbose: bool = False) -> None:
     Parameters
     ----------
     scene : of the results.
-    exceedances : graded, see `bearing_sim.estimation.grading.graded`.
+    exceedances : graded, see `bearing_sim.sweep.grading.graded`.
     verbose : whether to print a note of those without effect and of assumptions, too.
     """
     from bearing_sim.model.plausibility import plausibility

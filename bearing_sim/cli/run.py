@@ -72,12 +72,12 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
     uncertainty` shows more.
     """
     from bearing_sim.cli.uncertainty import bands_of
-    from bearing_sim.estimation.grading import graded
     from bearing_sim.estimation.two_states import laws_of_table
     from bearing_sim.messages.events import validity_event
     from bearing_sim.model.validity import outside
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError, Simulation, start_sample
+    from bearing_sim.sweep.grading import graded
     from bearing_sim.sweep.states import SKID, other_states, skid_start, state_rows
     from bearing_sim.sweep.thermal import begin_in_equilibrium
 

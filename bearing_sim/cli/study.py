@@ -40,6 +40,16 @@ from bearing_sim.cli.reporting import (
 from bearing_sim.files.outputs import Output
 
 
+def _write(table, rows, picture, draw) -> None:
+    """Write the rows of a study to a table and let ``draw`` draw into a picture, each where it is asked for."""
+    with as_file_error():
+        if table is not None:
+            write_csv(table, rows)
+        if picture is not None:
+            with picture.draft() as draft:
+                draw(draft)
+
+
 @click.command("deng2017", cls=WritingCommand)
 @click.option("-o", "--out", type=OutputFolder(), default="deng2017", show_default=True, metavar="FOLDER", help="Output folder.")
 @set_option
@@ -146,7 +156,7 @@ def misalignment(scene_name, overrides, largest, points, crowns, slices, table, 
     from bearing_sim.simulation import IntegrationError
 
     announce_compilation()
-    from bearing_sim.studies.misalignment import CROWNS, misalign
+    from bearing_sim.studies.misalignment import CROWNS, draw, misalign
 
     crowns = crowns or CROWNS
     done = iter(range(points * len(crowns) + 1))
@@ -154,14 +164,8 @@ def misalignment(scene_name, overrides, largest, points, crowns, slices, table, 
     with progress_bar("points", points * len(crowns)) as show, as_usage_error(SceneError, ValueError), as_failed_run(IntegrationError):
         found = misalign(scene_name, overrides, amounts, crowns, slices, progress=lambda name: show(next(done)))
     rows = [_row(one) for one in found]
-    with as_file_error():
-        if table is not None:
-            write_csv(table, rows)
-        if picture is not None:
-            from bearing_sim.studies.misalignment import draw
-
-            with picture.draft() as draft:
-                draw(draft, f"{scene_name} {' '.join(overrides)}: misalignment of the inner ring, {slices} laminae", found)
+    title = f"{scene_name} {' '.join(overrides)}: misalignment of the inner ring, {slices} laminae"
+    _write(table, rows, picture, lambda draft: draw(draft, title, found))
     if as_json:
         print_json({"scene": scene_name, "slices": slices, "points": rows})
     else:
@@ -218,7 +222,7 @@ def support(scene_name, overrides, lowest, highest, points, level, table, pictur
     from bearing_sim.simulation import IntegrationError
 
     announce_compilation()
-    from bearing_sim.studies.support import relative_damage, respond
+    from bearing_sim.studies.support import draw, relative_damage, respond
 
     done = iter(range(3 * points + 1))
     speeds = [float(each) for each in np.linspace(lowest, highest, points) * (math.pi / 30)]
@@ -226,14 +230,8 @@ def support(scene_name, overrides, lowest, highest, points, level, table, pictur
         found = respond(scene_name, overrides, speeds, level, progress=lambda name: show(next(done)))
     relative = relative_damage(found)
     rows = [_response_row(one, relative) for one in found]
-    with as_file_error():
-        if table is not None:
-            write_csv(table, rows)
-        if picture is not None:
-            from bearing_sim.studies.support import draw
-
-            with picture.draft() as draft:
-                draw(draft, f"{' '.join([scene_name, *overrides])}: response over speed, level {level}", found)
+    title = f"{' '.join([scene_name, *overrides])}: response over speed, level {level}"
+    _write(table, rows, picture, lambda draft: draw(draft, title, found))
     if as_json:
         print_json({"scene": scene_name, "level": level, "points": rows})
     else:
@@ -271,12 +269,8 @@ def resonances(scene_name, overrides, lowest, highest, points, level, table, pic
     with progress_bar("speeds", points) as show:
         found = resonances(scene, speeds, show)
     rows = [row for each in found for row in _resonance_rows(each)]
-    with as_file_error():
-        if table is not None:
-            write_csv(table, rows)
-        if picture is not None:
-            with picture.draft() as draft:
-                draw(draft, f"{' '.join([scene_name, *overrides])}: the inner ring on its rollers, level {level}", found)
+    title = f"{' '.join([scene_name, *overrides])}: the inner ring on its rollers, level {level}"
+    _write(table, rows, picture, lambda draft: draw(draft, title, found))
     if as_json:
         print_json({"scene": scene_name, "level": level, "points": rows})
     else:
@@ -780,18 +774,11 @@ def extremes(samples, levels, seed, long, workers, as_json, picture, table):
     Speed, load, play, lobes, rollers, pockets, lands, oil, slices, tolerances and steps from a Latin hypercube, and named corner
     cases, on all cores available to this process.  Scenes that their own settings limit run again at stock settings.  Exit code 1 if any case fails.
     """
-    from bearing_sim.studies.extremes import run_extremes, table_rows
+    from bearing_sim.studies.extremes import draw, run_extremes, table_rows
 
     with progress_bar("extremes", 1.0) as progress:
         report, outcomes = run_extremes(samples, levels, seed, long, lambda text: click.echo(f"{text} ...", err=True), progress, workers)
-    with as_file_error():
-        if table is not None:
-            write_csv(table, table_rows(outcomes))
-        if picture is not None:
-            from bearing_sim.studies.extremes import draw
-
-            with picture.draft() as draft:
-                draw(draft, outcomes)
+    _write(table, table_rows(outcomes), picture, lambda draft: draw(draft, outcomes))
     if as_json:
         print_json(report)
     else:

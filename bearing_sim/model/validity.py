@@ -3,7 +3,7 @@
 
 One entry of `LAWS` for each limit: the quantity, its range, where the range comes from (or the word *assumption*), what to use instead, how
 the quantity follows from a scene and its samples, and what to compute otherwise to see what it does.  A result outside a range is still
-computed, but it carries an exceedance: `outside` finds them all, `bearing_sim.estimation.grading` says by how much each moves slip, life, power and
+computed, but it carries an exceedance: `outside` finds them all, `bearing_sim.sweep.grading` says by how much each moves slip, life, power and
 film, the command line prints those that move one of them, and `bearing_sim.monitoring.limits` turns all into events.  A new limit is one entry
 here and one case in ``test/test_validity.py``.
 

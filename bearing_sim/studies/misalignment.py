@@ -12,7 +12,7 @@ import numpy as np
 
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.statics import Statics, statics
-from bearing_sim.sweep.point import mean_life
+from bearing_sim.sweep.settling import mean_life
 from bearing_sim.sweep.table import COLOURS, MARKERS, new_figure
 from bearing_sim.sweep.thermal import simulation_in_equilibrium
 

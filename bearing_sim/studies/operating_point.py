@@ -105,7 +105,7 @@ class Settled:
     @cached_property
     def warnings(self) -> tuple[Exceedance, ...]:
         """Laws that are used outside of their ranges, each with its worst value, what it moves, and its grade."""
-        from bearing_sim.estimation.grading import graded  # here, because it takes long to import
+        from bearing_sim.sweep.grading import graded  # here, because it takes long to import
 
         return tuple(graded(self.scene, outside(self.scene, self.outcome.window), self.outcome.window[-1]))
 

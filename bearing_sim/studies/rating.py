@@ -12,7 +12,8 @@ from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.physics.rating_life import reliability_factor
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
-from bearing_sim.sweep.point import LIVES, mean_life
+from bearing_sim.sweep.point import LIVES
+from bearing_sim.sweep.settling import mean_life
 
 FACTORS = ARRAYS["life_factors"].fields
 

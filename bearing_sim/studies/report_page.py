@@ -31,7 +31,8 @@ from bearing_sim.studies.deng2017.page import study_page
 from bearing_sim.studies.deng2017.run import STUDY_FILE
 from bearing_sim.studies.page import NoResults, command, document, folded, pairs, paragraph, picture, rows_table, warnings
 from bearing_sim.studies.run_plot import DEFAULT_PANELS, course_of, draw_over_time
-from bearing_sim.sweep.point import OK, Column, mean_life
+from bearing_sim.sweep.point import OK, Column
+from bearing_sim.sweep.settling import mean_life
 from bearing_sim.sweep.table import COLOURS, NotDrawable, Table, draw, new_figure, read_any_table, written_by_us
 
 _RECORDINGS, _TABLES = (".mcap", ACTIVE), (".parquet", ".csv")

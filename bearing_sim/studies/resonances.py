@@ -12,7 +12,7 @@ from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError
 from bearing_sim.sweep.point import run_until_settled
 from bearing_sim.sweep.ring_resonance import Resonance, ring_resonance
-from bearing_sim.sweep.states import State, other_states
+from bearing_sim.sweep.states import State, other_states, state_of
 from bearing_sim.sweep.table import COLOURS, new_figure
 
 _SHORTEST = 0.1  # s of a run
@@ -42,8 +42,7 @@ def resonances(scene: Scene, shaft_speeds: Sequence[float], progress: Callable[[
         try:
             outcome = run_until_settled(there, _SHORTEST)
             others = other_states(there, outcome, skid_load=False)
-            life = float(1.0 / np.mean(1.0 / outcome.window["rating_life"]))
-            known = (State(outcome.slip, life, float(outcome.window["shaft_power"].mean()), "from ideal rolling"), *others.states)
+            known = (state_of(outcome, "from ideal rolling"), *others.states)
             resonance = others.resonance
         except IntegrationError:
             pass

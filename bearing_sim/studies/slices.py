@@ -11,7 +11,7 @@ import numpy as np
 
 from bearing_sim.scene.scene import Scene
 from bearing_sim.studies.statics import statics
-from bearing_sim.sweep.point import mean_life
+from bearing_sim.sweep.settling import mean_life
 from bearing_sim.sweep.thermal import simulation_in_equilibrium
 
 SLICES = (None, 10, 20, 30, 50, 100, 200)

@@ -13,7 +13,7 @@ from bearing_sim.model.validity import cell, outside
 from bearing_sim.scene.quantity import to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
-from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, shortest_run
+from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, mean_life, shortest_run
 from bearing_sim.sweep.states import other_states
 from bearing_sim.sweep.thermal import begin_in_equilibrium
 
@@ -146,12 +146,6 @@ def results_of(outcome: Outcome) -> dict[str, float]:
     found |= {name: window[name].mean() for name in (*_CLEARANCES, *_MEANS, *_POWERS)}
     found["shaft_power"] = power_loss(window)
     return {name: float(value) for name, value in found.items()}
-
-
-def mean_life(lives: np.ndarray) -> float:
-    """Return the life under conditions that have these lives for equally long: damage adds up, so it is the rates that are averaged."""
-    with np.errstate(divide="ignore"):
-        return float(1.0 / np.mean(1.0 / lives))
 
 
 def empty_row(status: str, reason: str) -> dict:

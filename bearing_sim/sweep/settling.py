@@ -309,6 +309,12 @@ class _Record:
         return samples[samples["time"] > end - WINDOW * (end - begin)]
 
 
+def mean_life(lives: np.ndarray) -> float:
+    """Return the life under conditions that have these lives for equally long: damage adds up, so it is the rates that are averaged."""
+    with np.errstate(divide="ignore"):
+        return float(1.0 / np.mean(1.0 / lives))
+
+
 def cage_turn(scene: Scene) -> float:
     """Return the time of a turn of an ideal cage [s]; infinite at rest."""
     speed = 0.5 * abs(scene.operating.shaft_speed) * (1.0 - scene.bearing.diameter_ratio)

@@ -13,21 +13,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
+from bearing_sim.levels.common.model import Model
 from bearing_sim.levels.steady.model import Work, forget, new_work, solve_condition
 from bearing_sim.levels.steady.operating_point import ANSWER, CREEP, SCANNED, basin, find_skid_load, stable_balances
 from bearing_sim.model.losses import power_loss
-from bearing_sim.model.sample import NODE_OBSERVABLES
-from bearing_sim.physics.lamina_life import EquivalentLoads
-from bearing_sim.physics.rating_life import oil_factors, rate_lives
 from bearing_sim.scene.scene import Integration, Scene
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation, inputs_of, scene_inputs
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, inputs_of, scene_inputs, thermal_nodes
 from bearing_sim.sweep.ring_resonance import Resonance, ring_resonance
-from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, shortest_run
-from bearing_sim.sweep.thermal import operating_state
+from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, mean_life, shortest_run
+from bearing_sim.sweep.thermal import SKIDS, lives_of, operating_state, simulation_held_at, steady_model
 
 ROLLING, SKID = "rolling", "skid"  # from where a run starts
-SKIDS = 0.05  # slip above which a cage counts as skidding
 _FIRST, _MOST = 1e-3, 0.5  # loads at which the search for a skid load begins and ends, over the static load rating
 _STANDSTILL = 1e-3  # rad/s; a cage that stands
 _LIFTED = 1e-5  # m, by which a ring is displaced against its load
@@ -44,6 +40,11 @@ class State(NamedTuple):
     start: str  # from where the bearing comes to it
     basin: tuple[float, float] = (math.nan, math.nan)  # slips between which a cage comes to it, where level steady tells
 
+    @property
+    def from_standstill(self) -> bool:
+        """Whether a cage that stands comes to it, and one that rolls does not."""
+        return self.basin[0] > -math.inf and self.basin[1] == math.inf
+
 
 class States(NamedTuple):
     """What level steady knows of the states of a bearing under constant conditions."""
@@ -51,9 +52,13 @@ class States(NamedTuple):
     found: tuple[State, ...]  # the one to which the cage comes from ideal rolling first; none where no state was found, or at rest
     skid_load: float  # load below which a skid lasts, at the same speed and temperatures [N]; 0 where none does, NaN where it was not sought
 
+    def of(self, slip: float) -> State | None:
+        """Return the state of a bearing whose cage has settled with such a slip; None where none was found."""
+        return min(self.found, key=lambda state: abs(state.cage_slip - slip), default=None)
+
     def beside(self, slip: float) -> tuple[State, ...]:
-        """Return the other states of a bearing whose cage has settled with such a slip."""
-        own = min(self.found, key=lambda state: abs(state.cage_slip - slip), default=None)
+        """Return the other states of such a bearing."""
+        own = self.of(slip)
         return tuple(state for state in self.found if state is not own)
 
 
@@ -81,17 +86,14 @@ def states(scene: Scene, inputs: Inputs | None = None, nodes: np.ndarray | None 
         There is no thermal equilibrium.
     """
     inputs = scene_inputs(scene) if inputs is None else inputs
-    speed, load_y, load_z = inputs[:3]
-    if abs(speed) < CREEP:
+    if abs(inputs.shaft_speed) < CREEP:
         return States((), math.nan)
-    params, lubrication, _ = operating_state(scene, inputs, nodes)
-    drive = Drive(0.0, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0)
-    model, work = Model(params, lubrication, drive, DEFAULT_TOLERANCES), new_work(params)
-    found = tuple(_state(*found, model) for found in _balances(speed, load_y, load_z, model, work))
-    below = math.nan
+    model = steady_model(operating_state(scene, inputs, nodes), inputs)
+    work, below = new_work(model.params), math.nan
+    found = tuple(_state(*found, model) for found in _balances(inputs, model, work))
     if skid_load and found:
-        rating = params.life.static_rating
-        below = find_skid_load(SKIDS, math.atan2(load_z, load_y), _FIRST * rating, _MOST * rating, model, work.bearing, work.orbit)
+        rating = model.params.life.static_rating
+        below = find_skid_load(SKIDS, math.atan2(inputs.load_z, inputs.load_y), _FIRST * rating, _MOST * rating, model, work.bearing, work.orbit)
     return States(found, float(below))
 
 
@@ -110,19 +112,19 @@ def other_states(scene: Scene, outcome: Outcome, start: str = ROLLING, skid_load
     skid_load : as of `states`.
     """
     sample, slip = outcome.window[-1], outcome.slip
-    inputs, nodes = inputs_of(sample), np.array([float(sample[name]) for name in NODE_OBSERVABLES])
+    inputs, nodes = inputs_of(sample), thermal_nodes(sample)
     if not math.isfinite(slip):
         return Others((), math.nan, None)
     known = states(scene, inputs, nodes, skid_load)
     if scene.level in ("steady", "slip"):
         return Others(known.beside(slip), known.skid_load, None)
-    resonance, own, found = ring_resonance(scene, slip, inputs, nodes), _state_of(outcome, ""), []
+    resonance, own, found = ring_resonance(scene, slip, inputs, nodes), state_of(outcome, ""), []
     beside = known.beside(slip) if outcome.settled else ()  # a bearing that wanders visits what it may
-    starts = [(state.start, _start_in(scene, state.basin, inputs, nodes)) for state in beside]
+    starts = [(state.start, _settled_at_slip(scene, state.from_standstill, inputs, nodes)) for state in beside]
     if outcome.settled and resonance is not None and resonance.may_vibrate:
-        quiet = min(known.found, key=lambda state: abs(state.cage_slip - slip), default=None)
+        quiet = known.of(slip)
         if quiet is not None and not own.rating_life > (1.0 - _OTHER_LIFE) * quiet.rating_life:
-            starts.append(("from a ring that does not vibrate", _start_in(scene, quiet.basin, inputs, nodes)))
+            starts.append(("from a ring that does not vibrate", _settled_at_slip(scene, quiet.from_standstill, inputs, nodes)))
         starts.append(("from a displaced ring", _lifted(sample)))
     starts = [(words, sample) for words, sample in starts if sample is not None]
     if start != ROLLING and outcome.settled:
@@ -134,10 +136,9 @@ def other_states(scene: Scene, outcome: Outcome, start: str = ROLLING, skid_load
     return Others(tuple(found), known.skid_load, resonance)
 
 
-def _state_of(outcome: Outcome, start: str) -> State:
-    window = outcome.window
-    with np.errstate(divide="ignore"):
-        return State(outcome.slip, float(1.0 / np.mean(1.0 / window["rating_life"])), power_loss(window), start)
+def state_of(outcome: Outcome, start: str) -> State:
+    """Return the state that a run has settled in, and from where it came."""
+    return State(outcome.slip, mean_life(outcome.window["rating_life"]), power_loss(outcome.window), start)
 
 
 def _differs(state: State, other: State) -> bool:
@@ -155,23 +156,18 @@ def _state_from(scene: Scene, start: np.void | None, words: str, inputs: Inputs,
     """Return the state that a bearing comes to from a sample, at the temperatures of a run; None where it does not settle."""
     shortest = shortest_run(scene, 0.0)
     try:
-        run = Simulation(scene, inputs, start=start, nodes=nodes if np.isfinite(nodes).all() else None)
-        if run.thermal is not None:
-            run.set_temperatures(nodes)
+        run = simulation_held_at(scene, inputs, nodes, start)
         found = advance_until_settled(run, shortest, max(shortest, _LONGER * outcome.simulated))
     except IntegrationError:
         return None
-    return _state_of(found, words if found.settled else f"{words}, {found.verdict}")
+    return state_of(found, words if found.settled else f"{words}, {found.verdict}")
 
 
-def _start_in(scene: Scene, reached: tuple[float, float], inputs: Inputs, nodes: np.ndarray) -> np.void | None:
-    """Return the sample of level slip that has settled in a basin, at the temperatures of a run; None where it does not settle."""
+def _settled_at_slip(scene: Scene, from_standstill: bool, inputs: Inputs, nodes: np.ndarray) -> np.void | None:
+    """Return the sample of level slip that has settled from a cage that stands or rolls, at the temperatures of a run; None where it does not."""
     simple = at_level_slip(scene)
-    start = standing_cage(simple, inputs) if reached[1] == math.inf and reached[0] != -math.inf else None
     try:
-        run = Simulation(simple, inputs, start=start, nodes=nodes if np.isfinite(nodes).all() else None)
-        if run.thermal is not None:
-            run.set_temperatures(nodes)
+        run = simulation_held_at(simple, inputs, nodes, standing_cage(simple, inputs, nodes) if from_standstill else None)
         return advance_until_settled(run, shortest_run(simple, 0.0), longest_run(simple, 1.0)).window[-1]
     except IntegrationError:
         return None
@@ -192,10 +188,10 @@ def at_level_slip(scene: Scene) -> Scene:
     return replace(scene, level="slip", level_reason="", wants=(), integration=Integration(), operating=operating, support=support)
 
 
-def _balances(speed: float, load_y: float, load_z: float, model: Model, work: Work):
+def _balances(inputs: Inputs, model: Model, work: Work):
     """Yield answer, basin (`bearing_sim.levels.steady.operating_point.basin`) and start of each state."""
     forget(work)
-    if not solve_condition(speed, load_y, load_z, model, work, to_standstill=True):
+    if not solve_condition(*inputs[:3], model, work, to_standstill=True):
         return
     rolling, scanned = tuple(work.basin.tolist()), work.orbit.scanned.copy()
     yield work.solved.copy(), rolling, "from ideal rolling"
@@ -204,20 +200,16 @@ def _balances(speed: float, load_y: float, load_z: float, model: Model, work: Wo
         if reached == rolling:
             continue
         start = 1.0 if high == len(SCANNED) else float(SCANNED[high])
-        if solve_condition(speed, load_y, load_z, model, work, start):
+        if solve_condition(*inputs[:3], model, work, start):
             yield work.solved.copy(), reached, "from a skid" if start > 0.0 else "from a cage that leads"
 
 
 def _state(answer: np.ndarray, reached: tuple[float, float], start: str, model: Model) -> State:
-    params, drive = model.params, model.drive
-    oil = oil_factors(abs(drive.shaft_speed), model.lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius, params.life)
-    equivalent = EquivalentLoads(*answer[ANSWER.inner_equivalent_load : ANSWER.reference_modification_factor + 1].tolist())
-    lives = rate_lives(math.hypot(drive.load_y, drive.load_z), equivalent, oil, params.life)
-    hours = lives.basic * 2.0 * math.pi / (3600.0 * abs(drive.shaft_speed))
+    hours = lives_of(answer, model).basic * 2.0 * math.pi / (3600.0 * abs(model.drive.shaft_speed))
     return State(float(answer[ANSWER.cage_slip]), float(hours), float(answer[ANSWER.shaft_power]), start, reached)
 
 
-def standing_cage(scene: Scene, inputs: Inputs | None = None) -> np.void:
+def standing_cage(scene: Scene, inputs: Inputs | None = None, nodes: np.ndarray | None = None) -> np.void:
     """Return a sample of a bearing whose cage stands while the shaft turns, to start a simulation in a skid.
 
     The rollers roll on the inner raceway.
@@ -226,8 +218,9 @@ def standing_cage(scene: Scene, inputs: Inputs | None = None) -> np.void:
     ----------
     scene : of any level.
     inputs : conditions; the scene's operating block where absent.
+    nodes : temperatures of the thermal network's nodes [K]; those of the scene's start where absent.
     """
-    rolling = Simulation(scene, inputs).sample
+    rolling = Simulation(scene, inputs, nodes=nodes).sample
     sample = rolling.copy()
     # The spin of rolling is that of an inner raceway that turns by omega_i - omega_c under a cage that is held.
     faster = rolling["shaft_speed"] / (rolling["shaft_speed"] - rolling["cage_speed"])
@@ -252,8 +245,8 @@ def skid_start(scene: Scene, inputs: Inputs | None = None) -> np.void:
     if scene.level in ("steady", "slip"):
         return standing_cage(scene, inputs)
     nodes = operating_state(scene, inputs).temperatures
-    found = _start_in(scene, (0.0, math.inf), inputs, nodes)
-    return standing_cage(scene, inputs) if found is None else found
+    found = _settled_at_slip(scene, True, inputs, nodes)
+    return standing_cage(scene, inputs, nodes) if found is None else found
 
 
 def state_rows(others: Others, start: str) -> list[tuple[str, str]]:

@@ -14,12 +14,14 @@ from bearing_sim.model.params import Lubrication, Params, pack
 from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.temperatures import given_temperatures, local_model, lubricate_scene
 from bearing_sim.physics.growth import excess_growth
+from bearing_sim.physics.lamina_life import EquivalentLoads
+from bearing_sim.physics.rating_life import Lives, oil_factors, rate_lives
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs, thermal_nodes
 from bearing_sim.sweep.settling import advance_until_settled
 
+SKIDS = 0.05  # slip above which a cage skids: what it does next depends on where it comes from
 _ROUNDS, _AVERAGED_FROM = 8, 3
-_SKIDS = 0.05  # slip from which on a start is one in a skid
 _EQUAL = 1e-2  # K; slip then errs by less than 0.01 points, temperatures by 0.02 K
 _AGREED = 0.3  # K; temperatures by the losses of two rounds
 
@@ -41,10 +43,15 @@ def equilibrium_temperatures(scene: Scene, inputs: Inputs, start: np.void | None
     known = None if start is None else thermal_nodes(start)
     nearby = known if known is not None and np.isfinite(known).all() else None
     slip = 0.0 if start is None else float(start["cage_slip"])
-    found = thermal_equilibrium(scene, inputs, nearby, _EQUAL, slip if slip > _SKIDS else 0.0)
+    found = thermal_equilibrium(scene, inputs, nearby, _EQUAL, begin_at(slip))
     if not found.converged:
         raise IntegrationError(found.reason)
     return found.temperatures
+
+
+def begin_at(slip: float) -> float:
+    """Return the slip from which level steady looks for the state of a cage that slips so: its own in a skid, otherwise that of ideal rolling."""
+    return min(slip, 1.0) if slip > SKIDS else 0.0
 
 
 class OperatingState(NamedTuple):
@@ -84,7 +91,13 @@ def operating_state(scene: Scene, inputs: Inputs | None = None, nodes: np.ndarra
     return OperatingState(params, lubricate_scene(scene, params, oil, measured), temperatures)
 
 
-def solved_answer(state: OperatingState, inputs: Inputs, work: Work | None = None) -> np.ndarray:
+def steady_model(state: OperatingState, inputs: Inputs) -> Model:
+    """Return the model of level steady under constant conditions."""
+    drive = Drive(0.0, inputs.shaft_speed, 0.0, inputs.load_y, 0.0, inputs.load_z, 0.0, 0.0)
+    return Model(state.params, state.lubrication, drive, DEFAULT_TOLERANCES)
+
+
+def solved_answer(state: OperatingState, inputs: Inputs, work: Work | None = None, start: float = 0.0) -> np.ndarray:
     """Return the answer of level steady to an operating point, solved for, columns `ANSWER`; NaN where none was found, shape (len(ANSWER),).
 
     Parameters
@@ -92,12 +105,20 @@ def solved_answer(state: OperatingState, inputs: Inputs, work: Work | None = Non
     state : of the bearing under the inputs.
     inputs : constant conditions.
     work : memory of a bearing with as many rollers, for many points one after the other.
+    start : slip at which the cage begins, see `begin_at`.
     """
     work = new_work(state.params) if work is None else work
-    drive = Drive(0.0, inputs.shaft_speed, 0.0, inputs.load_y, 0.0, inputs.load_z, 0.0, 0.0)
     forget(work)  # the model is another one
-    found = solve_condition(*inputs[:3], Model(state.params, state.lubrication, drive, DEFAULT_TOLERANCES), work)
+    found = solve_condition(*inputs[:3], steady_model(state, inputs), work, start)
     return work.solved.copy() if found else np.full(len(ANSWER), math.nan)
+
+
+def lives_of(answer: np.ndarray, model: Model) -> Lives:
+    """Return the rating lives of an answer of level steady, in revolutions."""
+    params, drive = model.params, model.drive
+    oil = oil_factors(drive.shaft_speed, model.lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius, params.life)
+    equivalent = EquivalentLoads(*answer[ANSWER.inner_equivalent_load : ANSWER.reference_modification_factor + 1].tolist())
+    return rate_lives(math.hypot(drive.load_y, drive.load_z), equivalent, oil, params.life)
 
 
 def table_condition(state: OperatingState, inputs: Inputs) -> tuple[float, float, float, float, float]:
@@ -115,11 +136,22 @@ def simulation_in_equilibrium(scene: Scene) -> Simulation:
     IntegrationError
         There is no thermal equilibrium: it says why.
     """
-    if scene.heat.law != "network":
-        return Simulation(scene)
-    nodes = equilibrium_temperatures(scene, scene_inputs(scene))
-    simulation = Simulation(scene, nodes=nodes)
-    simulation.set_temperatures(nodes)
+    inputs = scene_inputs(scene)
+    return simulation_held_at(scene, inputs, equilibrium_temperatures(scene, inputs)) if scene.heat.law == "network" else Simulation(scene)
+
+
+def simulation_held_at(scene: Scene, inputs: Inputs, nodes: np.ndarray, start: np.void | None = None) -> Simulation:
+    """Return a simulation whose thermal network stays at given temperatures.
+
+    Parameters
+    ----------
+    inputs : conditions at its start.
+    nodes : temperatures of the network's nodes [K]; without a network they count for nothing.
+    start : sample to begin from, see `bearing_sim.simulation.Simulation.reset`.
+    """
+    simulation = Simulation(scene, inputs, start=start, nodes=nodes)
+    if simulation.thermal is not None:
+        simulation.set_temperatures(nodes)
     return simulation
 
 

@@ -11,7 +11,6 @@ import argparse
 import random
 from collections import Counter
 
-from bearing_sim.estimation.grading import graded
 from bearing_sim.model.validity import BY_NAME, Grade, outside
 from bearing_sim.scene.designation import designations
 from bearing_sim.scene.loader import load_bearing
@@ -19,6 +18,7 @@ from bearing_sim.scene.new_scene import Wish, new_scene
 from bearing_sim.scene.ratings import rate
 from bearing_sim.simulation import IntegrationError
 from bearing_sim.studies.operating_point import settle
+from bearing_sim.sweep.grading import graded
 
 _LARGEST_BORE, _CLASSES = 0.15, (32, 46, 68, 100, 150, 220, 320, 460)
 _SPEEDS, _LOADS = (0.2, 0.8), (0.02, 0.2)  # of the limiting speed, and of C

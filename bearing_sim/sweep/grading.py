@@ -10,21 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
-from bearing_sim.levels.steady.model import forget, new_work, solve_condition
 from bearing_sim.levels.steady.operating_point import ANSWER, CREEP
-from bearing_sim.model.params import Lubrication, Params, pack
-from bearing_sim.model.sample import NODE_OBSERVABLES
-from bearing_sim.model.temperatures import local_model, lubricate_scene
 from bearing_sim.model.validity import PARTS, SHOWN, Conditions, Effect, Exceedance, Variation
-from bearing_sim.physics.lamina_life import EquivalentLoads
-from bearing_sim.physics.rating_life import oil_factors, rate_lives
 from bearing_sim.physics.traction import EYRING, ROW, TractionConstants
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
-
-_SKIDS = 0.05  # slip from which a cage is answered for from its skid
+from bearing_sim.simulation import inputs_of, thermal_nodes
+from bearing_sim.sweep.thermal import OperatingState, begin_at, lives_of, operating_state, solved_answer, steady_model
 
 
 class _Figures(NamedTuple):
@@ -90,30 +83,20 @@ def _varied_figures(scene: Scene, variation: Variation, exceedance: Exceedance, 
 
 def _figures(scene: Scene, sample: np.void, factors: Mapping[str, float]) -> _Figures | None:
     """Return the figures of a scene under the conditions of a sample, parts of its model multiplied; None at rest, and where none were found."""
-    speed, load_y, load_z = (float(sample[name]) for name in ("shaft_speed", "load_y", "load_z"))
-    if not abs(speed) >= CREEP:
+    inputs = inputs_of(sample)
+    if not abs(inputs.shaft_speed) >= CREEP:
         return None
-    oil, nodes = float(sample["oil_temperature"]), np.array([float(sample[name]) for name in NODE_OBSERVABLES])
-    params = pack(scene)
-    if scene.heat.law == "network" and np.isfinite(nodes).all():
-        params, lubrication = local_model(scene, params, oil, nodes)
-    else:
-        lubrication = lubricate_scene(scene, params, oil)
-    params, lubrication = _multiplied(params, lubrication, factors)
-    model, work = Model(params, lubrication, Drive(0.0, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), DEFAULT_TOLERANCES), new_work(params)
-    forget(work)
-    slip = float(sample["cage_slip"])
-    if not solve_condition(speed, load_y, load_z, model, work, min(slip, 1.0) if slip > _SKIDS else 0.0):
+    state = _multiplied(operating_state(scene, inputs, thermal_nodes(sample)), factors)
+    answer = solved_answer(state, inputs, start=begin_at(float(sample["cage_slip"])))
+    if math.isnan(answer[ANSWER.cage_slip]):
         return None
-    answer = work.solved
-    loads = EquivalentLoads(*(float(number) for number in answer[ANSWER.inner_equivalent_load : ANSWER.reference_modification_factor + 1]))
-    oil_at_speed = oil_factors(speed, lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius, params.life)
-    lives = rate_lives(math.hypot(load_y, load_z), loads, oil_at_speed, params.life)
+    lives = lives_of(answer, steady_model(state, inputs))
     return _Figures(float(answer[ANSWER.cage_slip]), lives.modified, float(answer[ANSWER.shaft_power]), factors.get("film", 1.0))
 
 
-def _multiplied(params: Params, lubrication: Lubrication, factors: Mapping[str, float]) -> tuple[Params, Lubrication]:
-    """Return the parameters of a model whose parts, names of `bearing_sim.model.validity.PARTS`, are multiplied."""
+def _multiplied(state: OperatingState, factors: Mapping[str, float]) -> OperatingState:
+    """Return the state of a bearing whose model has parts, names of `bearing_sim.model.validity.PARTS`, that are multiplied."""
+    params, lubrication = state.params, state.lubrication
     film, resistance, drag, lands, kappa = (factors.get(part, 1.0) for part in PARTS)
     inner, outer = (
         each._replace(elastic=each.elastic + math.log(resistance))
@@ -128,7 +111,8 @@ def _multiplied(params: Params, lubrication: Lubrication, factors: Mapping[str, 
         bath=type(lubrication.bath)(*(drag * number for number in lubrication.bath)),
         kinematic_viscosity=kappa * lubrication.kinematic_viscosity,
     )
-    return params._replace(cage=params.cage._replace(guide_width=lands * params.cage.guide_width)), lubrication
+    params = params._replace(cage=params.cage._replace(guide_width=lands * params.cage.guide_width))
+    return state._replace(params=params, lubrication=lubrication)
 
 
 def _with_film(traction: TractionConstants, factor: float) -> TractionConstants:
