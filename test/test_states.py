@@ -90,6 +90,12 @@ def test_a_ring_that_vibrates_and_one_that_does_not_are_both_told_with_the_reaso
     assert "0.55 kg" in rows["inner ring"] and "near 0.5" in rows["inner ring"] and "does not vibrate" in rows["also stays at"]
 
 
+def test_a_ring_that_does_not_vibrate_from_a_skid_tells_of_the_one_that_does_from_rolling():
+    settled = settle("deng2017_table1", "planar", shaft_speed="52500 rpm", start="skid")
+    assert settled.cage_slip == pytest.approx(0.163, abs=0.005)
+    assert [(state.start, pytest.approx(state.cage_slip, abs=0.003)) for state in settled.others.states] == [("from ideal rolling", 0.097)]
+
+
 @pytest.mark.parametrize("mass, damping_time, vibrates", [(0.3, 2.5, True), (0.3, 10.0, False), (2.0, 2.5, False), (0.05, 2.5, False)])
 def test_where_the_multiplier_is_above_one_level_planar_loses_most_of_its_life(mass, damping_time, vibrates):
     scene = load_scene(
