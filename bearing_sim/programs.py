@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The installed programs.  Each imports its module, which takes a second or two, so that Ctrl-C in the meantime ends it without a traceback."""
+"""The installed programs.  Each imports its module, which takes a second or two, so that a signal in the meantime ends it without a traceback."""
 
 import importlib
 import os
@@ -38,22 +38,26 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 
 
 def _run(module: str, interrupted: int, handler: Callable | None = None) -> int:
-    """Import a module and call its ``main``; exit with ``interrupted`` at a SIGINT during the import.
+    """Import a module and call its ``main``; exit with ``interrupted`` at a signal during the import.
 
     Parameters
     ----------
-    handler : of SIGINT while ``main`` runs; None: as Python has it.
+    handler : of SIGINT while ``main`` runs.  Without one SIGTERM counts too, and ``main`` has handlers of its own, until which these stay.
     """
-    before = signal.getsignal(signal.SIGINT)
-    if before is signal.SIG_IGN:  # as in the background of a shell without job control
-        handler = None
-    else:
-        signal.signal(signal.SIGINT, lambda *_: os._exit(interrupted))
+    watched = [signal.SIGINT] if handler is not None else [signal.SIGINT, signal.SIGTERM]
+    before = {number: signal.getsignal(number) for number in watched}
+    watched = [number for number in watched if before[number] is not signal.SIG_IGN]  # as in the background of a shell without job control
+    for number in watched:
+        signal.signal(number, lambda *_: os._exit(interrupted))
     try:
         main = importlib.import_module(module).main
-    except ModuleNotFoundError as error:
+    except BaseException as error:
+        for number in watched:
+            signal.signal(number, before[number])
+        if not isinstance(error, ModuleNotFoundError):
+            raise
         print(f"{os.path.basename(sys.argv[0])}: {what_is_missing(error)}", file=sys.stderr)
         return 2
-    finally:
-        signal.signal(signal.SIGINT, handler or before)
+    if handler is not None and watched:
+        signal.signal(signal.SIGINT, handler)
     return main()

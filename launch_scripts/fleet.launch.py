@@ -17,7 +17,7 @@ FLEET = (
         "NAME=SCENE of each bearing; its topics are NAME/cage_slip and so on, its node is NAME/bearing_NAME",
     ),
     Argument(
-        "one_process", "false", "true: one node, bearing_node, hosts all bearings; same topics, services NAME/reset and so on", ("true", "false")
+        "one_process", "false", "true: one node, bearing_node, hosts all bearings; same topics, services ~/NAME/reset and so on", ("true", "false")
     ),
     Argument("serials", "", "NAME=NUMBER of each bearing whose state is kept over restarts, by its serial number; empty: none"),
     Argument("record_folder", "", "folder for a recording of each bearing, named after it and the start time; empty: none"),

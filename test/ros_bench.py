@@ -18,7 +18,7 @@ from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.qos import qos_profile_sensor_data  # noqa: E402
 
 from bearing_sim.messages import topics  # noqa: E402
-from bearing_sim.messages.diagnostics import SUBJECTS, WHOLE, events_of  # noqa: E402
+from bearing_sim.messages.diagnostics import SUBJECTS, UNUSED, WHOLE, events_of  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
 from bearing_sim.ros.shared_memory import remove_unfinished_ports  # noqa: E402
 from bearing_sim.simulation import Inputs  # noqa: E402
@@ -112,6 +112,7 @@ class Client:
         # What is heard is taken without the executor, which handles one message in the time of a dozen takes: a busy machine falls behind.
         self._ears = rclpy.create_node("test_ears", context=self.context, namespace=namespace, enable_rosout=False, start_parameter_services=False)
         self.received = {name: [] for name in [*topics.OUTPUTS, "diagnostics"]}
+        self._reported: dict[str, set[str]] = {}  # subjects of the newest report, by component
         self._callers = {}  # clients of services, by name
         self._types = {name: topics.INPUTS[name].ros_type for name in ("shaft_speed", "radial_load")}
         if scalar:
@@ -187,9 +188,11 @@ class Client:
             self.drive(0.1, rate, **values)
 
     def _hear_diagnostics(self, report) -> None:
-        """Keep a report of diagnostics; each, in whatever state of the node, must have every subject once."""
-        subjects = [status.name.rpartition(": ")[2] for status in report.status]
-        assert subjects == [WHOLE, *(subject.name for subject in SUBJECTS)], subjects
+        """Keep a report of diagnostics; each, in whatever state of the node, must have its subjects once, in order, and all that it ever had."""
+        component, subjects = report.status[0].name.partition(": ")[0], [status.name.rpartition(": ")[2] for status in report.status]
+        assert subjects == [name for name in (WHOLE, *(subject.name for subject in SUBJECTS), UNUSED) if name in subjects], subjects
+        assert {WHOLE, "run", "slip", UNUSED} | self._reported.get(component, set()) <= set(subjects), "a status that is not reported turns stale"
+        self._reported[component] = set(subjects)
         self.received["diagnostics"].append(report)
 
     def is_calm(self, report=-1):

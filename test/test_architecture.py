@@ -23,6 +23,7 @@ STANDARD = set(sys.stdlib_module_names)
 ROOMS = {
     "__init__": ("", ""),
     "extras": ("", ""),
+    "programs": ("", "extras"),
     "files": ("numpy yaml", ""),
     "scene": ("numpy platformdirs scipy pint pydantic pydantic_core yaml", "files"),
     "numerics": ("numpy numba llvmlite platformdirs", ""),
@@ -52,9 +53,8 @@ ROOMS = {
     ),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",
-        "extras files scene numerics simulation messages recording stored_state inputs estimation vibration runtime view",
+        "extras programs files scene numerics simulation messages recording stored_state inputs estimation vibration runtime view",
     ),
-    "programs": ("", "extras"),
 }
 MOST_FLOORS = 10  # including launch_scripts, which import ros
 

@@ -55,7 +55,14 @@ def test_a_guess_names_the_columns_says_why_and_imports_as_it_is(tmp_path, text,
     assert {name: (tree.get("columns") or [tree])[0]["column"] for name, tree in named.items()} == columns
     assert set(columns) <= set(found.reasons) and all(found.reasons.values())
     table = read_table(tmp_path / "data.csv", mapping_from_yaml(found.text))
-    assert table.rows == 2 and not table.refused and {name.removesuffix("_measured") for name in table.stamps} == set(columns) - {"time"}
+    assert table.tally.there == 2 and not table.tally.refused and {name.removesuffix("_measured") for name in table.stamps} == set(columns) - {"time"}
+
+
+def test_a_guess_names_the_separator_of_thousands_and_takes_a_speed_before_its_percentage(tmp_path):
+    found = guessed(tmp_path, "t [s];n [rpm];n [%];F [N];Serial\n0;1.480,0;98,3;5.000,5;123.45.6\n1;1.482,5;98,4;5.010,0;1.2.3\n")
+    assert not found.questions and (found.tree["decimal"], found.tree["thousands"], found.tree["shaft_speed"]["column"]) == (",", ".", "n [rpm]")
+    table = read_table(tmp_path / "data.csv", mapping_from_yaml(found.text))
+    assert list(table.values["radial_load"]) == [5000.5, 5010.0] and table.tally.is_whole
 
 
 def test_columns_that_are_not_used_are_told(tmp_path):
@@ -86,6 +93,18 @@ def test_columns_that_are_not_used_are_told(tmp_path):
             "--column radial_load=HEADING, or give --load 800N",
             {"constants": {"radial_load": {"law": "constant", "value": "800 N"}}},
         ),
+        (
+            "t [s];n [%];F [N]\n0;98.3;2\n1;98.4;2\n",
+            "shaft_speed",
+            "the speed at 100 %: --unit shaft_speed='% of 1500 rpm'$",
+            {"units": {"shaft_speed": "% of 3000rpm"}},
+        ),
+        (
+            "t [s];n [rpm];Last_pct\n0;98;2\n1;98;2\n",
+            "radial_load",
+            "the force at 100 %: --unit radial_load='% of 5 kN'$",
+            {"units": {"radial_load": "% of 2 kN"}},
+        ),
         ("t [s];n [rpm];F [N]\n0;1,500;2\n1;1,500;2\n", "decimal", "line 2: n .rpm. = '1,500'.*--decimal", {"decimal": ","}),
         (
             "id,t [s],n [rpm],F [N]\nA,0,1,2\nA,1,1,2\nB,0,1,2\nB,1,1,2\n",
@@ -108,7 +127,7 @@ def test_what_may_mean_two_things_is_asked_for_and_the_option_that_is_named_deci
         return
     decision = guessed(tmp_path, text, **decided)
     assert not decision.questions
-    assert read_table(tmp_path / "data.csv", mapping_from_yaml(decision.text)).rows == 2
+    assert read_table(tmp_path / "data.csv", mapping_from_yaml(decision.text)).tally.there == 2
 
 
 @pytest.mark.parametrize(

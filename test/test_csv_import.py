@@ -34,7 +34,7 @@ def test_rows_become_messages_in_si_at_their_times(tmp_path):
     assert stamps == {"shaft_speed": [EPOCH + 1, EPOCH + 100_000_000], "radial_load": [EPOCH + 1, EPOCH + 100_000_000]}
     assert table.values["shaft_speed"] == pytest.approx([math.pi, 2 * math.pi])
     assert list(table.values["radial_load"]) == [800.0, -5.0]
-    assert not table.refused and not table.gaps
+    assert not table.tally.refused and not table.gaps
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_each_law_of_load_is_what_it_says(tmp_path, load, expected):
 def test_power_without_speed_gives_no_force(tmp_path):
     law = "{law: gear_force, power: {column: f, unit: kW}, efficiency: 0.8, pitch_diameter: 500 mm}"
     table = table_of(tmp_path, "t,n,f\n0,0,4\n1,30,4\n2,,4\n", MAPPING.replace("{law: sum, columns: [{column: f, unit: N}]}", law))
-    assert table.refused == {"radial_load.no_speed": 2, "shaft_speed.empty_cell": 1}
+    assert table.tally.refused == {"radial_load.no_speed": 2, "shaft_speed.empty_cell": 1}
     assert table.examples["radial_load.no_speed"][1][0] == 4
 
 
@@ -91,16 +91,16 @@ def test_every_fault_is_counted_with_its_line_and_only_its_message_is_lost(tmp_p
         "time.empty_cell": [8],
         "time.unreadable": [9, 13],
         "time.cells": [10, 11],
-        "time.empty_line": [12],
     }
-    assert table.refused == {code: len(found) for code, found in lines.items()}
+    assert table.tally.refused == {code: len(found) for code, found in lines.items()}
+    assert table.tally.there == 13 and table.tally.used == 3, "an empty line is no row, and an empty cell no fault of what is there"
     assert [stamp - EPOCH for stamp in table.stamps["shaft_speed"]] == [0, 300_000_000, 700_000_000]
     assert [stamp - EPOCH for stamp in table.stamps["radial_load"]] == [0, 100_000_000, 200_000_000, 600_000_000, 700_000_000]
 
 
 def test_of_many_faults_the_first_lines_are_told_and_all_counted(tmp_path):
     table = table_of(tmp_path, "t,n,f\n" + "".join(f"{row},{row if row % 2 else ''},1\n" for row in range(100)))
-    assert table.refused["shaft_speed.empty_cell"] == 50
+    assert table.tally.refused["shaft_speed.empty_cell"] == 50
     assert [line for line, _ in table.examples["shaft_speed.empty_cell"]] == [2, 4, 6, 8, 10]
 
 
@@ -126,7 +126,9 @@ def test_quoted_cells_over_several_lines_keep_line_numbers_right(tmp_path):
 def test_columns_of_measured_rings_become_their_topics_each_with_its_own_unit_and_empty_cells_are_not_filled(tmp_path):
     rings = "inner_ring_temperature: {column: i, unit: degC}\nouter_ring_temperature: {column: e, unit: K}\n"
     table = table_of(tmp_path, "t,n,f,i,e\n0,30,800,80,350\n1,30,800,,351\n2,30,800,82,352\n", MAPPING + rings)
-    assert table.values["inner_ring_temperature"] == pytest.approx([353.15, 355.15]) and table.refused == {"inner_ring_temperature.empty_cell": 1}
+    assert table.values["inner_ring_temperature"] == pytest.approx([353.15, 355.15]) and table.tally.refused == {
+        "inner_ring_temperature.empty_cell": 1
+    }
     write_log(table, MAPPING + rings, tmp_path / "data.csv", tmp_path / "log.mcap")
     log = read_input_log(tmp_path / "log.mcap")
     found = {channel: [value for (value,) in log.series[channel].values] for channel in ("inner_ring_temperature", "outer_ring_temperature")}
@@ -136,10 +138,10 @@ def test_columns_of_measured_rings_become_their_topics_each_with_its_own_unit_an
 
 def test_semicolons_decimal_commas_and_a_byte_order_mark(tmp_path):
     mapping = MAPPING.replace("name: rig", "name: rig\ndelimiter: ';'\ndecimal: ','")
-    (tmp_path / "data.csv").write_bytes("\ufefft;n;f\n0,5;30;1,5\n1,0;30;1.000\n".encode())
+    (tmp_path / "data.csv").write_bytes("\ufefft;n;f\n0,5;30;1,5\n1,0;30;1.00\n".encode())
     table = read_table(tmp_path / "data.csv", mapping_from_yaml(mapping))
     assert table.stamps["shaft_speed"][0] == EPOCH + 500_000_000
-    assert list(table.values["radial_load"]) == [1.5] and table.refused == {"radial_load.not_a_number": 1}
+    assert list(table.values["radial_load"]) == [1.5] and table.tally.refused == {"radial_load.not_a_number": 1}
 
 
 @pytest.mark.parametrize(
@@ -202,9 +204,9 @@ def test_command_prints_one_json_object(tmp_path):
     (tmp_path / "data.csv").write_text(FAULTY)
     (tmp_path / "rig.yaml").write_text(MAPPING)
     ran = command(tmp_path / "data.csv", tmp_path / "rig.yaml", "-o", tmp_path / "log.mcap", "--json")
-    assert ran.exit_code == 0, ran.output
+    assert ran.exit_code == 3 and "3 of 13 rows used (1 x radial_load.not_finite" in ran.stderr, ran.output
     report = json.loads(ran.stdout)
-    assert report["messages"] == {"shaft_speed": 3, "radial_load": 5} and report["refused"] == 12
+    assert report["messages"] == {"shaft_speed": 3, "radial_load": 5} and sum(report["read"]["not_used_by_reason"].values()) == 11
     assert report["refused_lines"]["time.cells"] == [10, 11]
     assert "line 10: 2 cells, expected 3" in command(tmp_path / "data.csv", tmp_path / "rig.yaml", "-o", tmp_path / "b.mcap").stdout
 
@@ -237,8 +239,8 @@ def test_measured_flight_is_imported_row_by_row():
         if float(row["utc_s"]) > last:
             last = float(row["utc_s"])
             kept.append(row)
-    assert table.rows == len(rows) == 46951
-    assert table.refused == {"time.repeated": len(rows) - len(kept)} and len(rows) - len(kept) == 9
+    assert table.tally.there == len(rows) == 46951
+    assert table.tally.refused == {"time.repeated": len(rows) - len(kept)} and len(rows) - len(kept) == 9
     day = 1_552_348_800_000_000_000  # 2019-03-12 UTC
     assert [stamp - day for stamp in table.stamps["shaft_speed"]] == [round(float(row["utc_s"]) * 1000) * 1_000_000 for row in kept]
     speeds = [float(row["N2_lh_pct"]) / 100 * 32760 * 2 * math.pi / 60 for row in kept]
@@ -252,8 +254,8 @@ def test_measured_wind_turbine_loses_exactly_its_empty_cells():
     table = read_table(path, load_mapping("wind_turbine_scada")[0])
     mine = [row for row in rows if row["TurbineName"] == "HMR_T01"]
     full = [row for row in mine if row["GenRpmMean"] and row["ActivePowerMean"]]
-    assert (table.rows, table.left_out) == (len(mine), len(rows) - len(mine))
-    assert table.refused["shaft_speed.empty_cell"] == sum(not row["GenRpmMean"] for row in mine)
+    assert (table.tally.there, table.left_out) == (len(mine), len(rows) - len(mine))
+    assert table.tally.refused["shaft_speed.empty_cell"] == sum(not row["GenRpmMean"] for row in mine)
     assert len(table.values["radial_load"]) == len(full)
     row = full[-1]
     force = 2 * float(row["ActivePowerMean"]) * 1000 / (0.95 * float(row["GenRpmMean"]) * math.pi / 30 * 0.4)

@@ -8,8 +8,9 @@ from click.testing import CliRunner
 
 from bearing_sim.cli.main import main
 from bearing_sim.inputs.csv_import import TableError, mapping_from_yaml, read_table
-from bearing_sim.inputs.csv_text import spelled, unit_in
+from bearing_sim.inputs.csv_text import Marks, spelled, unit_in
 from bearing_sim.inputs.gate import UNITS
+from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.quantity import conversion
 
 TIME = "name: rig\ntime: {column: t, unit: s}\n"
@@ -43,7 +44,7 @@ def test_tables_of_data_loggers_are_read_as_they_are_meant(tmp_path, text):
     table = read(tmp_path, text)
     assert table.values["shaft_speed"] == pytest.approx([math.pi, 2 * math.pi])
     assert list(table.values["radial_load"]) == [800.5, 700.0]
-    assert not table.refused and table.rows == 2
+    assert not table.tally.refused and table.tally.there == 2
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1", "cp1252", "utf-16"])
@@ -85,8 +86,8 @@ def test_a_column_without_a_unit_in_the_mapping_has_the_one_in_its_heading_and_a
 @pytest.mark.parametrize(
     "text, words",
     [
-        ("t;n;f\n0;1,500;800\n1;1,500;800\n", "line 2: n = '1,500' has a decimal comma or a separator of thousands.*--decimal"),
-        ("t;n;f\n0;1500;800,5\n0.5;1500;800\n", "line 2: f = '800,5' has a comma, t = '0.5' in line 3 a point.*--decimal"),
+        ("t;n;f\n0;1,500;800\n1;1,500;800\n", "line 2: n = '1,500' is 1.5 or, with a separator of thousands, 1500; .*--decimal"),
+        ("t;n;f\n0;1500;800,5\n0.5;1500;800\n", "line 3: t = '0.5' is not written as f = '800,5' in line 2; .*--decimal"),
         ("a;b;c\n0;1;2\n", "line 1: the header has a, b, c"),
         ("t n f\n0 1 2\n", "one column only .*comma, semicolon, tab"),
         ("", "the header has nothing"),
@@ -135,7 +136,7 @@ def test_the_hour_that_is_told_twice_in_autumn_rises(tmp_path):
     times = [f"25.10.2026 {clock}" for clock in ("01:30", "02:00", "02:30", "02:00", "02:30", "03:00")]
     mapping = MAPPING.replace("{column: t, unit: s}", "{column: t, format: '%d.%m.%Y %H:%M', zone: Europe/Berlin}")
     table = read(tmp_path, "t;n;f\n" + "".join(f"{time};1;2\n" for time in times), mapping)
-    assert not table.refused and {b - a for a, b in zip(table.stamps["shaft_speed"], table.stamps["shaft_speed"][1:])} == {1800 * 10**9}
+    assert not table.tally.refused and {b - a for a, b in zip(table.stamps["shaft_speed"], table.stamps["shaft_speed"][1:])} == {1800 * 10**9}
 
 
 def test_date_and_time_of_day_may_stand_in_two_columns(tmp_path):
@@ -201,7 +202,13 @@ def test_options_stand_for_columns_that_a_table_lacks_and_choose_rows_and_fields
     assert "no column 'f'" in command(*here).stderr
     done = command(*here, "--load", "800N", "--oil-temperature", "60 degC", "--only", "id=A", "--set", "shaft_speed.unit=Hz")
     assert done.exit_code == 0, done.output
-    for note in ("delimiter: semicolon", "decimal mark: comma", "2, and 1 that do not concern", "radial_load messages", "oil_temperature messages"):
+    for note in (
+        "delimiter: semicolon",
+        "decimal mark: comma",
+        "2 of 2 rows used; 1 more do not concern",
+        "radial_load messages",
+        "oil_temperature messages",
+    ):
         assert note in done.stdout
     for options, words in (
         (("--load", "800"), "radial_load = 800: a number without a unit; write for example 800N or 800kN"),
@@ -220,3 +227,68 @@ def test_options_stand_for_columns_that_a_table_lacks_and_choose_rows_and_fields
 
 def test_every_channel_of_the_gate_has_a_unit_that_a_constant_can_name():
     assert set(UNITS.values()) == {"rad/s", "N", "K", "m"}
+
+
+NARROW, THIN, CURLED = "\N{NARROW NO-BREAK SPACE}", "\N{THIN SPACE}", "\N{RIGHT SINGLE QUOTATION MARK}"
+
+
+@pytest.mark.parametrize(
+    "delimiter, speeds, loads, marks",
+    [
+        (";", ("1.480,5", "-1.480,5"), ("5.000,0", "900,0"), Marks(",", ".")),
+        (";", ("1.480", "980"), ("5,5", "6,25"), Marks(",", ".")),  # the load has the decimal comma, so the dot of the speed is none
+        (",", ('"1,480.5"', '"+980.5"'), ('"5,000"', '"1,005,000"'), Marks(".", ",")),
+        (";", ("1,234,567", "1,480"), ("5", "6"), Marks(".", ",")),
+        (";", ("1'480.5", f"1{CURLED}480"), ("5000", "6"), Marks(".", "apostrophe")),
+        (";", ("1 480,5", f"\N{MINUS SIGN}1{NARROW}480,5"), ("5\N{NO-BREAK SPACE}000", f"6{THIN}000"), Marks(",", "space")),
+        ("\t", ("1480.5", "0.125"), ("1.500", "2.500"), Marks()),  # no whole number begins with a zero
+        (",", ("1480", "1481"), ("1.500", "2.500"), Marks()),  # nobody separates cells and decimals by the same comma
+    ],
+)
+def test_separators_of_thousands_are_recognised_by_all_cells_together(tmp_path, delimiter, speeds, loads, marks):
+    text = "\n".join(delimiter.join(row) for row in (("t", "n", "f"), *zip("01", speeds, loads)))
+    table = read(tmp_path, text, MAPPING.replace("unit: N", "scale: 1 N").replace("unit: rpm", "scale: 1 rad/s"))
+
+    def plain(cell):  # independent of the program: by hand for each way of writing
+        for separator in {".": ".", ",": ",", "apostrophe": f"'{CURLED}", "space": f" \N{NO-BREAK SPACE}{NARROW}{THIN}"}.get(marks.thousands, ""):
+            cell = cell.replace(separator, "")
+        return float(cell.strip('"').replace(",", ".").replace("\N{MINUS SIGN}", "-"))
+
+    assert list(table.values["shaft_speed"]) == [plain(cell) for cell in speeds]
+    assert list(table.values["radial_load"]) == [plain(cell) for cell in loads] and table.tally.is_whole
+    assert sum("thousands" in note for note in table.notes) == bool(marks.thousands)
+
+
+@pytest.mark.parametrize("cells", [("1,500", "1,600"), ("1.500", "1.600"), ("1480", "1.483"), ("1,480.0", "1.480,0"), ("1,5", "1.5")])
+def test_columns_whose_numbers_can_be_read_in_two_ways_or_in_none_are_asked_about(tmp_path, cells):
+    with pytest.raises(TableError, match=r"line [23]: n = .*--decimal"):
+        read(tmp_path, "".join(["t;n;f\n", *(f"{k};{cell};5\n" for k, cell in enumerate(cells))]))
+
+
+def test_a_cell_that_is_not_grouped_in_threes_is_refused_and_counted_where_thousands_are_separated(tmp_path):
+    text = "t;n;f\n" + "".join(f"{k};{'1.48,0' if k == 3 else '1.480,5'};5\n" for k in range(9))
+    table = read(tmp_path, text)
+    assert table.tally.refused == {"shaft_speed.not_a_number": 1} and table.tally.used == 8
+
+
+@pytest.mark.parametrize(
+    "heading, unit, speed",
+    [
+        ("n [%]", "'% of 1500 rpm'", 1474.5),
+        ("n [\N{PER MILLE SIGN}]", "'\N{PER MILLE SIGN} of 15000 rpm'", 1474.5),
+        ("n", "percent of 25 Hz", 1474.5),
+        ("n [% of 1500 rpm]", None, 1474.5),
+        ("n [%]", "rpm", "the heading 'n .%.' is a percentage; expected the speed at 100 %, such as '% of 1500 rpm'"),
+        ("n_pct", "rpm", "the heading 'n_pct' is a percentage"),
+        ("n", "'%'", "of what. Expected the speed at 100 %, such as '% of 1500 rpm'"),
+        ("n [% rated]", None, "of what. Expected the speed at 100 %"),
+    ],
+)
+def test_a_percentage_is_that_of_a_speed_that_is_named_and_never_a_speed_itself(tmp_path, heading, unit, speed):
+    mapping = MAPPING.replace("{column: n, unit: rpm}", f"{{column: '{heading}'{f', unit: {unit}' if unit else ''}}}")
+    text = f"t;{heading};f\n0;98.3;5\n1;98.3;5\n"
+    if isinstance(speed, str):
+        with pytest.raises(SceneError, match=speed):
+            read(tmp_path, text, mapping)
+    else:
+        assert list(read(tmp_path, text, mapping).values["shaft_speed"]) == pytest.approx([speed * math.pi / 30] * 2)

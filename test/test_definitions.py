@@ -116,3 +116,53 @@ def test_a_limit_is_raised_by_its_name(monkeypatch):
 def test_bytes_in_another_representation_are_no_message(head):
     with pytest.raises(MessageError, match="CDR version 1"):
         decoder("std_msgs/msg/Float64", "ros2msg", b"float64 data")(head)
+
+
+IDL_RULE = "=" * 80 + "\n"
+WITH_INCLUDES = (
+    """IDL: drive_msgs/msg/State
+// generated
+#include "drive_msgs/msg/Cell.idl"
+#include "std_msgs/msg/Header.idl"
+#ifndef GUARD
+#define LONGER \\
+  text
+module drive_msgs {
+  module msg {
+    enum Mode { @value(0) IDLE, RUN };
+    typedef double pair[2];
+    module State_Constants { const uint8 LIMIT = 2; };
+    @verbatim (language="comment", text="# no directive" "#nor this")
+    struct State {
+      std_msgs::msg::Header header;
+      @unit(value="m") drive_msgs::msg::Cell cell;
+      msg::Cell other;
+      Mode mode;
+      pair two;
+      sequence<Cell, 3> cells;
+    };
+  };
+};
+"""
+    + IDL_RULE
+    + "IDL: drive_msgs/msg/Cell\nmodule drive_msgs { module msg { struct Cell { short z; }; }; };\n"
+)
+
+
+def test_idl_with_includes_enumerations_annotations_and_relative_names_is_read():
+    cell, header = b"\xf7\xff", b"\1\0\0\0\2\0\0\0\2\0\0\0f\0"
+    data = b"\0\1\0\0" + header + cell + cell + b"\0" * 2 + b"\1\0\0\0" + np.array([1.5, 2.5]).tobytes() + b"\1\0\0\0" + cell
+    notes = []
+    found = decoder("drive_msgs/msg/State", "ros2idl", (IDL_RULE + WITH_INCLUDES).encode(), notes.append)(data)
+    assert (found.header.stamp.nanosec, found.header.frame_id, found.cell.z, found.other.z, found.mode) == (2, "f", -9, -9, 1)
+    assert found.two.tolist() == [1.5, 2.5] and [each.z for each in found.cells] == [-9] and not notes
+
+
+@pytest.mark.parametrize("encoding, text", [("ros2idl", "module { this is none"), ("ros2msg", "float64\n"), ("protobuf", "message X {}")])
+def test_of_a_known_type_whose_definition_cannot_be_parsed_that_of_ros_2_is_used_and_said(encoding, text):
+    notes = []
+    decode = decoder("std_msgs/msg/Float64", encoding, text.encode(), notes.append)
+    assert decode(b"\0\1\0\0" + np.array([2.5]).tobytes()).data == 2.5
+    assert len(notes) == 1 and "the definition of std_msgs/" in notes[0] and "that of ROS 2 Jazzy is used" in notes[0]
+    with pytest.raises(DefinitionError, match="drive_msgs/"):
+        decoder("drive_msgs/msg/State", encoding, text.encode(), notes.append)

@@ -10,8 +10,9 @@ import pytest
 import yaml
 from aggregator import ERROR, OK, STALE, WARN, Aggregator, statuses_of
 
-from bearing_sim.messages.diagnostics import SUBJECTS, WHOLE, events_of, news, report, subject_of
+from bearing_sim.messages.diagnostics import SUBJECTS, UNUSED, WHOLE, events_of, news, report, subject_of
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.runtime.health import not_running
 
 ROOT = Path(__file__).resolve().parents[1]
 ANALYZERS = yaml.safe_load((ROOT / "launch_scripts" / "diagnostic_analyzers.yaml").read_text())["/**"]["ros__parameters"]
@@ -106,7 +107,27 @@ def test_an_expected_number_of_items_is_the_number_of_subjects_of_the_bearings()
     assert aggregator.report(0.0)["/Bearings/Inputs"] == OK
     aggregator.take(0.0, statuses_of(report(0, component="bearing_node/rear")))
     assert aggregator.report(0.0)["/Bearings/Inputs"] == ERROR, "a second bearing has as many again"
-    assert f"num_items: {len(NAMES)}" in (ROOT / "doc" / "how-to" / "diagnostics.md").read_text()
+
+
+def test_subjects_that_a_run_does_without_share_one_status_that_is_always_there_unless_there_is_something_to_say_of_them():
+    unused, why = {"view", "vibration", "oil_temperature", "estimate"}, {"view": "no view"}
+    names = lambda made: [status["name"].partition(": ")[2] for status in made["status"]]  # noqa: E731
+    made = report(0, [], {}, "n", "", why, "OK", unused)
+    assert names(made) == [name for name in (WHOLE, *(each.name for each in SUBJECTS), UNUSED) if name not in unused]
+    told = status(made, UNUSED)
+    assert told.message == "not used: oil_temperature, vibration, estimate, view" and told.level == OK
+    assert {pair.key: pair.value for pair in told.values if pair.value} == {**dict.fromkeys(unused, "OK"), "view": "no view", "events": "0"}
+    failed = report(0, [Event(1.0, Level.WARN, "sink.failed", "view", "does not start")], {}, "n", "", why, "OK", unused)
+    assert "view" in names(failed) and status(failed, "view").level == WARN and "view" not in status(failed, UNUSED).message
+    assert status(report(0, [], {}, "n", unused=()), UNUSED).message == "not used: nothing"
+    assert UNUSED not in names(report(0)), "a recording has all"
+
+
+def test_without_anything_optional_no_group_of_the_example_is_empty_which_would_be_stale():
+    aggregator = Aggregator(ANALYZERS)
+    condition = not_running(Event(0.0, Level.OK, "run.inactive", "", "inactive"))
+    aggregator.take(0.0, statuses_of(report(0, condition.events, {}, "bearing_node", "", {}, condition.otherwise, condition.unused)))
+    assert set(aggregator.report(0.0).values()) == {OK} and "/Bearings/Other" not in aggregator.report(0.0)
 
 
 @pytest.mark.parametrize("node", ["bearing_node", "ship/bearing_node", "bearing_node/front", "front/bearing_front", "plant/hall/bearing_node/rear"])
@@ -134,7 +155,7 @@ def test_events_of_one_subject_share_its_status_the_worst_first_and_can_be_read_
     made = report(0, events)
     speed = status(made, "shaft_speed")
     assert speed.level == ERROR
-    assert speed.message == "shaft_speed: nan rad/s is not finite; message refused (7 times) (and 1 more)"
+    assert speed.message == "shaft_speed: nan rad/s is not finite; message refused (and 1 more)"
     assert events_of(2.0, speed) == [events[1], events[0]]
     assert events_of(2.0, status(made, "inner_ring_temperature")) == events[2:]
     assert events_of(2.0, status(made, WHOLE)) == events_of(2.0, status(made, "slip")) == []

@@ -257,7 +257,7 @@ def table_of(folder: Path, text: str, time: str = "unit: s"):
 )
 def test_a_time_that_no_stamp_can_hold_costs_its_row(tmp_path, cell, kind):
     table = table_of(tmp_path, f"t,n,f\n0,1,2\n{cell},1,2\n1,1,2\n")
-    assert table.refused == {f"time.{kind}": 1} and list(table.stamps["shaft_speed"]) == [0, 10**9]
+    assert table.tally.refused == {f"time.{kind}": 1} and list(table.stamps["shaft_speed"]) == [0, 10**9]
 
 
 @pytest.mark.parametrize(

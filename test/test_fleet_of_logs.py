@@ -119,7 +119,7 @@ def test_a_log_that_cannot_be_used_is_a_row_that_says_why_and_the_others_are_com
         "empty": "refused",
         "foreign": "refused",
         "north/B": "ok",
-        "over": "unknown inputs",
+        "over": "partly used",
         "words": "refused",
     }
     assert "no column 't'" in found["foreign"]["reason"] and "not_a_number" in found["words"]["reason"] and found["words"]["damage"] is None

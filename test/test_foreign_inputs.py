@@ -3,11 +3,15 @@
 
 import json
 import math
+import sqlite3
+from contextlib import closing
 
+import lz4.frame
 import numpy as np
 import pytest
+import zstandard
 from click.testing import CliRunner
-from mcap.writer import Writer
+from mcap.writer import CompressionType, Writer
 from recordings import JOINTS, SECOND, WRENCH, joint_state, steady_log, wrench, write_log
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as BagWriter
@@ -15,6 +19,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from bearing_sim.cli.main import main
 from bearing_sim.inputs.log import Anomalies, InputLogError, anomalies, constant, read_input_log, source, source_values, summary_lines
+from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.writer import McapFile
 
@@ -223,17 +228,18 @@ def test_oddities_are_counted(tmp_path):
 def test_replay_takes_what_others_recorded_and_sums_up_what_is_odd(tmp_path):
     options = ["--scene", "deng2017_table1", "--json"]
 
-    def replayed(*arguments):
+    def replayed(*arguments, code=0):
         done = CliRunner().invoke(main, ["replay", *map(str, arguments), *options])
-        assert done.exit_code == 0, done.output
+        assert done.exit_code == code, done.output
         return json.loads(done.stdout)
 
     speed = ["--speed", "/servo/state.velocity[0]", "--speed-unit", "rpm", "--load", "/servo/state.cells[0].y,cells[0].z", "--load-unit", "kN"]
     told = replayed(servo_sqlite(tmp_path / "bag"), *speed, "-o", tmp_path / "run.mcap")
-    assert told["inputs"] == 42 and told["inputs_refused"] == 0 and told["sim_seconds"] == pytest.approx(2.0)
-    told = replayed(odd_log(tmp_path / "odd.mcap"))
+    assert told["read"]["there"] == told["read"]["used"] == 42 and told["sim_seconds"] == pytest.approx(2.0)
+    told = replayed(odd_log(tmp_path / "odd.mcap"), code=3)
+    assert told["unknown_seconds"] == 0.0, "later stamps make up for it"
     assert told["inputs_anomalies"]["shaft_speed"] == {"out_of_order": 1, "repeated": 2, "in_bursts": 4, "gaps": 1}
-    assert told["inputs_refused_by_reason"]["input.time_backwards"] >= 1 and told["inputs_refused_by_reason"]["input.time_repeated"] >= 2
+    assert told["read"]["not_used_by_reason"]["input.time_backwards"] >= 1 and told["read"]["not_used_by_reason"]["input.time_repeated"] >= 2
 
 
 def test_a_constant_stands_at_every_stamp_for_what_was_not_measured_or_is_not_to_be_read(tmp_path):
@@ -271,3 +277,76 @@ def test_replay_takes_constants_for_the_topics_that_a_log_lacks(tmp_path):
     (block,) = [item for item in Recording(tmp_path / "run.mcap") if isinstance(item, np.ndarray)]
     assert set(block["load_y"]) == {800.0} and set(block["oil_temperature"]) == {373.15}
     assert json.loads(done.stdout)["events"] == {}
+
+
+PACK = {"zstd": lambda data: zstandard.ZstdCompressor().compress(data), "lz4": lz4.frame.compress}
+
+
+def packed_messages(bag, how):
+    """Compress the messages of an SQLite bag, as rosbag2 does, and lose its metadata."""
+    [file] = bag.glob("*.db3")
+    with closing(sqlite3.connect(file)) as database, database:
+        rows = database.execute("SELECT id, data FROM messages").fetchall()
+        database.executemany("UPDATE messages SET data = ? WHERE id = ?", [(PACK[how](data), number) for number, data in rows])
+    (bag / "metadata.yaml").unlink()
+    return bag
+
+
+def packed_file(path, how, keep=1.0):
+    packed = PACK[how](path.read_bytes())
+    target = path.with_name(f"{path.name}.{how}")
+    target.write_bytes(packed[: round(keep * len(packed))])
+    path.unlink()
+    (path.parent / "metadata.yaml").unlink(missing_ok=True)
+    return target
+
+
+@pytest.mark.parametrize("how", PACK)
+def test_compressed_messages_and_files_are_read_without_metadata_and_info_says_so(tmp_path, how):
+    names = {"shaft_speed": "/servo/state.velocity[0]", "radial_load": "/servo/state.cells[1].z"}
+    whole = read_input_log(servo_mcap(tmp_path / "whole.mcap"), names).series
+    (tmp_path / "folder").mkdir()
+    made = {
+        "messages": packed_messages(servo_sqlite(tmp_path / "messages"), how),
+        "sqlite": packed_file(next(servo_sqlite(tmp_path / "sqlite").glob("*.db3")), how).parent,
+        "file": packed_file(servo_mcap(tmp_path / "log.mcap"), how),
+        "folder": packed_file(servo_mcap(tmp_path / "folder" / "log_0.mcap"), how).parent,
+    }
+    for name, path in made.items():
+        log = read_input_log(path, names)
+        assert {channel: series.values for channel, series in log.series.items()} == {channel: series.values for channel, series in whole.items()}
+        assert any(f"compressed by {how}" in note for note in log.lost.notes), name
+        shown = CliRunner().invoke(main, ["info", str(path), "--json"])
+        report = json.loads(shown.stdout)["files"][0]
+        assert shown.exit_code == 0 and report["messages"] == 21 and report["notes"] == log.lost.notes and not report["undecodable"]
+
+
+@pytest.mark.parametrize("how", PACK)
+def test_a_compressed_file_that_is_cut_short_is_used_up_to_there_and_said(tmp_path, how):
+    path = tmp_path / "log.mcap"
+    with open(path, "wb") as stream:
+        writer, random = Writer(stream, compression=CompressionType.NONE, chunk_size=4096), np.random.default_rng(1)
+        writer.start(profile="ros2", library="another")
+        channel = writer.register_channel("/noise", "cdr", writer.register_schema("std_msgs/msg/String", "ros2msg", b"string data"))
+        for k in range(3000):
+            writer.add_message(channel, T0 + k, random.bytes(200), T0 + k)
+        writer.finish()
+    bag = BagReader(packed_file(path, how, 0.6))
+    read = sum(not isinstance(item, BagTopic) for item in bag)
+    assert 0 < read < 3000 and not bag.tally.is_whole and "ends early" in bag.tally.text
+
+
+def test_info_and_replay_agree_on_messages_that_cannot_be_decoded(tmp_path):
+    path = tmp_path / "log.mcap"
+    with open(path, "wb") as stream:
+        writer = Writer(stream)
+        writer.start(profile="ros2", library="another")
+        for topic in ("/shaft_speed", "/radial_load"):
+            channel = writer.register_channel(topic, "cdr", writer.register_schema("drive_msgs/msg/Unknown", "ros2idl", b"module { none"))
+            writer.add_message(channel, T0, b"\0\1\0\0" + bytes(8), T0)
+        writer.finish()
+    shown = CliRunner().invoke(main, ["info", str(path)])
+    assert shown.exit_code == 0 and shown.stdout.count("cannot be decoded") == 2 and "cannot be parsed as IDL" in shown.stdout
+    names = {"shaft_speed": "/shaft_speed.data", "radial_load": "/radial_load.data"}
+    with pytest.raises(InputLogError, match="cannot be parsed as IDL"):
+        read_input_log(path, names)

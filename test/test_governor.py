@@ -13,6 +13,7 @@ from bearing_sim import Simulation, load_scene
 from bearing_sim.messages.events import Level
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.live import governor_of
+from bearing_sim.runtime.solver_threads import CommonPace
 
 TICK = 0.005
 
@@ -35,6 +36,32 @@ class Machine:
             if change is not None:
                 self.changes.append((self.now, self.governor.level))
         return self.governor.level
+
+
+class SharedMachine:
+    """Several bearings whose ticks one thread computes one after the other, always in the same order."""
+
+    def __init__(self, bearings, **costs):
+        self.costs, self.common, self.now, self.lost = costs, CommonPace(), 0.0, 0.0
+        self.governors = [Governor([FakeLevel(level) for level in costs], patience=2.0) for _ in range(bearings)]
+        self.texts = []
+
+    def run(self, seconds):
+        end, free, done = self.now + seconds, self.now, {governor: self.now for governor in self.governors}
+        while self.now < end:
+            due = self.now
+            for governor in self.governors:
+                could_begin, began = max(due, done[governor]), max(due, free)
+                spent = TICK * self.costs[governor.level]
+                free = done[governor] = began + spent
+                change = governor.consider(TICK, spent, began - could_begin, self.common, free)
+                if change is not None:
+                    self.texts.append(change.text)
+            self.now = due + TICK
+            if free - self.now > 0.2:  # [s] more is not caught up
+                self.lost += free - self.now
+                self.now = free
+        return [governor.level for governor in self.governors].count(next(iter(self.costs)))
 
 
 class FakeLevel(FakeSimulation):
@@ -95,6 +122,38 @@ def test_a_level_that_falls_again_is_waited_for_longer_each_time():
     waits = np.diff([0.0, *came_up])
     assert len(waits) >= 3
     assert np.all(waits[1:] > 1.5 * waits[:-1])
+
+
+def test_of_bearings_that_are_too_slow_together_as_many_fall_as_must_and_the_text_says_why():
+    machine = SharedMachine(20, slip=0.11, steady=0.01)
+    assert 5 <= machine.run(10.0) <= 8, "8 at slip and 12 at steady take the whole thread"
+    assert all("the bearings that share a process reach" in text for text in machine.texts[:5])
+    lost = machine.lost
+    wanted = machine.run(30.0)
+    assert 5 <= wanted <= 8 and machine.lost == lost, "once they keep up, nothing is lost any more"
+
+
+def test_bearings_that_keep_up_together_stay_and_those_that_fell_come_back_when_the_machine_is_free():
+    machine = SharedMachine(8, slip=0.11, steady=0.01)
+    assert machine.run(20.0) == 8 and machine.texts == []
+    machine.costs["slip"] = 0.3
+    assert machine.run(10.0) <= 3
+    machine.costs.update(slip=0.05, steady=0.005)
+    assert machine.run(60.0) == 8
+
+
+def test_a_level_that_turns_out_to_be_no_faster_is_left_at_once_and_for_good():
+    machine = Machine(planar=1.5, steady=4.0, slip=0.2)
+    machine.run(1.0)
+    assert [level for _, level in machine.changes] == ["steady", "planar", "slip"]
+    assert machine.changes[1][0] - machine.changes[0][0] < 2.0
+    machine.costs["planar"] = 0.1
+    machine.run(10.0)
+    machine.costs["planar"] = 1.5
+    machine.run(10.0)
+    assert "steady" not in [level for _, level in machine.changes[1:]]
+    alone = SharedMachine(4, slip=0.4, steady=1.2)
+    assert alone.run(5.0) == 4 and "bearing-sim table builds" in alone.texts[-1] and len(alone.texts) == 8
 
 
 def test_a_machine_that_holds_no_level_stays_at_the_cheapest():

@@ -210,5 +210,5 @@ def test_folder_without_recordings_is_refused(tmp_path):
         read_input_log(tmp_path)
     (tmp_path / "metadata.yaml").write_text("rosbag2_bagfile_information: {relative_file_paths: [bag_0.mcap.zstd]}")
     (tmp_path / "bag_0.mcap.zstd").write_bytes(b"")
-    with pytest.raises(InputLogError, match="uncompressed .mcap"):
+    with pytest.raises(InputLogError, match="not an MCAP file .0 bytes"):
         read_input_log(tmp_path)

@@ -3,13 +3,14 @@
 
 import math
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from fake_simulation import FakeSimulation
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.runtime.health import Phase
+from bearing_sim.runtime.health import Health, Phase
 from bearing_sim.runtime.live import LiveModel
 from bearing_sim.runtime.pacing import LONGEST_TICK, SHORTEST_LIMIT, tick_limit, tick_schedule
 from bearing_sim.scene.loader import load_scene
@@ -130,6 +131,8 @@ def test_a_stale_input_is_news_when_it_starts_and_gone_when_messages_come_again(
     assert "input.stale" in one.codes()
     assert sum(event.kind == "input.stale" for event in one.news) == 2, "once for speed, once for load"
     one.run(0.1)
+    assert "input.stale" in one.codes(), "one message is no flow"
+    one.run(0.6)
     assert "input.stale" not in one.codes()
 
 
@@ -189,7 +192,8 @@ def test_time_lost_to_a_slow_solver_is_told_with_both_factors(bench):
     one = bench(simulation)
     one.run(1.0)
     condition = one.live.condition(one.now_ns)
-    assert "pace.lost" in one.codes()
+    (told,) = [event for event in one.news if event.kind == "pace.lost"]
+    assert "of real time, the solver alone would reach" in told.text and "pace.lost" not in one.codes(), "it has happened; nothing is wrong now"
     assert condition.values["time lost [s]"] > 0.2
     assert 0.0 < condition.values["real-time factor held"] < 0.35
     assert 0.0 < condition.values["real-time factor possible"] < 0.35
@@ -299,3 +303,49 @@ def test_a_sample_that_is_due_is_told_at_once_so_often_as_asked_for_and_never_wh
     one.live.solver.pause(False)
     one.run(0.3)
     assert len(told) > seen
+
+
+def refused(reason, time=0.0, kind="input.malformed", action="message refused, holding 1000 rad/s"):
+    return Event(time, Level.ERROR, kind, "shaft_speed", reason, action)
+
+
+def shown_over(noted, until, step=0.1):
+    """Return the texts that hold, at even instants [s], of events noted at theirs."""
+    health, waiting, texts = Health(), sorted(noted, key=lambda event: event.time), []
+    solver = SimpleNamespace(phase=Phase.RUNNING, failed_ticks=0, dropped=0, newest=None, pace=SimpleNamespace(lost=0.0))
+    for now in np.arange(0.0, until, step).tolist():
+        while waiting and waiting[0].time <= now:
+            health.note(waiting.pop(0))
+        (held,) = health.events(now, [], solver) or [None]
+        texts.append(None if held is None else held._replace(count=1).text)
+    return texts
+
+
+@pytest.mark.parametrize("reasons", [["nan rad/s is not finite", "inf rad/s is not finite"], ["-3 N", "1e+07 N", "2.5e-3 N"]])
+def test_numbers_alone_make_no_other_text_of_a_trouble(reasons):
+    texts = shown_over([refused(reasons[k % len(reasons)], 0.05 * k) for k in range(400)], 20.0)
+    assert set(texts) == {f"shaft_speed: {reasons[0]}; message refused, holding 1000 rad/s"}
+
+
+def test_another_reason_is_told_at_once_and_reasons_that_alternate_share_one_text_until_one_of_them_is_over():
+    first, second = "no joint 'shaft'", "it has no velocity"
+    texts = shown_over([refused((first, second)[k % 2], 0.05 * k) for k in range(400)] + [refused(first, 20.0 + 0.05 * k) for k in range(100)], 25.0)
+    runs = [text for before, text in zip([None, *texts], texts) if text != before]
+    assert [first in text for text in runs] == [True, False, True], "the newest of both while they alternate"
+    assert 29 <= sum(first in text for text in texts) <= 32, "two seconds after the other one was over"
+
+
+@pytest.mark.parametrize("period, least, most", [(3.0, 1, 1), (9.0, 1, 1), (15.0, 3, 4)])
+def test_a_trouble_that_comes_again_within_ten_seconds_is_one_and_not_many(period, least, most):
+    texts = shown_over([refused("nan rad/s is not finite", period * k) for k in range(math.ceil(60.0 / period))], 60.0)
+    begun = sum(before is None and text is not None for before, text in zip([None, *texts], texts))
+    assert least <= begun - (period < 10.0) <= most
+
+
+def test_what_has_merely_happened_is_news_and_changes_no_status():
+    health = Health()
+    health.note(Event(1.0, Level.OK, "run.reset", "", "the model returned"))
+    health.note(Event(1.1, Level.OK, "run.reset", "", "the model returned"))
+    solver = SimpleNamespace(phase=Phase.RUNNING, failed_ticks=0, dropped=0, newest=None, pace=SimpleNamespace(lost=0.0))
+    events = health.events(1.2, [], solver)
+    assert events == [] and [event.kind for event in health.news(events)] == ["run.reset"]

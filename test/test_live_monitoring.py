@@ -99,7 +99,7 @@ class Fallen:
         self._simulation = simulation
         self.scene = load_scene("deng2017_table1", ["level=slip"])
 
-    def consider(self, simulated, spent):
+    def consider(self, simulated, spent, *others):
         return None
 
     def is_measured_at(self, sample):

@@ -75,8 +75,8 @@ def test_written_mission_passes_the_gate_whole_and_comes_back_equal(tmp_path):
     scene = load_scene("deng2017_table1")
     log = read_input_log(tmp_path / "mission.mcap")
     judged = judge(log, scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
-    assert not judged.refused and not judged.events
-    assert judged.messages == written == 2 * 301 + 7
+    assert judged.tally.is_whole and not judged.events
+    assert judged.tally.there == written == 2 * 301 + 7
     instants = judged.instants
     assert len(instants) == 301
     expected = np.array([mission(instant * 1e-9, 6.0) for instant in instants])

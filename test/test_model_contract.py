@@ -9,6 +9,8 @@ import pytest
 from fake_simulation import FakeSimulation
 from sim_time_bench import START_NS, FalseWall
 
+from bearing_sim.inputs.gate import Sources
+from bearing_sim.messages.diagnostics import report
 from bearing_sim.messages.events import Level
 from bearing_sim.runtime.health import Phase
 from bearing_sim.runtime.live import LiveModel
@@ -179,7 +181,7 @@ def test_two_publishers_whose_values_jump_to_and_fro_are_an_error_and_of_the_sam
         one.speed = next(speeds)
         one.step()
     (event,) = [event for event in one.condition().events if event.kind == "input.publishers"]
-    assert event.level is Level.ERROR and "between 100 rad/s and 150 rad/s" in event.reason
+    assert event.level is Level.ERROR and one.condition().values["shaft_speed jumps between"] == "100 rad/s and 150 rad/s"
     one.model.note_publishers("shaft_speed", 1)
     assert "input.publishers" not in one.kinds()
 
@@ -232,6 +234,71 @@ def test_a_publisher_of_a_ring_temperature_is_told_that_a_scene_without_a_law_of
     assert unused.subject == "outer_ring_temperature" and unused.level is Level.WARN and "heat.law" in unused.reason
     one.model.note_publishers("outer_ring_temperature", 0)
     assert "input.unused" not in one.kinds()
+
+
+TOPIC, JOINTS, FLOAT = "/m/shaft_speed", "sensor_msgs/msg/JointState", "std_msgs/msg/Float64"
+
+
+@pytest.mark.parametrize(
+    "sources, kind, words",
+    [
+        (Sources(TOPIC, JOINTS, 0), "input.absent", ["nobody publishes /m/shaft_speed (sensor_msgs/msg/JointState)", "remap the topic"]),
+        (Sources(TOPIC, JOINTS, 0, alternatives=("/m/speed",)), "input.absent", ["nobody publishes", "the type is published on /m/speed"]),
+        (Sources(TOPIC, JOINTS, 1), "input.absent", ["has a publisher that sends nothing", "ros2 topic echo /m/shaft_speed"]),
+        (Sources(TOPIC, JOINTS, 0, other_types=(FLOAT,)), "input.type", [FLOAT, JOINTS, "set input_type to scalar"]),
+        (Sources(TOPIC, FLOAT, 0, other_types=(JOINTS,)), "input.type", [FLOAT, JOINTS, "or remap the topic"]),
+        (Sources(TOPIC, JOINTS, 0, misfits=("Best effort publisher and reliable subscription",)), "input.qos", ["Best effort publisher"]),
+        (None, "input.absent", ["no good message within 0.2 s"]),
+    ],
+)
+def test_an_input_that_cannot_be_monitored_is_a_warning_with_its_topic_the_cause_and_what_to_do_in_one_text(make, sources, kind, words):
+    one = make(inputs_expected_within=0.2)
+    if sources is not None:
+        one.model.note_sources("shaft_speed", sources)
+    one.step(drive=False)
+    at_once = [event.key for event in one.condition().events if event.level]
+    assert at_once == ([] if kind == "input.absent" or one.now_ns is None else [(kind, "shaft_speed")])
+    one.run(0.25, drive=False)
+    texts = set()
+    for _ in range(4):
+        one.run(0.04, drive=False)
+        texts |= {event.text for event in one.condition().events if event.key == (kind, "shaft_speed") and event.level is Level.WARN}
+    (text,) = texts
+    assert all(word in text for word in words), text
+    assert ("input.absent", "radial_load") in {event.key for event in one.condition().events}, "nothing is known of its topic"
+    one.run(0.1)
+    assert not {"input.absent", "input.stale"} & one.kinds(), "good messages come"
+
+
+def test_an_optional_input_is_missed_only_where_somebody_publishes_it(make):
+    one = make(inputs_expected_within=0.2)
+    one.model.note_sources("cage_speed_measured", Sources("/cage_speed_measured", JOINTS, 0))
+    one.step()
+    one.run(0.4)
+    assert "input.absent" not in one.kinds() and "cage_speed_measured" in one.condition().unused
+    one.model.note_sources("cage_speed_measured", Sources("/cage_speed_measured", JOINTS, 1))
+    one.run(0.1)
+    (absent,) = [event for event in one.condition().events if event.kind == "input.absent"]
+    assert absent.subject == "cage_speed_measured" and "nothing is compared" in absent.action and absent.level is Level.WARN
+    assert "cage_speed_measured" not in one.condition().unused
+
+
+def test_each_status_has_one_text_as_long_as_the_state_does_not_change_whatever_the_numbers_do(make):
+    one = make(inputs_expected_within=0.2)
+    speeds, texts, statuses = itertools.count(100), {}, set()
+    one.model.note_publishers("shaft_speed", 2)
+    for turn in range(60):
+        one.speed = 100.0 + 0.3 * (next(speeds) % 7) if turn % 3 else -1.0
+        one.step()
+        condition = one.condition()
+        made = report(0, condition.events, condition.values, "n", "", condition.remarks, condition.otherwise, condition.unused)["status"]
+        statuses.add(len(made))
+        if turn > 40:
+            for status in made:
+                texts.setdefault(status["name"], set()).add(status["message"])
+    assert {name: said for name, said in texts.items() if len(said) != 1} == {}
+    (unused,) = texts["n: unused"]
+    assert unused.startswith("not used: ") and "inner_ring_temperature" in unused and len(texts) <= 16 and max(statuses) == len(texts)
 
 
 def test_thresholds_can_be_changed_in_mid_run(make):

@@ -128,7 +128,7 @@ def test_the_policy_has_the_elements_and_attributes_of_its_published_schema(text
 def test_the_policy_of_several_bearings_has_their_names_and_their_processes():
     (node, player) = ElementTree.fromstring(policy("/plant", "mill", ["front", "rear"], 2)).iter("profile")
     assert {"/plant/front/cage_slip", "/plant/rear/cage_slip", "/plant/_mill_2/transition_event"} <= names_in(node, "publish")
-    assert {"/plant/front/reset", "/plant/mill/change_state", "/plant/_mill_1/get_type_description"} <= names_in(node, "reply")
+    assert {"/plant/mill/front/reset", "/plant/mill/change_state", "/plant/_mill_1/get_type_description"} <= names_in(node, "reply")
     assert "/plant/mill/reset" not in names_in(node, "reply")
     assert {"/plant/front/shaft_speed", "/plant/rear/shaft_speed"} <= names_in(player, "publish") & names_in(node, "subscribe")
 

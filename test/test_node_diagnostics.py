@@ -22,13 +22,13 @@ from ros_bench import GOOD, PATIENCE, Client, NodeProcess, fresh_domain  # noqa:
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
 from bearing_sim.messages import topics  # noqa: E402
-from bearing_sim.messages.diagnostics import SUBJECTS  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
+from bearing_sim.ros.parameters import OIL_TEMPERATURE, SCENE_DECLARATIONS  # noqa: E402
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(300)]
 ANALYZERS = Path(__file__).resolve().parents[1] / "launch_scripts" / "diagnostic_analyzers.yaml"
-SECOND = 1_000_000_000
-_STATUSES = 1 + len(SUBJECTS)  # of a bearing
+SECOND, OIL_KEY = 1_000_000_000, "oil temperature [degC]"
+_STATUSES = 14  # of a bearing that does not run
 
 
 class Watcher(Client):
@@ -78,7 +78,7 @@ class Fleet:
 
     def __init__(self, folder):
         domain = fresh_domain()
-        overrides = "overrides:=['input_limits.stale_after=1s']"
+        overrides = "overrides:=['input_limits.stale_after=1s', 'lubricant.temperature=100 degC']"
         state = (f"front.state_file:={folder / 'state.json'}", "front.serial:=A-17")
         parameters = ("autostart:=false", "governor:=false", "bearings:=[front, rear]", overrides, *state, "publish_rate:=10.0")
         self.process = NodeProcess(folder, domain, "--ros-args", *(word for pair in parameters for word in ("-p", pair)), limit=280)
@@ -136,22 +136,34 @@ def fleet(tmp_path_factory):
     made.process.end(signal.SIGKILL)
 
 
-def test_a_healthy_start_from_the_first_report_on_is_never_stale_and_never_an_error_and_waits_in_silence(fleet):
+def test_a_healthy_start_is_never_stale_warns_while_the_models_are_not_there_and_waits_for_inputs_in_silence(fleet):
     client, process = fleet.client, fleet.process
     client.spin_until(lambda: len(client.items()) == 2 * _STATUSES, "both bearings report before they are configured", process, 100.0)
     assert {status.hardware_id for report in client.received["diagnostics"] for status in report.status} <= {"A-17", ""}
+    assert client.worst == OK, "nobody has asked for anything yet"
     fleet.change("configure")
     fleet.change("activate")
     client.spin_until(lambda: process.text.count("ready: listening to") == 2, "both have warmed up", process, 100.0)
+    assert client.worst == WARN, "a node that warms up does not monitor"
+    client.spin_until(lambda: client.wrong() == {}, "both run", process)
+    client.worst = OK
     client.spin(1.5)  # longer than the patience with an input that has begun
     assert client.worst == OK and "WARN" not in process.text and "ERROR" not in process.text
     assert "holding" not in str(client.received["diagnostics"])
     for words in ("/front/shaft_speed, /front/radial_load", "/rear/cage_slip", "lifecycle: configure: unconfigured -> inactive"):
         assert words in process.text
     newest = lambda name: [s.message for report in client.received["diagnostics"] for s in report.status if s.name.endswith(name)][-1]  # noqa: E731
-    fleet.drive_until(lambda: client.received["cage_slip"] and "1000 rad/s" in newest("front: shaft_speed"), "the front runs")
-    assert newest("rear: oil_temperature") == "no message so far, the scene's value is used, 120 degC"
-    assert len(client.items()) == 2 * _STATUSES and client.wrong() == {} and client.worst <= WARN
+    fleet.drive_until(lambda: client.received["cage_slip"] and "its messages are used" in newest("front: shaft_speed"), "the front runs")
+    why = {
+        pair.key: pair.value
+        for report in client.received["diagnostics"]
+        for s in report.status
+        if s.name.endswith("rear: unused")
+        for pair in s.values
+    }
+    assert why["oil_temperature"] == "no message so far, the scene's value is used, 100 degC"
+    assert client.wrong() == {} and client.worst <= WARN
+    assert len(client.items()) == 2 * _STATUSES + 3, "the clearance of both, and the state of the front are used from here on"
     last = {status.name: status for report in client.received["diagnostics"][-4:] for status in report.status}
     assert last["bearing_node/front: slip"].hardware_id == "A-17"
 
@@ -159,13 +171,15 @@ def test_a_healthy_start_from_the_first_report_on_is_never_stale_and_never_an_er
 def test_each_fault_is_in_its_subject_of_its_bearing_alone_and_its_cure_is_seen(fleet):
     client = fleet.client
     client.worst = OK
+    (shared,) = [row.default for row in SCENE_DECLARATIONS if row.name == OIL_TEMPERATURE]
+    fleet.set(OIL_TEMPERATURE, shared)  # what it is, and not what the bearings' scenes have
     fleet.drive_until_wrong({"front: shaft_speed": WARN}, "a stale speed", front=("radial_load",))
     fleet.drive_until_wrong({}, "it comes again")
     fleet.drive_until_wrong({"front: shaft_speed": ERROR}, "a speed that is no number", shaft_speed=math.nan)
     fleet.drive_until_wrong({}, "it is one again")
     fleet.drive_until_wrong({"front: radial_load": ERROR, "front: inputs": WARN}, "an absurd load", load_y=1e12)
     fleet.drive_until_wrong({"front: inputs": WARN}, "what was refused counts nowhere")
-    assert client.call(Trigger, "/front/reset", Trigger.Request(), fleet.process).success
+    assert client.call(Trigger, "/bearing_node/front/reset", Trigger.Request(), fleet.process).success
     fleet.drive_until_wrong({}, "the run starts anew")
     fleet.drive_until_wrong({"front: shaft_speed": ERROR}, "two publishers disagree", rival=1500.0)
     fleet.drive_until_wrong({}, "one is left")
@@ -176,11 +190,13 @@ def test_each_fault_is_in_its_subject_of_its_bearing_alone_and_its_cure_is_seen(
         fleet.set(f"front.thresholds.{name}", value)
     fleet.drive_until_wrong({}, "it is raised")
     assert client.worst == ERROR
+    oil = {pair.value for report in client.received["diagnostics"] for status in report.status for pair in status.values if pair.key == OIL_KEY}
+    assert shared == 393.15 and oil == {"100"}, "a parameter that is set to the value that it has changes nothing"
 
 
 def test_a_pause_and_every_state_of_the_node_are_as_healthy_as_a_run_and_its_end_is_stale(fleet):
     client, process = fleet.client, fleet.process
-    assert client.call(SetBool, "/front/pause", SetBool.Request(data=True), process).success
+    assert client.call(SetBool, "/bearing_node/front/pause", SetBool.Request(data=True), process).success
     fleet.drive_until(lambda: any("paused" in text for _, _, text in client.statuses(-2)), "the pause is told")
     client.worst = OK
     for _ in range(20):
@@ -189,7 +205,7 @@ def test_a_pause_and_every_state_of_the_node_are_as_healthy_as_a_run_and_its_end
         fleet.change(label)
         seen = len(client.received["diagnostics"])
         client.spin_until(lambda seen=seen: len(client.received["diagnostics"]) > seen + 3, "both report", process)
-        assert client.wrong() == {} and len(client.items()) == 2 * _STATUSES
+        assert client.wrong() == {} and len(client.items()) == 2 * _STATUSES + 3
     assert client.worst <= WARN, "limits of validity at most"
     assert process.end(signal.SIGINT) == 0
     levels = client.levels(later=PATIENCE + 0.1)

@@ -135,7 +135,7 @@ def test_a_signal_ends_the_node_in_every_state_with_code_0_and_its_recording_com
 def test_the_node_answers_while_it_compiles_and_begins_by_itself_when_that_is_done(managed, tmp_path):
     node = managed("overrides:=['level=slip']", XDG_CACHE_HOME=str(tmp_path / "empty_cache"))
     assert node.change("configure") == (True, "inactive")
-    assert node.told("warming up")[:2] == (0, "bearing_node: run.warming_up")
+    assert node.told("warming up, not monitored yet")[:2] == (1, "bearing_node: run.warming_up")
     assert node.change("activate") == (True, "active"), "activation does not wait for the compiler"
     assert node.change("deactivate") == (True, "inactive") and node.change("cleanup") == (True, "unconfigured")
     assert node.process.end(signal.SIGTERM) == 0 and "Traceback" not in node.process.text

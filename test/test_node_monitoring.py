@@ -77,7 +77,7 @@ def test_a_measured_cage_is_compared_judged_published_and_recorded(node, tmp_pat
     assert cage.residuals[-1] == pytest.approx(0.01, abs=3e-3)
     assert float(client.values()["residual slip, usual mean [fraction]"]) == pytest.approx(0.01, abs=0.003)
     cage.drive_until(lambda: verdict() == "slips more than predicted", extra=0.05)
-    (told,) = {(level, text.partition(" for about")[0]) for level, name, text in client.statuses() if name.endswith("residual.shift")}
+    (told,) = {(level, text.partition(", usually")[0]) for level, name, text in client.statuses() if name.endswith("residual.shift")}
     assert told == (1, "residual slip: the cage slips more than predicted")
     assert process.text.count("residual.shift") == 1, "logged once"
 

@@ -1,10 +1,13 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The node's parameters: descriptors from the scene's declarations, refusals with reasons, changes in mid-run, files; several bearings."""
 
+import dataclasses
 import re
 import signal
+from array import array
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
@@ -12,21 +15,27 @@ pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_
 
 from lifecycle_msgs.msg import Transition  # noqa: E402
 from lifecycle_msgs.srv import ChangeState  # noqa: E402
+from rcl_interfaces.msg import Parameter as ParameterMessage  # noqa: E402
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters  # noqa: E402
 from rclpy.parameter import Parameter, parameter_value_to_python  # noqa: E402
+from rclpy.qos import ReliabilityPolicy  # noqa: E402
 from ros_bench import GOOD, Client, NodeProcess, fresh_domain  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
+from bearing_sim.inputs.log import read_input_log  # noqa: E402
 from bearing_sim.messages import topics  # noqa: E402
+from bearing_sim.recording.bag_reader import BagReader, BagTopic  # noqa: E402
+from bearing_sim.recording.reader import Recording  # noqa: E402
 from bearing_sim.ros.messages import message  # noqa: E402
 from bearing_sim.ros.parameters import (  # noqa: E402
     DECLARATIONS,
     SCENE_DECLARATIONS,
+    BearingSettings,
     parameter_file,  # noqa: E402
     parameter_value,
     scene_value,
 )
-from bearing_sim.scene.loader import load_scene  # noqa: E402
+from bearing_sim.scene.loader import load_scene, scene_names  # noqa: E402
 from bearing_sim.scene.scene import Thresholds  # noqa: E402
 from bearing_sim.scene.uncertainty import messages, with_values  # noqa: E402
 
@@ -55,6 +64,19 @@ class Parameters:
     def names(self):
         """Return all names."""
         return set(self.client.call(ListParameters, "list_parameters", ListParameters.Request(), self.process).result.names)
+
+    def dump(self, node="/bearing_node"):
+        """Return all parameters as the text of a file, as `ros2 param dump` (package ros2param, jazzy) does."""
+        tree = {}
+        names = sorted(self.names())
+        values = self.client.call(GetParameters, "get_parameters", GetParameters.Request(names=names), self.process).values
+        for name, value in zip(names, map(parameter_value_to_python, values), strict=True):
+            *blocks, last = name.split(".")
+            block = tree
+            for each in blocks:
+                block = block.setdefault(each, {})
+            block[last] = value.tolist() if isinstance(value, array) else value
+        return yaml.dump({node: {"ros__parameters": tree}}, default_flow_style=False)
 
     def change(self, label):
         """Ask for a transition; return whether it was made."""
@@ -100,6 +122,14 @@ def test_every_quantity_of_the_thresholds_is_a_parameter_with_its_bounds_unit_an
 def test_zero_stands_for_none_where_the_scene_allows_none_and_for_zero_elsewhere():
     assert scene_value("thresholds.pocket_force_warning", 0.0) is None and scene_value("thresholds.pocket_force_warning", 3.0) == 3.0
     assert scene_value("thresholds.life_error", 0.0) == 0.0
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_the_scene_parameters_of_a_scene_that_were_read_from_it_change_nothing_in_it(name):
+    scene = load_scene(name)
+    others = {field.name: None for field in dataclasses.fields(BearingSettings)} | {"overrides": ()}
+    settings = BearingSettings(**others | {"conditions": {row.name: parameter_value(row.name, scene) for row in SCENE_DECLARATIONS}})
+    assert load_scene(name, settings.scene_overrides) == scene
 
 
 def test_thresholds_are_changed_by_their_place_and_faults_are_told():
@@ -199,10 +229,14 @@ def test_values_that_are_what_they_were_are_no_news(running):
     client = running.client
     client.drive_until(lambda: client.values()["phase"] == "running", "the node runs", running.process)
     before, report = running.process.text, len(client.received["diagnostics"])
-    for name in ("scene", "joint", "publish_rate", "sample_rate", "governor", "lubricant.temperature", "thresholds.slip_warning"):
-        assert running.set(name, running.value(name)) == "", name
-    client.drive(0.5)
-    assert running.process.text == before
+    began = client.values()["time lost [s]"], float(client.values()["run time [s]"])
+    names = sorted(running.names() - {"start_type_description_service"})  # rclpy's own, which is read-only
+    values = client.call(GetParameters, "get_parameters", GetParameters.Request(names=names), running.process).values
+    request = SetParameters.Request(parameters=[ParameterMessage(name=name, value=value) for name, value in zip(names, values)])
+    results = client.call(SetParameters, "set_parameters", request, running.process).results
+    assert [(name, result.reason) for name, result in zip(names, results) if not result.successful] == [] and len(names) > 70
+    client.drive_until(lambda: float(client.values()["run time [s]"]) > began[1] + 0.5, "the node runs on", running.process)
+    assert running.process.text == before and client.values()["time lost [s]"] == began[0]
     assert {name for _, name, _ in client.statuses(report) if not name.startswith("bearing_node: validity.")} == set()
 
 
@@ -216,6 +250,14 @@ def test_the_publish_rate_and_the_governor_change_in_mid_run(running):
     assert running.set("publish_rate", 50) == ""
     seen = len(client.received["cage_slip"])
     client.drive_until(lambda: len(client.received["cage_slip"]) > seen + 20, "it comes faster", running.process)
+
+
+def test_a_change_is_still_there_after_the_next_configure_whatever_its_unit(running):
+    wanted = {"thresholds.slip_from_speed": 30.0, "thresholds.clearance_warning": -5e-06, "thresholds.pocket_force_warning": 0.0}
+    for name, value in wanted.items():
+        assert running.set(name, value) == ""
+    assert all(running.change(step) for step in ("deactivate", "cleanup", "configure", "activate"))
+    assert {name: running.value(name) for name in wanted} == wanted
 
 
 def test_what_is_set_while_unconfigured_counts_at_the_next_configure(tmp_path):
@@ -269,12 +311,57 @@ def test_the_example_file_holds_every_parameter_at_its_default_and_the_node_take
     client.close()
 
 
+def is_active(process):
+    return "activate: inactive -> active" in process.text
+
+
+def test_a_node_starts_from_the_example_file_and_from_what_was_dumped_of_a_node_and_has_the_same_parameters_again(tmp_path):
+    process, client = start(tmp_path, arguments=["--params-file", str(EXAMPLE)])
+    client.wait_until_matched(process)
+    client.close()
+    assert is_active(process) and process.end(signal.SIGTERM) == 0 and "WARN" not in process.text
+
+    asked = ("front.thresholds.slip_from_speed:='200 rpm'", "rear.scene:=deng2017_table2", "rear.frame_position:=[0.0, 0.5, 1.0e-05]")
+    qos = "qos_overrides./front/cage_slip.publisher.reliability:=best_effort"
+    process, client = start(tmp_path, "bearings:=[front, rear]", *asked, qos, "publish_rate:=20", "overrides:=[]", "record_keep_free:=0.0")
+    dumped = []
+    for _ in range(2):
+        parameters = Parameters(client, process)
+        client.spin_until(lambda: is_active(process), "the node is active", process, 100.0)  # noqa: B023
+        (offered,) = client.node.get_publishers_info_by_topic("/front/cage_slip")
+        assert offered.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT
+        dumped.append(parameters.dump())
+        if len(dumped) == 1:  # at the next configure it is as it was
+            assert all(parameters.change(step) for step in ("deactivate", "cleanup", "configure", "activate"))
+            dumped.append(parameters.dump())
+        client.close()
+        assert process.end(signal.SIGINT) == 0 and "unknown" not in process.text and "WARN" not in process.text
+        if len(dumped) == 2:
+            (tmp_path / "dumped.yaml").write_text(dumped[0])
+            process, client = start(tmp_path, arguments=["--params-file", str(tmp_path / "dumped.yaml")])
+    assert len(set(dumped)) == 1
+    first = yaml.safe_load(dumped[0])["/bearing_node"]["ros__parameters"]
+    assert first["front"]["thresholds"]["slip_from_speed"] == pytest.approx(200 * 2 * np.pi / 60)
+    assert first["qos_overrides"]["/front/cage_slip"]["publisher"] == {
+        "depth": 10, "durability": "volatile", "history": "keep_last", "reliability": "best_effort",
+    }  # fmt: skip
+    assert {"/front/shaft_speed", "/rear/radial_load", "/diagnostics"} <= first["qos_overrides"].keys()
+
+
+def test_qualities_of_service_that_cannot_be_are_all_told_at_once(tmp_path):
+    wrong = ("/cage_slip.publisher.reliability:=reliabel", "/damage.publisher.depth:=0", "/shaft_speed.subscription.depth:=five")
+    process, client = start(tmp_path, *(f"qos_overrides.{each}" for each in wrong))
+    client.close()
+    assert process.wait() == 2 and "3 parameter errors" in process.text and "(did you mean 'reliable'?)" in process.text
+    assert "/damage.publisher.depth = 0: outside 1 to" in process.text and "depth = 'five': expected an integer" in process.text
+
+
 @pytest.mark.long
 def test_two_bearings_in_one_process_have_their_own_topics_services_parameters_diagnostics_and_recordings(tmp_path):
     scenes = ["front.scene:=deng2017_table1", "rear.scene:=deng2017_table2", "front.thresholds.life_warning:=1e8"]
     process, front = start(
         tmp_path, "bearings:=[front, rear]", *scenes, "governor:=false", f"record:={tmp_path / 'run.mcap'}", namespace="ship/front",
-        arguments=["-r", "__ns:=/ship"],
+        arguments=["-r", "__ns:=/ship", "-r", "rear/damage:=/plant/damage"],
     )  # fmt: skip
     rear = Client(front.context.get_domain_id(), "ship/rear")
     try:
@@ -295,7 +382,7 @@ def test_two_bearings_in_one_process_have_their_own_topics_services_parameters_d
         front.drive_until(lambda: "ship/bearing_node/rear: condition" in names(), "the rear reports", process)
         assert names()["ship/bearing_node/front: condition"].hardware_id == "front/deng2017_table1"
         assert names()["ship/bearing_node/rear: condition"].hardware_id == "rear/deng2017_table2"
-        pausing = rear.node.create_client(SetBool, "pause")
+        pausing = rear.node.create_client(SetBool, "/ship/bearing_node/rear/pause")
         rear.spin_until(pausing.service_is_ready, "the rear's service is there", process)
         answer = pausing.call_async(SetBool.Request(data=True))
         rear.spin_until(answer.done, "the rear pauses", process)
@@ -305,13 +392,18 @@ def test_two_bearings_in_one_process_have_their_own_topics_services_parameters_d
         front.drive_until(lambda: len(front.received["cage_slip"]) > seen, "the front goes on", process)
         rear.spin(0.1)
         assert len(rear.received["cage_slip"]) == held
-        stopping = front.node.create_client(Trigger, "stop_recording")
+        stopping = front.node.create_client(Trigger, "/ship/bearing_node/front/stop_recording")
         front.spin_until(stopping.service_is_ready, "the front's service is there", process)
         answer = stopping.call_async(Trigger.Request())
         front.spin_until(answer.done, "the front's recording ends", process)
         assert answer.result().success and (tmp_path / "run_front.mcap").is_file() and not (tmp_path / "run_rear.mcap").exists()
         assert process.end(signal.SIGINT) == 0 and "Traceback" not in process.text
         assert sorted(path.name for path in tmp_path.glob("run*")) == ["run_front.mcap", "run_rear.mcap"]
+        found = [item for item in BagReader(tmp_path / "run_rear.mcap") if isinstance(item, BagTopic)]
+        assert {"/ship/rear/cage_slip", "/ship/rear/shaft_speed", "/plant/damage", "/diagnostics"} <= {topic.name for topic in found}
+        assert read_input_log(tmp_path / "run_rear.mcap").series["shaft_speed"].topic == "/ship/rear/shaft_speed"
+        recording = Recording(tmp_path / "run_rear.mcap")
+        assert recording.samples == sum(len(item) for item in recording if isinstance(item, np.ndarray)) > 0
     finally:
         rear.close()
         front.close()

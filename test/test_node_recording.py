@@ -2,6 +2,7 @@
 """The node's recording when something ends it: the node killed, the process that records killed, the disk full."""
 
 import os
+import shutil
 import signal
 import time
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
 
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
+from rosbags.rosbag2 import Reader  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 from waiting import wait_for  # noqa: E402
 
@@ -118,14 +120,22 @@ def test_a_recording_whose_process_is_killed_goes_on_in_another_file_but_not_for
 
 
 @pytest.mark.long
-def test_a_full_disk_under_the_node_is_told_the_node_goes_on_and_what_was_written_recovers(launch, small_disk, tmp_path):
-    process, client = launch(f"record:={small_disk / 'run.mcap'}", "record_keep_free:=0.0", "sample_rate:=1000.0", "governor:=false")
+def test_a_full_disk_under_the_node_is_told_the_node_goes_on_and_what_was_written_is_complete(launch, small_disk):
+    process, client = launch(f"record:={small_disk / 'run'}", "record_keep_free:=0.0", "sample_rate:=1000.0", "governor:=false")
     client.drive_until(lambda: given_up(client), "the full disk is told as an ERROR", process)
     assert "No space left on device" in given_up(client)[-1]
     heard = len(client.received["cage_slip"])
     client.drive_until(lambda: len(client.received["cage_slip"]) > heard + 20, "the node goes on", process)
+    client.drive_until((small_disk / "run" / "metadata.yaml").exists, "what was written is completed", process)
+    (small_disk / "rest").write_bytes(bytes(shutil.disk_usage(small_disk).free))
+    refused = client.call(Trigger, "start_recording", Trigger.Request(), process)
+    assert not refused.success and "No space left on device" in refused.message
+    seen = len(client.received["diagnostics"])
+    client.drive_until(lambda: len(client.received["diagnostics"]) > seen + 2, "the node reports", process)
+    assert "cannot be begun" in given_up(client, seen + 2)[-1], "a recording that could not be begun remains an ERROR"
     refused = client.call(Trigger, "stop_recording", Trigger.Request(), process)
     assert not refused.success and "no recording" in refused.message
-    found = recover(small_disk / "run.mcap.active", tmp_path / "good.mcap")
-    assert found.damaged == 0 and found.messages["/roller_loads"] > 300
     assert process.end(signal.SIGINT) == 0
+    with Reader(small_disk / "run") as bag:
+        assert bag.topics["/roller_loads"].msgcount > 100
+    assert [file.name for file in small_disk.rglob("*.mcap*")] == ["run_0.mcap"]

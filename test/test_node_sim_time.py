@@ -162,7 +162,7 @@ def test_clock_that_jumps_back_is_an_error_where_that_is_asked_for(bench, log, t
     again = player(path, "--clock", 20, "--rate", 1)
     client.spin_until(lambda: events(client, "clock.jumped_back"), "the jump is told", node)
     client.spin_until(lambda: events(client, "input.time_backwards"), "messages from before are refused", node)
-    ((level, told),) = {(level, text.partition(" to ")[0]) for level, text in events(client, "clock.jumped_back")}
+    ((level, told),) = {(level, text.partition(" and ")[0]) for level, text in events(client, "clock.jumped_back")}
     assert level == 2 and told == "the clock jumped back"
     assert len(client.received["bearing_joints"]) == count, "the last good state is held"
     client.spin_until(lambda: again.process.poll() is not None, "the second play ends", node)

@@ -66,8 +66,8 @@ def test_blocks_of_vibration_become_a_measured_cage_speed_with_its_error_and_noi
         client.wait_until_matched(process)
         client.spin_until(lambda: publisher.get_subscription_count(), "the node listens to the vibration", process)
         client.drive_until(lambda: client.received["cage_slip"] and value("last window"), "the node runs", process)
-        send_until(noise, lambda: value("windows without a line") not in ("", "0"))
-        assert "no line found" in value("last window") and not any("residual slip" in key for key in client.values())
+        send_until(noise, lambda: value("windows without a claim") not in ("", "0"))
+        assert "no line of this bearing" in value("last window") and not any("residual slip" in key for key in client.values())
         send_until(synthetic.vibration.samples, lambda: "outer ring shows" in value("last window"))
         for samples, sizes, reason in (([1.0, math.nan], {"rate": 1000}, "sample 1 of the block is nan"), ([1.0], {}, "label 'rate'")):
             send(samples, **sizes)

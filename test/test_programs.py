@@ -13,22 +13,32 @@ from bearing_sim import programs
 
 ROOT = Path(__file__).resolve().parent.parent
 SLOW = """
-import os, signal
-os.kill(os.getpid(), signal.SIGINT)
+import os, signal, sys
+os.kill(os.getpid(), getattr(signal, os.environ.get("SENT", "SIGINT")))
 raise SystemExit("the signal was not obeyed")
 """
 
 
-def run(code, folder):
-    environment = os.environ | {"PYTHONPATH": f"{folder}{os.pathsep}{ROOT}"}
+def run(code, folder, **environment):
+    environment = os.environ | {"PYTHONPATH": f"{folder}{os.pathsep}{ROOT}"} | environment
     return subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=60)
 
 
-@pytest.mark.parametrize(("interrupted", "code"), [(0, 0), (130, 130)])
-def test_sigint_during_the_import_ends_a_program_without_a_word(tmp_path, interrupted, code):
+@pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM"])
+@pytest.mark.parametrize("interrupted", [0, 130])
+def test_a_signal_during_the_import_ends_a_program_without_a_word(tmp_path, interrupted, sent):
     (tmp_path / "slow.py").write_text(SLOW)
-    done = run(f"import sys; from bearing_sim.programs import _run; sys.exit(_run('slow', {interrupted}))", tmp_path)
-    assert done.returncode == code and done.stderr == done.stdout == ""
+    done = run(f"import sys; from bearing_sim.programs import _run; sys.exit(_run('slow', {interrupted}))", tmp_path, SENT=sent)
+    assert done.returncode == interrupted and done.stderr == done.stdout == ""
+
+
+@pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM"])
+def test_a_signal_while_the_node_imports_ends_it_with_code_0_also_where_python_runs_its_module(tmp_path, sent):
+    pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
+    (tmp_path / "std_srvs").mkdir()
+    (tmp_path / "std_srvs" / "__init__.py").write_text(SLOW)
+    done = run("import runpy; runpy.run_module('bearing_sim.ros.node', run_name='__main__', alter_sys=True)", tmp_path, SENT=sent)
+    assert done.returncode == 0 and done.stderr == done.stdout == ""
 
 
 def test_a_command_is_interrupted_in_the_usual_way_but_not_in_the_middle_of_an_import(tmp_path):
@@ -40,6 +50,14 @@ def test_a_command_is_interrupted_in_the_usual_way_but_not_in_the_middle_of_an_i
     assert caught.stdout == "caught\n"
     ended = run(f"{start}_run('importing', _INTERRUPTED, _interrupt)", tmp_path)
     assert ended.returncode == 130 and ended.stderr == ""
+
+
+def test_the_node_imports_no_library_for_what_most_runs_do_without(tmp_path):
+    pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
+    heavy = ("pint", "scipy.stats", "rerun", "pyarrow", "pandas", "matplotlib", "h5py", "rosbags.rosbag2")
+    code = "import sys; import bearing_sim.ros.node; from bearing_sim.scene.loader import load_scene; load_scene('deng2017_table1')"
+    done = run(f"{code}; print(*(name for name in {heavy} if name in sys.modules))", tmp_path)
+    assert done.stdout.split() == []
 
 
 def test_a_program_names_the_extra_that_it_lacks_and_raises_what_is_no_extra(tmp_path, monkeypatch, capsys):

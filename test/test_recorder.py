@@ -1,7 +1,10 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Recordings by a process of their own: what is in them, and what is lost when either side is killed, frozen, or out of disk."""
 
+import errno
+import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,10 +15,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mcap.reader import make_reader
+from rosbags.rosbag2 import Reader
 from synthetic_run import synthetic_block
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.topics import Origin
+from bearing_sim.recording import recorder_server
 from bearing_sim.recording.bag import Limits
 from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.recorder import LiveRecording, Recorder
@@ -282,8 +287,9 @@ def test_ctrl_c_does_not_end_the_process_before_it_is_fed_to_the_end(tmp_path):
     assert len(samples(tmp_path / "run.mcap")) == told
 
 
-def test_a_full_disk_comes_back_as_an_error_and_nothing_written_is_lost(recorder, small_disk, tmp_path):
-    sink = recorder.open(small_disk / "run.mcap", SCENE, START, Limits(keep_free=0.0))
+@pytest.mark.parametrize("name", ["run.mcap", "bag"])
+def test_a_full_disk_comes_back_as_an_error_and_the_recording_is_completed_in_reserved_space(recorder, small_disk, name):
+    sink = recorder.open(small_disk / name, SCENE, START, Limits(keep_free=0.0))
 
     def fill():
         for _ in range(3000):
@@ -292,10 +298,55 @@ def test_a_full_disk_comes_back_as_an_error_and_nothing_written_is_lost(recorder
 
     with pytest.raises(OSError, match="No space left on device"):
         fill()
+    sink.close()
+    assert len(samples(small_disk / name)) > 300 and not Recording(small_disk / name).unfinished and not list(small_disk.rglob("*.active"))
+    if name == "bag":
+        with Reader(small_disk / name) as bag:
+            assert bag.message_count > 10_000
+    another = small_disk / "another"
+    (small_disk / "rest").write_bytes(bytes(shutil.disk_usage(small_disk).free - 100_000))
+    with pytest.raises(OSError, match="cannot be begun: No space left on device"):
+        recorder.open(another, SCENE, START, Limits(keep_free=0.0))
+    assert not another.exists()
+
+
+def test_what_could_not_be_completed_on_a_full_disk_is_completed_by_another_call(tmp_path, small_disk, monkeypatch):
+    monkeypatch.delattr(os, "posix_fallocate")  # so that no space is reserved
+    sink, rest = McapSink(small_disk / "bag", SCENE, START, limits=Limits(keep_free=0.0), flush_every=60.0), small_disk / "rest"
+    sink.write(RUN[:100])
+    rest.write_bytes(bytes(shutil.disk_usage(small_disk).free))
     with pytest.raises(OSError, match="No space left on device"):
         sink.close()
-    found = recover(small_disk / "run.mcap.active", tmp_path / "good.mcap")
-    assert found.damaged == 0 and found.messages["/roller_loads"] > 500
+    assert not (small_disk / "bag" / "metadata.yaml").exists()
+    rest.unlink()
+    sink.close()
+    with Reader(small_disk / "bag") as bag:
+        assert bag.message_count and len(samples(small_disk / "bag")) == 100
+
+
+@pytest.mark.parametrize("is_ending", [False, True])
+def test_the_process_tries_again_to_complete_what_lacked_space_and_for_the_last_time_when_it_ends(monkeypatch, is_ending):
+    monkeypatch.setattr(recorder_server, "_RETRY_EVERY", 60.0 if is_ending else 0.01)
+    tries = []
+
+    class Sink:
+        def news(self):
+            return []
+
+        def close(self):
+            tries.append(True)
+            if len(tries) < (2 if is_ending else 3):
+                raise OSError(errno.ENOSPC, "No space left on device")
+
+    reports, end = os.pipe()
+    server = recorder_server.RecorderServer(end)
+    server._sinks[0] = Sink()
+    server.do(0, "close", ())
+    if not is_ending:
+        wait_for(lambda: len(tries) == 3)
+    server.close()
+    assert len(tries) == (2 if is_ending else 3)
+    assert [sorted(json.loads(line))[0] for line in os.read(reports, 4096).splitlines()] == ["error", "closed"]
 
 
 @pytest.mark.long

@@ -18,8 +18,8 @@ from rosbags.highlevel import AnyReader
 from synthetic_run import synthetic_block
 
 from bearing_sim.cli.main import main
-from bearing_sim.cli.reporting import judged
 from bearing_sim.inputs.log import InputLogError, read_input_log
+from bearing_sim.inputs.profile import judge
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.mcap_format import CHECKSUM, CHECKSUM_RECORD, MAGIC, Message
 from bearing_sim.recording.mcap_reader import McapReader
@@ -201,10 +201,10 @@ def test_checksum_record_is_far_from_every_other_record():
     assert CHECKSUM_RECORD.size == 9 + 12
 
 
-def test_a_damaged_log_is_used_up_to_the_damage_which_is_said(recording, records, tmp_path, capsys):
+def test_a_damaged_log_is_used_up_to_the_damage_which_is_said(recording, records, tmp_path):
     chunks = [(begin, end) for opcode, begin, end in records if opcode == 0x06]
     log = read_input_log(flipped(recording, tmp_path / "flipped.mcap", sum(chunks[-1]) // 2))
-    judged(log, SCENE)
-    assert "warning: flipped.mcap: ends early" in (said := capsys.readouterr().err) and "is flipped" in said
+    used = judge(log, SCENE.accepted_inputs, Inputs(0.0, 0.0, 0.0, 350.0)).tally
+    assert not used.is_whole and "flipped.mcap: ends early" in used.text and "is flipped" in used.text and "bearing-sim recover" in used.text
     with pytest.raises(InputLogError, match="no /shaft_speed; .* ends early .* is flipped"):
         read_input_log(flipped(recording, tmp_path / "flipped.mcap", sum(chunks[0]) // 2))

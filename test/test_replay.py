@@ -291,7 +291,7 @@ def test_command_writes_inputs_and_outputs_and_one_json_object(tmp_path):
     ran = command(log, "--scene", "deng2017_table1", "--set", "bearing.outer_raceway.d_value=0.098mm", "-o", out, "--json")
     assert ran.exit_code == 0, ran.output
     report = json.loads(ran.stdout)
-    assert report["samples"] == 20 and report["inputs_refused"] == 0 and report["non_finite_steps"] == 0
+    assert report["samples"] == 20 and report["read"]["not_used_by_reason"] == {} and report["non_finite_steps"] == 0
     assert 0.0 < report["cage_slip"] < 1.0 and report["life_hours"] > 0 and report["sim_seconds"] == pytest.approx(2.0)
     counts, ends = defaultdict(int), {}
     with open(out, "rb") as stream:
@@ -317,7 +317,7 @@ def overloaded(folder, name):
 def test_an_overload_counts_by_default(tmp_path, name):
     result = command(overloaded(tmp_path, name), "--scene", "deng2017_table1", "--json")
     report = json.loads(result.stdout)
-    assert result.exit_code == 0 and report["inputs_refused"] == 0 and report["unknown_seconds"] == 0.0
+    assert result.exit_code == 0 and report["read"]["not_used_by_reason"] == {} and report["unknown_seconds"] == 0.0
     assert report["sim_seconds"] == pytest.approx(6.0) and report["life_and_damage_are"] == "as given"
 
 
@@ -452,7 +452,7 @@ def test_a_minute_of_the_measured_flight_replays_whole(tmp_path):
     ran = command(tmp_path / "minute.mcap", "--scene", "deng2017_table1", "-o", tmp_path / "out.mcap", "--json")
     assert ran.exit_code == 0, ran.output
     report = json.loads(ran.stdout)
-    assert (report["samples"], report["non_finite_steps"], report["failed_ticks"], report["inputs_refused"]) == (599, 0, 0, 0)
+    assert (report["samples"], report["non_finite_steps"], report["failed_ticks"], report["read"]["not_used_by_reason"]) == (599, 0, 0, {})
     assert report["sim_seconds"] == pytest.approx(float(lines[-1].split(",")[0]) - float(lines[1].split(",")[0]))
     last = dict(zip(lines[0].split(","), map(float, lines[-1].split(","))))
     with open(tmp_path / "out.mcap", "rb") as stream:

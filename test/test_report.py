@@ -124,7 +124,12 @@ def test_the_page_of_a_replay_tells_warnings_of_the_run(folder, tmp_path):
     page = page_of(folder / "replay.mcap", tmp_path / "r.html")
     assert "bearing-sim replay" in page.text and "--scene deng2017_table1" in page.text
     page = page_of(truncated(folder / "replay.mcap", tmp_path / "cut.mcap", 3 * (folder / "replay.mcap").stat().st_size // 4), tmp_path / "c.html")
-    assert "2 warnings" in page.text and "the recording ends early" in page.text and "without resistance" in page.text
+    assert (
+        "2 warnings" in page.text
+        and "the recording is used in part only" in page.text
+        and "ends early" in page.text
+        and "without resistance" in page.text
+    )
 
 
 def test_the_page_of_a_folder_shows_all_its_results_and_names_what_it_could_not_show(folder, tmp_path):

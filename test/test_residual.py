@@ -207,7 +207,8 @@ def test_a_ring_that_becomes_warmer_than_predicted_is_found_and_named_and_one_th
     told = told_of(one, temperatures(600.0, 1.0, 6.0, start=1800.0))
     assert [*told] == ["residual temperature of the outer ring"]
     at, event = told["residual temperature of the outer ring"]
-    assert at < 1800.0 + 300.0 and "the outer ring is warmer than predicted" in event.text and " K, usually " in event.text
+    assert at < 1800.0 + 300.0 and "the outer ring is warmer than predicted" in event.text and ", usually +0.1" in event.text
+    assert one.values["residual temperature of the outer ring, changed for [s of measurement]"] > 0.0
     assert one.values["residual temperature of the outer ring, verdict"] == "is warmer than predicted"
 
 

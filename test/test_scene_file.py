@@ -11,7 +11,7 @@ from bearing_sim import SceneError, load_scene
 from bearing_sim.inputs.csv_import import SpeedColumn
 from bearing_sim.inputs.log import source
 from bearing_sim.scene.loader import scene_from_yaml, scene_names, scene_to_yaml
-from bearing_sim.scene.quantity import Quantity, in_digits, to_si
+from bearing_sim.scene.quantity import _USUAL, Quantity, in_digits, to_si, unit_registry
 from bearing_sim.sweep.grid import read_axis
 
 
@@ -94,6 +94,23 @@ def test_a_rotational_speed_is_the_same_in_every_unit_through_every_door(door, t
 def test_a_rotational_speed_without_a_unit_is_refused_with_what_to_write(door, text):
     with pytest.raises(ValueError, match="has no unit; write .* rpm for turns a minute, .* Hz for turns a second, or .* rad/s"):
         door(text)
+
+
+@pytest.mark.parametrize("unit", _USUAL)
+def test_the_usual_units_are_those_of_pint_to_the_last_digit_and_are_shown_in_the_same_digits(unit):
+    registry, si = unit_registry(), unit or "dimensionless"
+    for usual in _USUAL[unit]:
+        for number in (1.0, 45000.0, 0.1, 7.3, 34.865, 1e-3):
+            written = registry.Quantity(number, registry.Unit("percent" if usual == "%" else usual))
+            assert to_si(f"{number!r} {usual}", unit) == written.to(registry.Unit(si)).magnitude
+            shown = registry.Quantity(number, registry.Unit(si)).to("percent" if usual == "%" else usual).magnitude
+            assert Quantity(unit, "", shown_in=usual).show(number) == f"{shown:.6g} {usual}"
+
+
+def test_degrees_celsius_are_those_of_pint():
+    for number in (-40.0, 0.0, 20.0, 80.3):
+        assert to_si(f"{number!r} degC", "K") == unit_registry().Quantity(number, "degC").to("K").magnitude
+    assert Quantity("K", "", shown_in="degC").show(393.15) == "120 degC"
 
 
 def test_at_rest_needs_no_unit():

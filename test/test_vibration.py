@@ -23,11 +23,12 @@ from bearing_sim.cli.main import main
 from bearing_sim.files.limits import VARIABLE, FileError
 from bearing_sim.recording.writer import McapFile
 from bearing_sim.studies.vibration import Condition, errors_in
-from bearing_sim.vibration.analysis import CLAIMED_SLIP, Geometry, analyse
+from bearing_sim.vibration.analysis import Geometry, analyse
 from bearing_sim.vibration.comb import families, orders_of, spectra
 from bearing_sim.vibration.order_tracking import constant_shaft, find_shaft, recorded_shaft
 from bearing_sim.vibration.phase import Track, follow, mean_rate, smoothed
 from bearing_sim.vibration.reading import read_vibration
+from bearing_sim.vibration.regularity import EXACT, _judged
 from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, repetition
 from bearing_sim.vibration.synthetic import Machine, _turns, record
 
@@ -76,7 +77,7 @@ def test_a_line_is_followed_through_a_ramp_of_the_recorded_speed():
 def test_noise_and_healthy_machines_have_no_line(seed):
     synthetic = made("", seed, interfering=2 * (seed % 2), shaft_lines=0.3 * (seed % 2))
     found = analyse(synthetic.vibration, Geometry(ROLLERS, math.nan if seed % 3 else SIZE), SPEED)
-    assert not found.found and found.reason.startswith("no line found") and math.isnan(found.cage_speed) and not found.claims_slip
+    assert not found.found and found.reason.startswith("no line of this bearing") and math.isnan(found.cage_speed) and not found.claims_slip
 
 
 @pytest.mark.parametrize("blocks", [2, 2.5, 15, 40])
@@ -122,13 +123,101 @@ def test_what_modulates_the_impacts_of_a_ring_or_roller_gives_sidebands_up_to_th
             assert np.min(np.abs(orders - line - shift * modulation)) < 1e-9, (name, shift)
 
 
-def test_slip_below_two_percent_is_claimed_only_with_measured_diameters(outer):
+def test_slip_that_another_size_of_the_rollers_explains_is_claimed_only_with_measured_diameters(outer):
     synthetic, found = outer
     assert found.claims_slip and abs(found.slip - (1.0 - synthetic.ratio / Geometry(ROLLERS, SIZE).ideal_ratio)) < 3.0 * found.slip_error
     near = Geometry(ROLLERS, 1.0 - 2.0 * synthetic.ratio / (1.0 - 0.01))  # a bearing whose drawing makes 1 % of slip of the same record
     unsure, sure = (analyse(synthetic.vibration, near._replace(is_measured=is_measured), SPEED) for is_measured in (False, True))
-    assert abs(unsure.slip) < CLAIMED_SLIP and not unsure.claims_slip and "measure the diameters" in unsure.reason
+    assert unsure.is_claim and abs(unsure.slip) < 0.02 and not unsure.claims_slip and "measure the diameters" in unsure.reason
     assert sure.claims_slip and abs(sure.slip - 0.01) < 3.0 * sure.slip_error
+    faster = analyse(synthetic.vibration, Geometry(ROLLERS, 1.0 - 2.0 * synthetic.ratio / 1.02), SPEED)  # a cage faster than its rollers
+    assert faster.slip < 0.0 and not faster.claims_slip and "no cage reaches" in faster.reason
+
+
+def exact_train(order, jitter=0.0, seconds=4.0, shaft_line=0.5, rounded=False, seed=1, second=None):
+    """Return a record with a train of impacts at a multiple of the shaft's frequency, and perhaps another one: nothing of it by the package."""
+    rng, time = np.random.default_rng(seed), np.arange(int(seconds * RATE)) / RATE
+    samples = 0.5 * rng.normal(size=len(time)) + shaft_line * np.cos(SPEED * time)
+    ringing = np.exp(-np.arange(200) / 30.0) * np.sin(2.0 * math.pi * 0.17 * np.arange(200))
+    for each in (order, second) if second else (order,):
+        period = 2.0 * math.pi / (SPEED * each)
+        at = (
+            (np.arange(1, int(seconds / period) - 2) + (jitter if each == order else 0.0) * rng.normal(size=int(seconds / period) - 3))
+            * period
+            * RATE
+        )
+        for place in np.floor(at) if rounded else at:
+            low, part = int(place), place - int(place)
+            samples[low : low + 200] += 2.0 * (1.0 - part) * ringing[: len(samples) - low]
+            samples[low + 1 : low + 201] += 2.0 * part * ringing[: len(samples) - low - 1]
+    return Vibration(samples, RATE)
+
+
+def named_frequency(text):
+    return float(re.search(r"([0-9.]+) Hz", text)[1])
+
+
+RATIO = Geometry(ROLLERS, SIZE).ideal_ratio
+MEASURED = Geometry(ROLLERS, SIZE, is_measured=True)
+
+
+@pytest.mark.parametrize("order", [ROLLERS * RATIO * 0.97, ROLLERS * (1.0 - RATIO * 0.97)])
+def test_an_exactly_periodic_train_where_a_ring_has_its_line_is_no_claim_and_its_frequency_is_named(order):
+    found = analyse(exact_train(order, rounded=True), MEASURED, SPEED)
+    assert not found.is_claim and not found.claims_slip and found.doubt == 1.0
+    if found.found:
+        assert found.shows == ("outer_ring" if order < 0.5 * ROLLERS else "inner_ring")
+        (train,) = (each for each in found.alternatives if "exactly periodic" in each)
+        assert named_frequency(train) == pytest.approx(order * SPEED / (2.0 * math.pi), rel=1e-3) and "cannot be told apart from" in found.reason
+    assert not analyse(exact_train(order), MEASURED, SPEED).is_claim
+
+
+@pytest.mark.parametrize("jitter", [0.003, 0.01])
+def test_a_train_that_scatters_as_that_of_rollers_does_is_claimed_with_its_slip(jitter):
+    found = analyse(exact_train(ROLLERS * RATIO * 0.97, jitter), MEASURED, SPEED)
+    assert found.is_claim and found.shows == "outer_ring" and found.alternatives == () and found.doubt < 0.02
+    assert found.claims_slip and abs(found.slip - 0.03) < 3.0 * found.slip_error < 0.006
+    assert 0.5 * min(jitter, 0.005) < found.jitter < 1.5 * jitter
+
+
+def test_slip_is_claimed_only_where_the_speed_of_the_shaft_is_measured():
+    record_ = exact_train(ROLLERS * RATIO * 0.94, 0.01, shaft_line=0.0)
+    given = analyse(record_, MEASURED, SPEED)
+    assert given.is_claim and given.shaft.source == "given" and not given.claims_slip and "--speed-channel" in given.reason
+    recorded = dataclasses.replace(record_, shaft_speed=np.full(len(record_.samples), SPEED))
+    assert analyse(recorded, MEASURED, tolerance=0.001).claims_slip
+
+
+@pytest.mark.parametrize("rollers", [ROLLERS, 14, 16])
+@pytest.mark.parametrize("part", [2, 3])
+def test_harmonics_of_a_slower_train_are_no_lines_of_a_bearing_however_much_it_scatters(part, rollers):
+    geometry = Geometry(rollers, SIZE, is_measured=True)
+    order = rollers * geometry.ideal_ratio * 0.95 / part
+    found = analyse(exact_train(order, 0.005), geometry, SPEED)
+    assert not found.found and named_frequency(found.reason) == pytest.approx(order * SPEED / (2.0 * math.pi), rel=3e-3), found.reason
+
+
+def test_a_train_outside_of_the_slip_that_is_possible_is_no_line_of_the_bearing_and_inside_a_wider_one_is():
+    record_ = exact_train(ROLLERS * RATIO * 0.75, 0.01)
+    found = analyse(record_, MEASURED, SPEED)
+    assert not found.found and "with no relation to this bearing" in found.reason
+    skids = analyse(record_, MEASURED._replace(largest_slip=0.4), SPEED)
+    assert skids.found and skids.shows == "outer_ring" and abs(skids.slip - 0.25) < 3.0 * skids.slip_error
+
+
+def test_a_ring_is_found_beside_a_train_of_something_else():
+    found = analyse(exact_train(ROLLERS * RATIO * 0.97, 0.008, second=0.8713), MEASURED, SPEED)
+    assert found.is_claim and found.shows == "outer_ring" and abs(found.slip - 0.03) < 3.0 * found.slip_error
+
+
+def test_the_scatter_of_impacts_follows_from_their_carrier_whatever_their_strengths():
+    rng, period, frequency, count = np.random.default_rng(2), 0.01, 2.0 * math.pi * 3000.0, 2000
+    for scatter in (0.0, 0.001, 0.002):
+        strengths = 1.0 + 0.8 * np.cos(np.arange(count) / 3.0)
+        amplitudes = strengths * np.exp(-1j * frequency * scatter * period * rng.normal(size=count))
+        noise = 0.3 * (rng.normal(size=count) + 1j * rng.normal(size=count))
+        found = _judged(amplitudes + noise, 0.18, frequency, period, False)
+        assert abs(found.jitter - scatter) < 0.0003 and found.is_irregular == (scatter > EXACT)
 
 
 def test_the_rate_of_a_phase_has_an_error_that_holds_for_noise_and_for_random_walks():
@@ -293,6 +382,21 @@ def test_every_format_gives_the_samples_their_rate_and_a_recorded_speed(suffix, 
     assert np.allclose(found.shaft_speed, SPEEDS * math.pi / 30.0, atol=1e-6)
     with pytest.raises(VibrationError, match="which channel|--channel"):
         read_vibration(path)
+
+
+def test_of_a_recording_with_a_missing_block_the_longest_part_is_read_and_the_rest_is_counted_and_leads_to_the_exit_code(tmp_path):
+    samples, path = exact_train(ROLLERS * RATIO * 0.97, 0.01, 2.0).samples, tmp_path / "gap.mcap"
+    with McapFile(path) as recording:
+        for number, block in enumerate(samples.reshape(-1, 1024)):
+            if number == 7:
+                continue
+            dimensions = [{"label": "rate", "size": int(RATE), "stride": 0}, {"label": "sequence", "size": number, "stride": 0}]
+            at = 1_700_000_000_000_000_000 + number * 40_000_000
+            recording.write("/acceleration", "std_msgs/msg/Float64MultiArray", at, {"layout": {"dim": dimensions, "data_offset": 0}, "data": block})
+    found = read_vibration(path)
+    assert np.array_equal(found.samples, samples[8 * 1024 :]) and found.tally.counts.startswith("42 of 49 messages used (7 x behind a gap")
+    result = called(path, "--rollers", ROLLERS, "--speed", "3000rpm", "--json")
+    assert result.exit_code == 3 and "42 of 49" in result.stderr, result.output
 
 
 def test_a_recorded_speed_has_as_many_values_as_the_vibration(tmp_path):

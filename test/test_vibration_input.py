@@ -16,7 +16,7 @@ from bearing_sim.vibration.synthetic import Machine, record
 from bearing_sim.vibration.worker import Outcome
 
 RATE, LENGTH, SPEED = 1000.0, 100, 300.0
-FOUND = Outcome(True, "outer_ring", "", 0.4, 0.001, 120.0, 0.3, SPEED)
+FOUND = Outcome(True, True, "outer_ring", "", 0.4, 0.001, 120.0, 0.3, SPEED)
 
 
 def scene(**vibration):
@@ -147,7 +147,7 @@ def test_the_process_finds_the_cage_in_a_window_and_says_that_noise_has_no_line(
         before = meter.values["vibration: windows"]
         assert meter.take(Block(samples, 25_600.0), 0.0, 314.0) == []
         until(lambda: found.extend(meter.readings(314.0)) or meter.values["vibration: windows"] > before)
-    assert meter.values["vibration: windows without a line"] == 1 and "no line found" in meter.remark, meter.values
+    assert meter.values["vibration: windows without a claim"] == 1 and "no line of this bearing" in meter.remark, meter.values
     ((speed, error),) = found
     assert abs(speed / (2.0 * math.pi * synthetic.shaft_frequency * synthetic.ratio) - 1.0) < 0.02 and 0.0 < error < 4.0
     meter.close()

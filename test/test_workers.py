@@ -125,7 +125,7 @@ def test_a_node_with_workers_is_one_node_with_the_topics_services_and_statuses_t
     fleet.drive_until(lambda: all(fleet.told(name) for name in NAMES), "diagnostics of every bearing")
     statuses = {status.name for report in fleet.client.received["diagnostics"] for status in report.status}
     assert {name.partition(":")[0] for name in statuses} == {f"bearing_node/{name}" for name in NAMES}
-    answer = fleet.clients["rear"].call(Trigger, "/rear/reset", Trigger.Request(), fleet.process)
+    answer = fleet.clients["rear"].call(Trigger, "/bearing_node/rear/reset", Trigger.Request(), fleet.process)
     assert answer.success and answer.message == "state and damage are reset"
 
 
@@ -165,7 +165,7 @@ def test_cleaning_up_ends_the_workers_and_configuring_again_starts_others_which_
     assert not is_alive(before["middle"])
     assert fleet.change("configure") and fleet.change("activate")
     fleet.all_come()
-    answer = fleet.clients["middle"].call(Trigger, "/middle/start_recording", Trigger.Request(), fleet.process)
+    answer = fleet.clients["middle"].call(Trigger, "/bearing_node/middle/start_recording", Trigger.Request(), fleet.process)
     assert answer.success
     fleet.all_come()
     assert fleet.process.end() == 0

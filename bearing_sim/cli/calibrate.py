@@ -110,8 +110,7 @@ def _measured(log, scene, names, joint, stamps, cage_joint):
         course = judged(recorded, scene)
     inputs = course.at(course.instants, math.nan)  # NaN: the scene's own temperature, which may be a fitted field
     gaps = [(begin * 1e-9, end * 1e-9) for begin, end in course.gaps]
-    refused = [("refused messages", ", ".join(f"{count} x {code}" for code, count in sorted(course.refused.items())))] if course.refused else []
-    lines = [("log", line) for line in summary_lines(recorded)] + refused
+    lines = [*(("log", line) for line in summary_lines(recorded)), ("used", course.tally.counts)]
     speeds = course.values[MEASURED].reshape(-1, 2)[:, 0]
     return Measured(course.instants * 1e-9, inputs, gaps, course.stamps[MEASURED] * 1e-9, speeds), lines, unknown_report(course)
 

@@ -10,8 +10,8 @@ from bearing_sim.cli.options import allow_outside_option, channel_sources, execu
 from bearing_sim.cli.outputs import WritingCommand
 from bearing_sim.cli.reporting import (
     FailedRun,
+    PartlyUsed,
     Points,
-    UnknownInputs,
     UsageError,
     announce_compilation,
     as_file_error,
@@ -50,13 +50,13 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
 
     A log that cannot be used is a row that says why; the others are computed. An interrupted run resumes with the same command; what was
     computed by an earlier one into the same table is not computed again. The exit code is 1 if some logs have no result, and 3 if
-    inputs of some were unknown for some of the time.
+    only a part of some was used.
 
     bearing-sim replay-fleet scada/ --mapping scada.yaml --scene high_speed_shaft.yaml -o fleet.parquet
     """
     from bearing_sim.fleet.bearings import bearings_of, read_bearings
     from bearing_sim.fleet.logs import NoLogs, find_logs
-    from bearing_sim.fleet.replay import OK, UNKNOWN, replay_fleet
+    from bearing_sim.fleet.replay import OK, PARTLY, replay_fleet
     from bearing_sim.inputs.csv_text import TableError
     from bearing_sim.scene.loader import SceneError
     from bearing_sim.sweep.table import require_same_study, study_digest, write_table
@@ -96,11 +96,13 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
         print_json(report | {"bearings": table.rows})
     else:
         _print(table, report)
-    without = [row for row in table.rows if row["status"] not in (OK, UNKNOWN)]
+    without = [row for row in table.rows if row["status"] not in (OK, PARTLY)]
     if without:
         raise FailedRun(f"{len(without)} of {len(table.rows)} bearings have no complete result; {files[1]} says why (columns status, reason)")
-    if report["unknown_inputs_bearings"]:
-        raise UnknownInputs(f"the inputs of {report['unknown_inputs_bearings']} bearings were unknown for some of the time; see {files[1]}")
+    if report["partly_used_bearings"]:
+        raise PartlyUsed(
+            f"of the logs of {report['partly_used_bearings']} bearings only a part was used; {files[1]} says why (columns status, reason)"
+        )
 
 
 def _reading(mapping_name, sources, constants, joint, stamps):

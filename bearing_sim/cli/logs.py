@@ -17,6 +17,7 @@ from bearing_sim.cli.reporting import (
     print_json,
     print_table,
     progress_bar,
+    tell_use,
 )
 
 
@@ -46,8 +47,8 @@ def import_csv(
     MAPPING is a YAML file, or the name of a bundled one, that says which columns hold time, speed and load, in which units.
     Comment lines, delimiter, decimal mark and encoding are found in the file where MAPPING does not give them, and printed.
     Gaps, repeated or decreasing times, empty cells and cells that are not numbers are counted and reported by line number; the rows or
-    messages concerned are left out, and nothing is filled in. With --guess a mapping is proposed, printed, and written to -o; nothing is
-    imported, and what may mean two things is asked for (exit code 1).
+    messages concerned are left out, nothing is filled in, and the exit code is 3. With --guess a mapping is proposed, printed, and written
+    to -o; nothing is imported, and what may mean two things is asked for (exit code 1).
     """
     from bearing_sim.inputs.csv_import import TableError, load_mapping, read_table, write_log
     from bearing_sim.scene.loader import SceneError
@@ -77,6 +78,7 @@ def import_csv(
         out.check()  # again, now that mapping and table have been read
         with progress_bar(f"importing {data.name}", sum(map(len, table.stamps.values()))) as progress:
             write_log(table, text, data, out.path, progress, replace=out.force)
+    tell_use(table.tally, data)
     if as_json:
         print_json(_report(table, mapping, out))
     else:
@@ -167,11 +169,9 @@ def _report(table, mapping, out) -> dict:
     return {
         "mapping": mapping.name,
         "out": str(out),
-        "rows": table.rows,
+        "read": table.tally.report(),
         "rows_left_out": table.left_out,
         "messages": {channel: len(stamps) for channel, stamps in table.stamps.items()},
-        "refused": table.refused.total(),
-        "refused_by_reason": dict(table.refused),
         "refused_lines": {kind: [line for line, _ in examples] for kind, examples in table.examples.items()},
         "gaps": len(table.gaps),
         "gap_lines": [line for _, line, _ in table.gaps[:5]],
@@ -186,15 +186,13 @@ def _report(table, mapping, out) -> dict:
 
 def _print(table, mapping, data, out) -> None:
     start, end = _span(table)
-    rows = [("rows", f"{table.rows}" + (f", and {table.left_out} that do not concern this mapping" if mapping.only else ""))]
+    rows = [("used", table.tally.counts + (f"; {table.left_out} more do not concern this mapping" if mapping.only else ""))]
     rows += [("found in the file", note) for note in table.notes]
     rows += [(f"{channel} messages", str(len(stamps))) for channel, stamps in table.stamps.items()]
     for kind, examples in table.examples.items():
-        count = table.refused[kind]
+        count = table.tally.refused[kind]
         more = f"; and {count - len(examples)} more" if count > len(examples) else ""
         rows.append((f"refused: {kind}", f"{count}: " + "; ".join(f"line {line}: {text}" for line, text in examples) + more))
-    if not table.examples:
-        rows.append(("refused", "none"))
     gaps = [f"{channel}, line {line}: {seconds:.6g} s" for channel, line, seconds in table.gaps[:5]]
     more = [f"and {len(table.gaps) - 5} more"] if len(table.gaps) > 5 else []
     rows.append((f"gaps above {table.longest_step:.6g} s", f"{len(table.gaps)}" + (": " + "; ".join(gaps + more) if gaps else "")))

@@ -2,14 +2,16 @@
 """The command line ``bearing-sim``: its commands and groups.  A command's module is imported only when the command is called."""
 
 import importlib
+import warnings
 from collections.abc import Mapping
 from typing import NamedTuple
 
 import click
 
-from bearing_sim.cli.reporting import ARGUMENTS, UsageError
+from bearing_sim.cli.reporting import ARGUMENTS, EXIT_CODES, UsageError, require_whole
 from bearing_sim.extras import what_is_missing
 from bearing_sim.files.limits import FileError
+from bearing_sim.files.tally import PartlyUsedWarning
 
 
 class Entry(NamedTuple):
@@ -100,13 +102,20 @@ class LazyGroup(click.Group):
         return context
 
     def invoke(self, context):
-        """Run a command; a package that is not installed is named with the extra that installs it, a file that cannot be read with the reason."""
+        """Run a command, and end with its own exit code if it used only a part of what was there.
+
+        A package that is not installed is named with the extra that installs it, a file that cannot be read with the reason.
+        """
         try:
-            return super().invoke(context)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", PartlyUsedWarning)  # the exit code and the last message say it
+                result = super().invoke(context)
         except ModuleNotFoundError as error:
             raise UsageError(what_is_missing(error)) from error
         except FileError as error:
             raise UsageError(str(error)) from error
+        require_whole(context)
+        return result
 
     def list_commands(self, context):
         """Return the names in order."""
@@ -125,7 +134,10 @@ class LazyGroup(click.Group):
             formatter.write_dl([(name, entry.help) for name, entry in self._entries.items()])
 
 
-@click.group(cls=LazyGroup, entries=_COMMANDS, heading="Commands", context_settings={"help_option_names": ["-h", "--help"]})
+_CODES = "Exit codes: " + "; ".join(f"{code}: {meaning}" for code, meaning in EXIT_CODES.items()) + "."
+
+
+@click.group(cls=LazyGroup, entries=_COMMANDS, heading="Commands", epilog=_CODES, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="bearing_sim")
 def main():
     """Cage slip and rating life of high-speed roller bearings with lobed raceways."""

@@ -8,7 +8,7 @@ import click
 
 from bearing_sim.cli.options import picture_option
 from bearing_sim.cli.outputs import WritingCommand, default_output
-from bearing_sim.cli.reporting import Points, UsageError, as_file_error, as_usage_error, progress_bar
+from bearing_sim.cli.reporting import Points, UsageError, as_file_error, as_usage_error, progress_bar, tell_use
 
 _TABLES = (".parquet", ".csv")
 
@@ -67,11 +67,10 @@ def _plot_recordings(paths, picture, over, panels, band) -> None:
     courses = []
     for path in paths:
         with as_usage_error(RecordingError):
-            recording = Recording(path)
+            recording = Recording(path, allow_partial=True)
             with progress_bar(f"reading {path.name}", max(recording.last_time, 1e-9)) as progress:
                 course = read_course(recording, path.name, panels or DEFAULT_PANELS, progress)
-        if recording.unfinished:
-            click.echo(f"{path}: {recording.unfinished}", err=True)
+        tell_use(recording.tally, path)
         if band:
             course.band = SlipBand(*_band_of(course, band))
         courses.append(course)

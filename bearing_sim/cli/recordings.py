@@ -10,7 +10,7 @@ import click
 
 from bearing_sim.cli.options import json_option
 from bearing_sim.cli.outputs import OutputFile, WritingCommand
-from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_rows, print_table, progress_bar
+from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_rows, print_table, progress_bar, tell_use
 from bearing_sim.files.outputs import Output
 
 _OWN = "bearing_sim"
@@ -81,6 +81,8 @@ def _file_report(file) -> dict:
         "out_of_order": file.out_of_order,
         "attachments": file.attachments,
         "metadata": list(file.metadata),
+        "notes": file.notes,
+        "undecodable": file.undecodable,
         "topics": {topic: {"type": kind, "messages": file.messages[topic]} for topic, kind in sorted(file.types.items())},
     }
 
@@ -113,7 +115,9 @@ def _print_info(recording, files, own) -> None:
     topics = sorted({topic for file in files for topic in file.types})
     for topic in topics:
         kind = next(file.types[topic] for file in files if topic in file.types)
-        rows.append((topic, f"{sum(file.messages[topic] for file in files)} x {kind}"))
+        why = next((f"; cannot be decoded: {file.undecodable[topic]}" for file in files if topic in file.undecodable), "")
+        rows.append((topic, f"{sum(file.messages[topic] for file in files)} x {kind}{why}"))
+    rows += [("note", note) for file in files for note in file.notes]
     print_table(str(recording), rows)
 
 
@@ -289,14 +293,13 @@ def export(kind: str, recording: Path, out: Output, columns, no_rollers, every, 
     infinity = float("inf")
     excerpt = Excerpt(tuple(columns), not no_rollers, every, -infinity if first is None else first, infinity if last is None else last)
     with as_usage_error(RecordingError, TableError), as_file_error():
-        source = Recording(recording)
+        source = Recording(recording, allow_partial=True)
         with progress_bar(f"writing {out.path.name}", source.duration) as progress, out.draft() as draft:
             rows = write(source, draft, excerpt, progress)
         size = out.path.stat().st_size
-    if source.unfinished:
-        click.echo(f"{recording}: {source.unfinished}", err=True)
+    tell_use(source.tally, recording)
     if as_json:
-        print_json({"recording": str(recording), "out": str(out), "rows": rows, "size": size})
+        print_json({"recording": str(recording), "out": str(out), "rows": rows, "size": size, "read": source.tally.report()})
     else:
         click.echo(f"{out}: {rows} samples, {size / 1e6:.4g} MB")
 

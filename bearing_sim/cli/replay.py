@@ -14,7 +14,6 @@ from bearing_sim.cli.options import allow_outside_option, channel_sources, json_
 from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
 from bearing_sim.cli.reporting import (
     FailedRun,
-    UnknownInputs,
     UsageError,
     announce_compilation,
     as_file_error,
@@ -24,6 +23,8 @@ from bearing_sim.cli.reporting import (
     print_table,
     progress_bar,
     suggest_level,
+    tell_use,
+    unknown_report,
     warn_of_limits,
     warn_of_scene,
     warnings_report,
@@ -74,8 +75,8 @@ def replay(
     shaft speed (JointState or Float64) and radial load (WrenchStamped, or Float64 along +y), or such numbers in messages of any other
     type whose definition is in the recording. ROS is not needed. What was not measured may be a constant, as with --load 800N. Inputs
     are interpolated linearly between stamps; bad messages are refused, reported and counted as in a live run, but silence and rate are
-    judged by the log's own rate. If inputs are unknown for some of the time, because their messages were refused, the result says what
-    that means for life and damage, and the exit code is 3.
+    judged by the log's own rate. If only a part of the messages was used, the result says what that means for life and damage, the last
+    message what may help, and the exit code is 3.
     """
     if from_recording == bool(scene_name):
         raise UsageError("give either --scene, or --from-recording for a recording made by bearing-sim")
@@ -163,8 +164,7 @@ def replay(
     warn_of_limits(scene, warnings, verbose)
     if result.given_up:
         raise FailedRun(result.given_up)
-    if course.unknown_seconds:
-        raise UnknownInputs(course.unknown_event.text)
+    tell_use(course.tally, recorded.path, *([course.unknown_event.text] if course.unknown_seconds else []))
 
 
 def _require_one_log(log: Path, scene_name: str) -> None:
@@ -223,10 +223,8 @@ def _report(result, course, recorded, scene, out) -> dict:
         **band_numbers(result.band_statistics()),
         "turning_seconds": turning,
         "seconds_below_minimum_load": below,
-        "log_seconds": result.log_seconds,
-        "unknown_seconds": course.unknown_seconds,
+        **unknown_report(course),
         "life_and_damage_are": "at most, at least" if course.verdict else "as given",
-        "verdict": course.verdict,
         "sim_seconds": result.sim_seconds,
         "gaps": len(course.gaps),
         "gap_seconds": result.gap_seconds,
@@ -238,13 +236,9 @@ def _report(result, course, recorded, scene, out) -> dict:
         "non_finite_steps": result.non_finite_steps,
         "failed_ticks": result.failed_ticks,
         "samples": result.samples,
-        "inputs": course.messages,
-        "inputs_refused": course.refused.total(),
-        "inputs_refused_by_reason": dict(course.refused),
         "inputs_anomalies": {channel: anomalies(series)._asdict() for channel, series in recorded.series.items()},
         "inputs_stamped_by": {channel: series.stamped_by for channel, series in recorded.series.items()},
         "events": dict(result.events),
-        "log_unfinished": recorded.unfinished,
         "given_up": result.given_up,
     }
 
@@ -258,11 +252,11 @@ def _print(result, course, recorded, scene, out, keeper) -> None:
     spread = f"mean {slip['mean']}, median {slip['median']}, 95 % below {slip['p95']}, 99 % below {slip['p99']}, largest {slip['maximum']}"
     rejected = f"{result.rejected_steps} rejected, {result.non_finite_steps} of them not finite"
     symbol = scene.life.symbols[0 if scene.life.is_basic else 1]
-    refused = ", ".join(f"{count} x {code}" for code, count in sorted(course.refused.items())) or "none"
     rows = [("log", line) for line in summary_lines(recorded)]
-    if recorded.unfinished:
-        rows.append(("log ends early", recorded.unfinished))
     rows += [
+        ("used", course.tally.counts),
+        *(("not read", text) for text in course.tally.unread),
+        *(("note", text) for text in course.tally.notes),
         ("level", scene.level),
         (
             "cage slip while turning",
@@ -274,13 +268,12 @@ def _print(result, course, recorded, scene, out, keeper) -> None:
             f"least rating life at an instant {hours(result.least_rating_life)}",
         ),
         *band_rows(result.band_statistics(), scene),
-        ("life used", f"{'at least ' * bool(course.verdict)}{100 * result.damage:.4g} %"),
+        ("life used", f"{'at least ' * bool(course.verdict or course.dropped_seconds)}{100 * result.damage:.4g} %"),
         (
             "below the minimum load",
             _below(*result.seconds_below(lambda speeds: minimum_load(scene, speeds)[0]), minimum_load(scene)[1], scene.thresholds.slip_from_speed),
         ),
         ("inputs unknown", course.unknown_event.text if course.unknown_seconds else "0 s"),
-        ("refused inputs", f"{refused} (of {course.messages})"),
         ("gaps", f"{len(course.gaps)}, {result.gap_seconds:.4g} s not simulated"),
         ("simulated", f"{result.sim_seconds:.6g} s of {result.log_seconds:.6g} s, {result.samples} outputs"),
         ("computed in", f"{result.wall_seconds:.3g} s ({result.cpu_seconds:.3g} s of processor time), {result.real_time_factor:.3g} times real time"),
@@ -322,7 +315,7 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
     from bearing_sim.stored_state.keeper import RECORD
 
     with as_usage_error(RecordingError, ValueError), as_file_error(), ExitStack() as stack:
-        recording = Recording(path)
+        recording = Recording(path, allow_partial=True)
         sink = _Nowhere()
         if out is not None:
             out.check()  # again, now that the recording has been read
@@ -333,14 +326,13 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
         response = response_with_progress(recording.scene) if reproduction.first_bands(recording) is not None else None
         progress = stack.enter_context(progress_bar(f"reproducing {path.name}", recording.duration))
         result = reproduction.reproduce(recording, sink, progress, response)
+    tell_use(recording.tally, path)
     was = {name: recording.metadata.get(name, "") for name in ("package_version", "git_hash")}
     now = {"package_version": package_version(), "git_hash": git_hash()}
     if as_json:
         report = {"recording": str(path), "out": out and str(out), "scene": recording.scene.name, "level": recording.scene.level}
         bands = {name: vars(each) for name, each in result.bands.items()}
-        print_json(
-            {**report, **vars(result), "bands": bands, "recorded_with": was, "repeated_with": now, "recording_unfinished": recording.unfinished}
-        )
+        print_json({**report, **vars(result), "bands": bands, "recorded_with": was, "repeated_with": now, "read": recording.tally.report()})
         return
     rows = [
         ("level", recording.scene.level),
@@ -357,8 +349,7 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
         *((f"band of {name}", _differing(each)) for name, each in result.bands.items()),
         ("recording", f"{out}; bearing-sim compare {path} {out} shows the differences" if out else "none"),
     ]
-    if recording.unfinished:
-        rows.insert(0, ("recording ends early", recording.unfinished))
+    rows[:0] = [("used", recording.tally.counts), *(("not read", text) for text in recording.tally.unread)]
     print_table(f"{path.name} reproduced on {recording.scene.name}", rows)
 
 

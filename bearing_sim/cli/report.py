@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.outputs import OutputFile, WritingCommand, default_output
-from bearing_sim.cli.reporting import UsageError, announce_compilation, as_file_error, as_usage_error, command_line, progress_bar
+from bearing_sim.cli.reporting import UsageError, announce_compilation, as_file_error, as_usage_error, command_line, progress_bar, tell_use
 from bearing_sim.files.limits import FileError
 from bearing_sim.scene.errors import did_you_mean
 
@@ -62,7 +62,7 @@ def report(source, out, names, tests, recordings, quick):
     result = Path(source)
     out = out or default_output(result / "report.html" if result.is_dir() else result.with_suffix(".html"))
     with as_usage_error(NoResults), as_file_error():
-        page = page_of(result)
+        page = page_of(result, tell_use)
         out.write_text(page)
     click.echo(f"{out}: {len(page.encode()) / 1e6:.1f} MB")
 

@@ -16,7 +16,19 @@ from pathlib import Path
 
 import click
 
+from bearing_sim.files.limits import printable
 from bearing_sim.files.outputs import Output
+
+EXIT_CODES = {
+    0: "done, and all that was there was used",
+    1: "it failed: a run, a check or a disk; `info` found damage, `compare` a difference; or something has to be decided (`import-csv --guess`)",
+    2: "an argument or an input cannot be used; nothing is written",
+    3: "done, but only a part of what was there was used: the last message says how much, why, and what may help",
+    4: "done, but the run has not settled",
+    129: "the terminal was closed (SIGHUP); recordings are complete as far as they go, other files are not written",
+    143: "ended by SIGTERM, likewise",
+}
+"""What the exit codes of commands mean, for `bearing-sim --help` and the reference."""
 
 
 class Ending(click.ClickException):
@@ -39,8 +51,8 @@ class FailedRun(Ending):
     exit_code = 1
 
 
-class UnknownInputs(Ending):
-    """A run whose inputs were unknown for some of the time, because they were refused: one message after the result, exit code 3."""
+class PartlyUsed(Ending):
+    """A command that used only a part of what was there: one message after the result, exit code 3.  `tell_use` leads to it."""
 
     exit_code = 3
 
@@ -49,6 +61,31 @@ class Unsettled(Ending):
     """A run that was to go on until it settles and has not: one message after the result, exit code 4."""
 
     exit_code = 4
+
+
+_PARTS = "bearing_sim.parts"  # key of what `tell_use` noted in the meta data of click's contexts
+
+
+def tell_use(tally, source: str | Path, *more: str) -> None:
+    """Let the running command end with `PartlyUsed` if it used only a part of what was there; nothing happens otherwise.
+
+    Every command that reads calls this once it has read, and goes on to its result.
+
+    Parameters
+    ----------
+    tally : a `bearing_sim.files.tally.Tally`.
+    source : what was read.
+    more : further texts for the message.
+    """
+    if not tally.is_whole:
+        text = "; ".join([f"{printable(source)}: {tally.text}", *more])
+        click.get_current_context().meta.setdefault(_PARTS, []).append(text)
+
+
+def require_whole(context: click.Context) -> None:
+    """Raise `PartlyUsed` if `tell_use` has noted parts in a context, which is at its end."""
+    if parts := context.meta.get(_PARTS):
+        raise PartlyUsed("\n".join(["only a part of what was there was used:", *(f"  {part}" for part in parts)] if len(parts) > 1 else parts))
 
 
 @contextmanager
@@ -108,24 +145,21 @@ def exit_on_sigterm() -> Iterator[None]:
 def judged(log, scene, longest_gap: float | None = None):
     """Return the profile of a log for a scene; every result depends on it.
 
-    Warnings on stderr say that only a part of the log could be read, and for how long inputs are unknown.  ``longest_gap`` as of
-    `bearing_sim.inputs.profile.judge`.
+    The command ends with `PartlyUsed` if only a part of the log can be used.  ``longest_gap`` as of `bearing_sim.inputs.profile.judge`.
     """
     from bearing_sim.inputs.profile import judge
     from bearing_sim.simulation import Inputs
 
     held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
     profile = judge(log, scene.accepted_inputs, held, longest_gap, scene.heat.law)
-    if log.unfinished:
-        click.echo(f"warning: {log.unfinished}", err=True)
-    if profile.unknown_seconds:
-        click.echo(f"warning: {profile.unknown_event.text}", err=True)
+    tell_use(profile.tally, log.path, *([profile.unknown_event.text] if profile.unknown_seconds else []))
     return profile
 
 
 def unknown_report(profile) -> dict:
-    """Return for how long the inputs of a log are unknown, and what that means for results (``verdict``; empty where all are known), for JSON."""
-    return {"log_seconds": profile.log_seconds, "unknown_seconds": profile.unknown_seconds, "verdict": profile.verdict}
+    """Return what of a log was used, for how long its inputs are unknown, and what that means for results (``verdict``), for JSON."""
+    seconds = {"log_seconds": profile.log_seconds, "unknown_seconds": profile.unknown_seconds, "dropped_seconds": profile.dropped_seconds}
+    return {"read": profile.tally.report(), **seconds, "verdict": profile.verdict}
 
 
 def quantity_of(option: str, text: str, unit: str) -> float:

@@ -7,7 +7,7 @@ import click
 
 from bearing_sim.cli.options import allow_outside_option, json_option, set_option
 from bearing_sim.cli.outputs import OutputFile, WritingCommand
-from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_table
+from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_table, tell_use
 from bearing_sim.files.outputs import remember_input
 
 _TABLES = (".csv", ".parquet")
@@ -172,7 +172,9 @@ def merge(name, recordings, as_json):
     path, filled = _path_of(name), {}
     for each in recordings:
         with as_usage_error(RecordingError), as_file_error():
-            filled[str(each)] = fill(path, Recording(each))
+            recording = Recording(each, allow_partial=True)
+            filled[str(each)] = fill(path, recording)
+            tell_use(recording.tally, each)
     state = _read(path)
     if as_json:
         print_json({"state": str(path), "damage": state.totals.damage, "merged": {run: each._asdict() for run, each in filled.items()}})

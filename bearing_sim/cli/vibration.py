@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 import click
+import numpy as np
 
 from bearing_sim.cli.options import allow_outside_option, csv_option, json_option, picture_option
 from bearing_sim.cli.outputs import WritingCommand
@@ -17,10 +18,12 @@ from bearing_sim.cli.reporting import (
     print_table,
     progress_bar,
     quantity_of,
+    tell_use,
     write_csv,
 )
 
 _LARGEST_PARTS = 100_000
+_MARGIN = 1.5  # times the largest slip of the model and of draws of its uncertain fields (assumption: draws are few)
 _SHOWN = {
     "outer_ring": "the outer ring",
     "inner_ring": "the inner ring",
@@ -41,6 +44,12 @@ _SOURCES = {"lines": "by its own lines", "recorded": "as recorded", "given": "as
 @click.option("--measured-geometry", is_flag=True, help="The diameters of --bearing or --scene were measured on this bearing.")
 @click.option("--speed", metavar="SPEED", help="Shaft speed, about, such as 600rpm; it is taken from the shaft's own lines.")
 @click.option("--tolerance", default="2%", show_default=True, metavar="FRACTION", help="Within which the speed is known.")
+@click.option(
+    "--largest-slip",
+    metavar="FRACTION",
+    help="Of the cage that is possible: no other lines are looked for [default: with --scene what level steady finds, with its uncertain fields;"
+    " otherwise 10%].",
+)
 @click.option("--no-shaft-lines", is_flag=True, help="Take the speed as it is given, without looking for the shaft's own lines.")
 @click.option("--channel", metavar="NAME", help="The vibration in FILE: a column, variable, data set, matrix column as NAME[k], or /topic.field.")
 @click.option("--rate", metavar="RATE", help="Sampling rate, such as 50kHz [default: as FILE says].")
@@ -64,6 +73,7 @@ def vibration(
     measured_geometry,
     speed,
     tolerance,
+    largest_slip,
     no_shaft_lines,
     channel,
     rate,
@@ -81,8 +91,10 @@ def vibration(
     """Find the cage speed in the vibration that FILE holds, and which ring or roller shows; or that there is no line.
 
     FILE is CSV or other text, Parquet, MAT, NPZ, NPY, WAV, HDF5, MCAP or another bag.  The number of rollers must be known: by --bearing,
-    --scene or --rollers.  The answer is the ratio of cage to shaft speed with its standard error.  Slip against the drawing is claimed only
-    where it exceeds 2 %, or where the diameters were measured, because a roller of another size of the same designation moves it by 3 %.
+    --scene or --rollers.  The answer is the ratio of cage to shaft speed with its standard error.  Lines that cannot be told apart from those of
+    something else, such as an exactly periodic train of a gear or of another machine, are no claim.  Slip against the drawing is claimed only
+    where the lines are, the shaft's speed is measured, and it exceeds 3 % or the diameters were measured, because a roller of another size of the
+    same designation moves it by 3 %.
     """
     from bearing_sim.files.limits import VIBRATION_ANALYSED
     from bearing_sim.scene.loader import SceneError
@@ -100,9 +112,12 @@ def vibration(
     with as_usage_error(SceneError, VibrationError), as_file_error():
         geometry = _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, measured_geometry)
         record = read_vibration(data, channel, hertz, time_channel, speed_channel, speed_unit)
+        if record.tally is not None:
+            tell_use(record.tally, data)
         record = _cut(record, begin, end)
         VIBRATION_ANALYSED.check(len(record.samples), f"{record.name}, which --from and --to cut")
         parts = _parts(record, every)
+        geometry = geometry._replace(largest_slip=_largest_slip(largest_slip, scene_name, shaft_speed, record))
         found = analyse(record, geometry, shaft_speed, within, _band(band, record.rate), not no_shaft_lines, parts)
     rows = [_row(part) for part in found.parts]
     with as_file_error():
@@ -151,6 +166,34 @@ def _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, mea
 
     chosen = load_bearing(bearing) if bearing is not None else load_scene(scene_name).bearing
     return Geometry(chosen.roller.count, chosen.roller.diameter / chosen.pitch_diameter, measured, chosen.designation or chosen.name)
+
+
+def _largest_slip(text, scene_name, shaft_speed, record) -> float:
+    """Return the largest possible slip: as given, by the model of a scene, or the usual assumption."""
+    from bearing_sim.vibration.analysis import LARGEST_SLIP
+
+    if text is not None:
+        largest = quantity_of("--largest-slip", text, "")
+        if not 0.0 <= largest <= 0.95:
+            raise UsageError(f"--largest-slip {text}: expected 0 to 95 %, such as 10%")
+        return largest
+    if scene_name is None:
+        return LARGEST_SLIP
+    from bearing_sim.cli.reporting import announce_compilation
+    from bearing_sim.scene.loader import load_scene
+    from bearing_sim.simulation import IntegrationError, scene_inputs
+    from bearing_sim.studies.uncertainty import UncertaintyError, largest_slip
+
+    scene = load_scene(scene_name)
+    speed = shaft_speed if shaft_speed is not None else scene.operating.shaft_speed
+    if record.shaft_speed is not None:
+        speed = float(np.mean(record.shaft_speed))
+    try:
+        announce_compilation(scene.at_level("steady"))
+        found = largest_slip(scene, scene_inputs(scene)._replace(shaft_speed=speed))
+    except (IntegrationError, UncertaintyError) as error:
+        raise UsageError(f"--scene {scene_name}: {error}; give --largest-slip, such as --largest-slip 10%") from None
+    return min(max(_MARGIN * found, LARGEST_SLIP), 0.95)
 
 
 def _cut(record, begin, end):
@@ -203,7 +246,13 @@ def _report(found, record, geometry) -> dict:
         "found": found.found,
         "shows": found.shows,
         "reason": found.reason,
+        "is_claim": found.is_claim,
+        "cannot_be_told_apart_from": list(found.alternatives),
         "false_alarm_probability": found.false_alarm,
+        "doubt": found.doubt,
+        "jitter_percent": 100.0 * found.jitter if math.isfinite(found.jitter) else None,
+        "largest_slip_percent": 100.0 * geometry.largest_slip,
+        **({"read": record.tally.report()} if record.tally is not None else {}),
         "rate_hz": record.rate,
         "duration_s": record.duration,
         "rollers": geometry.rollers,
@@ -230,11 +279,13 @@ def _print(name, record, geometry, found) -> None:
     shaft = found.shaft
     turns = f"{60.0 * shaft.frequency:.6g} rpm +- {60.0 * shaft.standard_error:.2g}, {_SOURCES[shaft.source]}"
     rows = [("record", f"{record.duration:.4g} s at {record.rate:g} Hz: {record.name}"), ("bearing", geometry.name), ("shaft", turns)]
+    rows.append(("slip looked for", f"up to {100.0 * geometry.largest_slip:.3g} %"))
     if not found.found:
-        print_table(f"{name}: no line found", [*rows, ("result", found.reason)])
+        print_table(f"{name}: no line of this bearing", [*rows, ("result", found.reason.removeprefix("no line of this bearing: "))])
         return
     rows += [
-        ("shows", _SHOWN[found.shows]),
+        ("shows" if found.is_claim else "may show", _SHOWN[found.shows]),
+        *(("cannot be told from", text) for text in found.alternatives),
         ("line", f"{found.line:.5f} of the shaft's frequency" + (f" +- {found.line_error:.5f}" if math.isfinite(found.line_error) else "")),
         ("cage over shaft", f"{found.ratio:.6f} +- {found.ratio_error:.6f}"),
         ("cage", f"{found.cage_speed * 30 / math.pi:.6g} rpm +- {found.cage_speed_error * 30 / math.pi:.2g}"),
@@ -244,7 +295,11 @@ def _print(name, record, geometry, found) -> None:
     rows.append(("slip", f"{100.0 * found.slip:.2f} % +- {100.0 * found.slip_error:.2f}" if found.claims_slip else found.reason))
     rows.append(("band", f"{found.band.low:g} to {found.band.high:g} Hz"))
     rows.append(("lines", ", ".join(f"{order:.3f}" for order in found.lines)))
+    if math.isfinite(found.jitter):
+        rows.append(("impacts", f"scatter by {100.0 * found.jitter:.2g} % of their period" + (" or more" if found.is_claim else "")))
     rows.append(("false alarm", f"in one of {1.0 / found.false_alarm:.2g} records of noise, at most"))
+    if found.is_claim:
+        rows.append(("something else", f"with a probability of {100.0 * found.doubt:.2g} %, at most"))
     print_table(name, rows)
     if len(found.parts) <= 60:
         columns = ("from, s", "to, s", "shaft, rpm", "cage, rpm", "+-", "cage over shaft", "+-")

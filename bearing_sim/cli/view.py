@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 import click
 
 from bearing_sim.cli.outputs import OutputFile, WritingCommand, default_output
-from bearing_sim.cli.reporting import FailedRun, UsageError, as_file_error, as_usage_error, progress_bar
+from bearing_sim.cli.reporting import FailedRun, UsageError, as_file_error, as_usage_error, progress_bar, tell_use
 from bearing_sim.files.outputs import Output
 
 
@@ -125,15 +125,14 @@ def _write(recording: Path, out: Path, seconds: float | None, lines: dict, const
     if lines or constants:
         return _write_bag(recording, out, seconds, lines, constants, "topics are given")
     try:
-        source = Recording(recording)
+        source = Recording(recording, allow_partial=True)
     except RecordingError as error:
         if not recording.exists():
             raise
         return _write_bag(recording, out, seconds, {}, {}, str(error))
     _require_within(seconds, source.first_time, source.last_time)
     _convert(source, out)
-    if source.unfinished:
-        click.echo(f"{recording}: {source.unfinished}", err=True)
+    tell_use(source.tally, recording)
     return source.first_time, source.last_time
 
 
@@ -141,6 +140,7 @@ def _write_bag(recording: Path, out: Path, seconds: float | None, lines: dict, c
     from bearing_sim.view.bag import read_bag_series, write_bag_view
 
     found = read_bag_series(recording, lines, constants)
+    tell_use(found.tally, recording)
     _require_within(seconds, 0.0, found.duration)
     click.echo(f"shown as a bag from another source ({why}); not shown:", err=True)
     for line in found.left_out[:_MOST_LEFT_OUT]:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.special import ndtri
-from scipy.stats import qmc
 
 from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import (
@@ -198,6 +197,8 @@ def cells(conditions: np.ndarray, domain: Domain) -> np.ndarray:
 
 def prior_draws(fields: int, count: int = _DRAWS, seed: int = 1) -> np.ndarray:
     """Return scores of fields of which nothing is measured, evenly spread, shape (count, fields)."""
+    from scipy.stats import qmc  # half a second to import, which no run without bands spends
+
     uniform = qmc.Sobol(d=max(fields, 1), scramble=True, seed=np.random.default_rng(seed)).random_base2(count.bit_length() - 1)
     return ndtri(np.clip(uniform, 1e-6, 1.0 - 1e-6))[:, :fields]
 

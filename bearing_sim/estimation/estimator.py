@@ -487,12 +487,12 @@ class Estimator:
         """Return the events that hold, stamped ``now`` [s]: a change with its likeliest cause, and measurements that the ranges do not explain."""
         events = []
         for event in self._residual.events(now):
-            named = f"; {self._explained_change()}" if self.change is not None and self.change.causes else ""
+            named = f"; likeliest cause: {self.change.causes[0].group}" if self.change is not None and self.change.causes else ""
             events.append(event._replace(kind="calibration.change", reason=event.reason + named))
         if len(self._wild) == _CONTRADICTION and sum(self._wild) > _CONTRADICTED * _CONTRADICTION:
             reason = (
-                f"{sum(self._wild)} of {_CONTRADICTION} measurements cannot be explained by any values in the ranges of the scene; check the "
-                "sensor's scale and the scene, or give wider ranges"
+                f"more than {_CONTRADICTED:.0%} of the last {_CONTRADICTION} measurements cannot be explained by any values in the ranges of the "
+                "scene; check the sensor's scale and the scene, or give wider ranges"
             )
             events.append(Event(now, Level.WARN, "calibration.contradicted", "measured cage", reason))
         return events

@@ -25,7 +25,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtri
-from scipy.stats import qmc
 
 from bearing_sim.estimation.response import ANSWERS, SLIP_SCALE, ResponseModel, restored, slip_scale
 from bearing_sim.scene.scene import Scene
@@ -79,6 +78,8 @@ class Row:
 
 def prior_scores(count: int, dimensions: int, seed: int = 0) -> np.ndarray:
     """Return draws of scores of which nothing is measured, evenly spread, shape (count, dimensions); ``count`` a power of two."""
+    from scipy.stats import qmc  # half a second to import, which no run without bands spends
+
     uniform = qmc.Sobol(d=max(dimensions, 1), scramble=True, seed=np.random.default_rng(seed)).random_base2(count.bit_length() - 1)
     return ndtri(np.clip(uniform, 1e-4, 1.0 - 1e-4))[:, :dimensions]
 

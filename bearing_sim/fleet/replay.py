@@ -8,6 +8,7 @@ is read, the scene and this program.  Nothing that is in it is computed again.
 import fcntl
 import math
 import os
+import warnings
 from collections.abc import Callable, Sequence
 from contextlib import contextmanager
 from dataclasses import replace as with_fields
@@ -19,6 +20,7 @@ import numpy as np
 
 from bearing_sim.estimation.response import ResponseModel, response_digest
 from bearing_sim.estimation.two_states import laws_of_table
+from bearing_sim.files.tally import PartlyUsedWarning
 from bearing_sim.fleet.logs import Log, Reading, read_log
 from bearing_sim.inputs.csv_text import TableError
 from bearing_sim.inputs.log import InputLogError
@@ -37,10 +39,10 @@ from bearing_sim.sweep.point import FAILED, OK, REFUSED, Column
 from bearing_sim.sweep.table import Table
 from bearing_sim.sweep.tasks import UNAVAILABLE, Journal, Task, program_hash, run_tasks, task
 
-UNKNOWN = "unknown inputs"
-"""Status of a bearing whose inputs were unknown for some of the time, because they were refused; life is then "at most"."""
+PARTLY = "partly used"
+"""Status of a bearing of whose log only a part was used; the reason says how much, why, and what may help."""
 
-STATUSES = (OK, UNKNOWN, FAILED, REFUSED, UNAVAILABLE)
+STATUSES = (OK, PARTLY, FAILED, REFUSED, UNAVAILABLE)
 
 _SOURCES = ("estimation/*.py", "fleet/*.py", "inputs/*.py", "messages/*.py", "monitoring/*.py", "recording/*.py", "runtime/*.py", "sweep/tasks.py")
 _TABLES_KEPT = 4  # by a worker
@@ -61,7 +63,7 @@ NAMES = (
     Column("level", "", "level of fidelity"),
 )
 TEXTS = (
-    Column("status", "", f"{OK}; {UNKNOWN}: for some of the time; {FAILED}: the run stopped early; {REFUSED}, {UNAVAILABLE}: no result"),
+    Column("status", "", f"{OK}; {PARTLY}: of the log; {FAILED}: the run stopped early; {REFUSED}, {UNAVAILABLE}: no result"),
     Column("reason", "", "why the status is not ok"),
 )
 RESULTS = (
@@ -84,7 +86,7 @@ RESULTS = (
     Column("damage", "%", "life used: fraction of the rating life"),
     Column("life", "h", "life if this log were repeated"),
     Column("least_rating_life", "h", "shortest rating life at an instant"),
-    Column("inputs_refused", "", "messages refused"),
+    Column("inputs_refused", "", "messages that were there and were not used"),
     Column("failed_intervals", "", "intervals that could not be integrated"),
     Column("samples", "", "operating points computed"),
     *(
@@ -282,7 +284,9 @@ def replay_bearing(
 def _caught(function: Callable[..., dict], *arguments) -> dict:
     """Return what a function returns, or status and reason of what it raises: one log never ends the run of all."""
     try:
-        return function(*arguments)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", PartlyUsedWarning)  # the row says it
+            return function(*arguments)
     except (InputLogError, TableError, SceneError) as error:
         return {"status": REFUSED, "reason": " ".join(str(error).split())}
     except OSError as error:
@@ -300,14 +304,14 @@ def _replay_bearing(bearing: Bearing, longest_gap: float | None, temperatures: t
         model, laws = partial(Simulation, table=_operating_points(scene, temperatures)), laws_of_table(scene, temperatures)
     result = replay(scene, profile, model=model, response=response, laws=laws)
     status, reason = (FAILED, result.given_up) if result.given_up else (OK, "")
-    if profile.unknown_seconds and not reason:
-        status, reason = UNKNOWN, profile.unknown_event.text
+    if not (profile.tally.is_whole or reason):
+        status, reason = PARTLY, "; ".join([profile.tally.text, *([profile.unknown_event.text] if profile.unknown_seconds else [])])
     return (
         {"status": status, "reason": reason}
         | _results(scene, result)
         | {
             "unknown_hours": profile.unknown_seconds / 3600.0,
-            "inputs_refused": profile.refused.total(),
+            "inputs_refused": profile.tally.there - profile.tally.used,
             "life_and_damage": "at most, at least" if profile.verdict else "as given",
             "life_method": scene.life.method,
             "events": ", ".join(f"{count} x {kind}" for kind, count in sorted(result.events.items())),

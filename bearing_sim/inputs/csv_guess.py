@@ -21,15 +21,18 @@ from bearing_sim.inputs.csv_text import (
     DELIMITERS,
     NAMES,
     Layout,
+    Marks,
     TableError,
     cells_in,
     cells_of,
-    decimal_mark,
     encoding_of,
     find_header,
     first_lines,
     is_comment,
+    is_relative,
     is_unit_of,
+    number_marks,
+    percentage_question,
     records,
     spelled,
     uncommented,
@@ -62,7 +65,7 @@ ROLES = (
     ),
     Role("power", "W", r"power|leistung|puissance|\bp_?(el|mech)?\b|kw\b", r"factor|faktor|reactive|blind"),
     Role("torque", "N*m", r"torque|drehmoment|moment|\bm_?d\b|couple"),
-    Role("radial_load", "N", r"load|force|last|kraft|^f_?[rxyz]?\b|fradial|radial|charge|carga", r"axial|workload|auslast"),
+    Role("radial_load", "N", r"load|force|last|kraft|^f_?[rxyz]?\b|fradial|radial|charge|carga", r"axial|workload|auslast|current|strom"),
     Role("inner_ring_temperature", "K", rf"(inner|innen|\bi\.?r|\bir\b).*({_TEMPERATURE})|({_TEMPERATURE}).*(inner|innen|_ir\b|\bir\b|_i\b)"),
     Role(
         "outer_ring_temperature",
@@ -76,6 +79,7 @@ ROLES = (
         r"pressure|druck|level",
     ),
 )
+_MAY_BE_RELATIVE = ("shaft_speed", "radial_load", "cage_speed", "power", "torque")  # columns in per cent, of a value that is asked for
 _TIME_WORDS = re.compile(r"time|zeit|date|datum|stamp|uhr|utc|heure|fecha|hora|^t$|^t[ _\[(/]|^ts$", re.IGNORECASE)
 _CLOCK_WORDS = re.compile(r"^(time|zeit|uhrzeit|clock|hora|heure)", re.IGNORECASE)
 _SUFFIX = re.compile(r"(.+?)[ _.]+(?:in[ _]+)?([A-Za-z°%µ/0-9^-]+)$")
@@ -178,12 +182,14 @@ def guess(
         if heading not in layout.names:
             raise TableError(f"{path}, line {layout.header_line}: {option}: no such heading{did_you_mean(heading, layout.names)}")
     found = Guess({"name": re.sub(r"\W+", "_", path.stem).strip("_") or "table", "source": path.name}, layout=layout)
-    layout.decimal = decimal or _decimal(lines, layout, found)
+    layout.marks = _marks(lines, layout, found, decimal)
     if layout.delimiter != ",":
         found.tree["delimiter"] = "tab" if layout.delimiter == "\t" else layout.delimiter
         found.reasons["delimiter"] = f"{NAMES.get(layout.delimiter, layout.delimiter)}, by the header"
-    if layout.decimal == ",":
-        found.tree["decimal"], found.reasons["decimal"] = ",", "given" if decimal else "cells have decimal commas"
+    if layout.marks.decimal == "," or layout.marks.thousands:
+        found.tree["decimal"], found.reasons["decimal"] = layout.marks.decimal, "given" if decimal else "by the cells"
+    if layout.marks.thousands:
+        found.tree["thousands"], found.reasons["thousands"] = layout.marks.thousands, "by the cells: all of a column have it"
     if not encoding.startswith("utf-8"):
         found.tree["encoding"], found.reasons["encoding"] = encoding, "the file is not UTF-8"
     if only:
@@ -235,12 +241,15 @@ def _is_followed_by_data(lines: Sequence[str], delimiter: str, width: int) -> bo
     return any(abs(len(cells) - width) <= 1 and any(re.match(r"[-+]?[.,]?\d", cell) for cell in cells) for cells in following)
 
 
-def _decimal(lines: Sequence[str], layout: Layout, found: Guess) -> str:
+def _marks(lines: Sequence[str], layout: Layout, found: Guess, decimal: str | None) -> Marks:
+    """Return how numbers are written in the columns whose headings say what they are or, if none does, in all."""
+    named = [name for name in dict.fromkeys(layout.names) if name]
+    useful = [name for name in named if _TIME_WORDS.search(name) or _role_of(name, layout, {}) is not None] or named
     try:
-        return decimal_mark(cells_in(lines, layout, [name for name in dict.fromkeys(layout.names) if name]))
+        return number_marks(cells_in(lines, layout, useful), layout.delimiter, decimal)
     except TableError as error:
         found.questions["decimal"] = str(error)
-        return "."
+        return Marks()
 
 
 def _first_cells(lines: Sequence[str], layout: Layout) -> Cells:
@@ -252,9 +261,9 @@ def _first_cells(lines: Sequence[str], layout: Layout) -> Cells:
     return {name: [cell for cell in cells[bool(layout.units) :] if cell][:_CELLS_LOOKED_AT] for name, cells in found.items()}
 
 
-def _number(text: str, decimal: str) -> float:
+def _number(text: str, marks: Marks) -> float:
     try:
-        return float(text.replace(",", ".") if decimal == "," else text)
+        return float(marks.plain(text))
     except ValueError:
         return float("nan")
 
@@ -295,7 +304,7 @@ def _is_time(cells: Cells, layout: Layout, heading: str) -> bool:
     values, unit = cells[heading], spelled(_heading_unit(heading, layout)[1])
     if not values or (_is_a_unit(unit) and not is_unit_of(unit, "s")):
         return False
-    numbers = [_number(value, layout.decimal) for value in values]
+    numbers = [_number(value, layout.marks) for value in values]
     if all(number == number for number in numbers):
         rises = all(later >= earlier for earlier, later in zip(numbers, numbers[1:])) and numbers[-1] > numbers[0]
         return rises or _TIME_WORDS.search(heading) is not None
@@ -315,7 +324,7 @@ def _time_of(values: Sequence[str], layout: Layout, heading: str, unit: str | No
         return {"format": format_}, "its format was given", ""
     if not values:
         return {}, "", f"the column {heading!r} is empty; name another: --column time=HEADING"
-    numbers = [_number(value, layout.decimal) for value in values]
+    numbers = [_number(value, layout.marks) for value in values]
     if all(number == number for number in numbers):
         return _time_of_numbers(numbers, layout, heading, unit)
     if all(_is_iso(value) for value in values):
@@ -379,7 +388,7 @@ def _ask_for_rows(found: Guess, path: Path, lines: Sequence[str]) -> None:
     """Ask which rows are meant where the times go back, because the table holds several machines one below the other or in turn."""
     layout = found.layout
     place, before, line_of_return = layout.names.index(found.tree["time"]["column"]), None, 0
-    read = time_reader(TypeAdapter(TimeColumn).validate_python(found.tree["time"]), layout.decimal == ",")
+    read = time_reader(TypeAdapter(TimeColumn).validate_python(found.tree["time"]), layout.marks)
     clock = layout.names.index(found.tree["time"]["time_of_day"]) if "time_of_day" in found.tree["time"] else None
     labels: dict[int, set[str]] = {k: set() for k, name in enumerate(layout.names) if name and k not in (place, clock)}
     for number, cells in records(path, replace(layout)):
@@ -423,14 +432,17 @@ def _role_of(heading: str, layout: Layout, columns: AnyMapping[str, str]) -> Rol
     for role in ROLES:
         says = any(re.search(role.words, text) for text in texts)
         denies = bool(role.not_words) and any(re.search(role.not_words, text) for text in texts)
-        if says and not denies and (is_unit_of(unit, role.si_unit) or not _is_a_unit(unit)):
+        may_be = is_unit_of(unit, role.si_unit) or not _is_a_unit(unit) or is_relative(unit) and role.field in _MAY_BE_RELATIVE
+        if says and not denies and may_be:
             return role
     return None
 
 
 def _is_a_unit(unit: str) -> bool:
     """Return whether a text is a unit of anything that a table may hold."""
-    return unit == "%" or any(is_unit_of(unit, si) for si in ("rad/s", "N", "K", "W", "N*m", "s", "m", "m/s", "m/s^2", "Pa", "rad", "A", "V", "Hz"))
+    return is_relative(unit) or any(
+        is_unit_of(unit, si) for si in ("rad/s", "N", "K", "W", "N*m", "s", "m", "m/s", "m/s^2", "Pa", "rad", "A", "V", "Hz")
+    )
 
 
 def _guess_channels(found: Guess, named: AnyMapping[str, list[str]], columns, units, constants, lines) -> None:
@@ -463,6 +475,8 @@ def _column_of(found: Guess, name: str, headings: list[str], columns, units) -> 
     """Return the column of a field and why; None if there is none, or a question has been entered."""
     role = next(each for each in ROLES if each.field == name)
     given = columns.get(name)
+    absolute = [heading for heading in headings if not is_relative(_heading_unit(heading, found.layout)[1])]
+    headings = absolute or headings
     if len(set(headings)) < len(headings) and given is None or given is not None and found.layout.names.count(given) > 1:
         found.questions[name] = (
             f"{found.layout.names.count(given or headings[0])} columns are called {given or headings[0]!r}; rename one in the header"
@@ -479,6 +493,10 @@ def _column_of(found: Guess, name: str, headings: list[str], columns, units) -> 
     unit = units.get(name) or (headed if is_unit_of(headed, role.si_unit) else None)
     if unit is None and re.search(r"rpm", heading, re.IGNORECASE):
         unit = "rpm"
+    if is_relative(headed) and not is_relative(unit or ""):
+        example = percentage_question(headed, role.si_unit).replace(", such as ", f": --unit {name}=")
+        found.questions[name] = f"{heading!r} is a percentage; give {example}"
+        return None, ""
     if unit is None:
         found.questions[name] = f"the heading {heading!r} has no unit; say which: --unit {name}={_UNIT_EXAMPLES[role.si_unit]}"
         return None, ""

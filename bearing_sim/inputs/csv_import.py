@@ -24,18 +24,24 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationError
 
+from bearing_sim.files.tally import Tally
 from bearing_sim.inputs.csv_text import (
+    AT_FULL_SCALE,
     Layout,
+    Marks,
     TableError,
     cells_in,
-    decimal_mark,
     encoding_of,
     find_header,
     first_lines,
+    is_relative,
     is_unit_of,
+    number_marks,
+    percentage_question,
     records,
     spelled,
     unit_in,
+    unit_line,
 )
 from bearing_sim.inputs.gate import with_values
 from bearing_sim.inputs.log import InputLog, Series
@@ -44,7 +50,7 @@ from bearing_sim.messages import topics
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.recording.writer import McapFile
 from bearing_sim.scene.loader import InvalidField, SceneError, invalid_fields, read_named, yaml_mapping
-from bearing_sim.scene.quantity import check, conversion, quantity, record, to_si
+from bearing_sim.scene.quantity import check, quantity, record, to_si
 from bearing_sim.simulation import Inputs
 
 METADATA = "bearing_sim_import"
@@ -71,7 +77,8 @@ def _column(si_unit: str, meaning: str) -> type:
         """A column in a ``unit``, which its heading may give, or with ``scale`` and ``offset``; or a ``constant`` where nothing was measured."""
 
         column: str = ""  # heading in the table
-        unit: str | None = None  # of the cells, such as rpm, kN, degC; by default the one in the heading, as in Speed [rpm]
+        # of the cells, such as rpm, kN, degC, or '% of 1500 rpm'; by default the one in the heading, as in Speed [rpm]
+        unit: str | None = None
         scale: quantity(si_unit, f"{meaning} for a cell of 1, instead of a unit") | None = None
         offset: quantity(si_unit, f"{meaning} for a cell of 0, with a scale") | None = None
         constant: quantity(si_unit, f"{meaning} throughout, instead of a column") | None = None
@@ -86,6 +93,9 @@ def _column(si_unit: str, meaning: str) -> type:
                 return ["expected either unit, or scale (and offset)"]
             if self.unit is None and self.scale is None and not unit_in(self.column)[1]:
                 return [f"expected either unit, or scale (and offset), since the heading {self.column!r} has no unit"]
+            if self.unit is not None and is_relative(self.column) and not is_relative(self.unit):
+                example = f"expected {percentage_question(self.unit, si_unit)}; or" if si_unit in AT_FULL_SCALE else "expected"
+                return [f"unit = {self.unit!r}: the heading {self.column!r} is a percentage; {example}, if it is wrong, scale: 1 {self.unit}"]
             if self.scale is None and self.offset is not None:
                 return ["offset does not go with unit; give scale and offset instead"]
             if self.scale is not None and not (math.isfinite(self.scale) and math.isfinite(self.offset or 0.0)):
@@ -103,12 +113,12 @@ def _column(si_unit: str, meaning: str) -> type:
             """Return (scale, offset) in SI."""
             if self.scale is not None:
                 return self.scale, self.offset or 0.0
-            return conversion(spelled(self.unit or unit_in(self.column)[1]), si_unit)
+            return unit_line(self.unit or unit_in(self.column)[1], si_unit)
 
         def contradiction(self) -> str:
             """Return in words that the heading has another unit than the mapping; empty if it has not."""
             own = spelled(unit_in(self.column)[1])
-            if self.unit is None or not is_unit_of(own, si_unit) or conversion(own, si_unit) == self.line():
+            if self.unit is None or not is_unit_of(own, si_unit) or unit_line(own, si_unit) == self.line():
                 return ""
             return f"the heading {self.column!r} says {own}, the mapping {self.unit}; the mapping is followed"
 
@@ -276,6 +286,7 @@ class Mapping:
     source: str = ""  # where it comes from
     delimiter: str | None = None  # between cells: one character, or tab; by default found in the header
     decimal: Literal[".", ","] | None = None  # mark of numbers; by default found in the cells, and asked for where they may mean both
+    thousands: Literal[".", ",", "apostrophe", "space"] | None = None  # between groups of three digits; by default found in the cells, likewise
     encoding: str | None = None  # of the file, such as utf-8 or latin-1; by default that of its byte-order mark, UTF-8, or Latin-1
     only: dict[str, str] = field(default_factory=dict)  # column: text that its cell must have; other rows are left out
     time: TimeColumn  # of each row
@@ -294,6 +305,8 @@ class Mapping:
             return [f"delimiter = {self.delimiter!r}: expected one character, such as ';', or tab"]
         if self.delimiter is not None and self.delimiter == self.decimal:
             return ["delimiter: expected a character other than the decimal mark"]
+        if self.thousands is not None and self.thousands == (self.decimal or "."):
+            return [f"thousands = {self.thousands!r}: expected another mark than the decimal one, decimal: {self.decimal or '.'!r}"]
         if self.shaft_speed.constant is not None and isinstance(self.radial_load, ConstantLoad):
             return ["shaft_speed and radial_load are constants, so that nothing is left of the table; `bearing-sim run` takes them"]
         for name in _RESULTS.values():
@@ -396,33 +409,37 @@ class Table:
 
     Attributes
     ----------
-    rows : rows of data, without the header and those that ``only`` leaves out (``left_out``).
+    tally : rows of data, without the header and those that ``only`` leaves out (``left_out``); one is used if nothing that is in it was refused.
+        Reasons are ``time.*``, which cost a whole row, and ``shaft_speed.*`` and so on, which cost one message.  An empty cell is counted and costs
+        its message, but nothing was there that could be used.
     stamps : by channel [ns since 1970], rising.
     values : by channel, in SI; the load along +y.
-    refused : number of errors by kind: ``time.*`` costs a whole row, ``shaft_speed.*`` and so on one message.
     examples : by kind, the first few (line number, what is wrong).
     lines : by channel, the line number of each message.
     gaps : (channel, line number, seconds) of messages that come too long after the one before.
     longest_step : spacing [s] above which there is a gap.
     spacing : usual spacing of rows, the median [s].
     notes : what was found in the file and is not in the mapping, and what contradicts it, in words.
+    faulty_line : number of the last line with an error.
     """
 
-    rows: int = 0
+    tally: Tally = field(default_factory=lambda: Tally("rows"))
     left_out: int = 0
     stamps: dict[str, Sequence[int]] = field(default_factory=dict)
     values: dict[str, Sequence[float]] = field(default_factory=dict)
-    refused: Counter = field(default_factory=Counter)
     examples: dict[str, list[tuple[int, str]]] = field(default_factory=dict)
     lines: dict[str, Sequence[int]] = field(default_factory=dict)
     gaps: list[tuple[str, int, float]] = field(default_factory=list)
     longest_step: float = math.nan
     spacing: float = math.nan
     notes: list[str] = field(default_factory=list)
+    faulty_line: int = -1
 
     def refuse(self, kind: str, line: int, text: str) -> None:
         """Count an error and keep it as an example if it is among the first of its kind."""
-        self.refused[kind] += 1
+        self.tally.refused[kind] += 1
+        if not _was_never_there(kind):
+            self.faulty_line = line
         if len(examples := self.examples.setdefault(kind, [])) < _LINES_KEPT:
             examples.append((line, text))
 
@@ -445,17 +462,19 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
     layout, rows = _rows_of(path, mapping)
     row_reader = _RowReader(mapping, layout, table)
     for line, cells in rows:
-        if row_reader.take(line, cells):
+        if cells and row_reader.take(line, cells):  # an empty line is no row
             times.append(row_reader.newest)
+            table.tally.used += table.faulty_line != line
+    refused = table.tally.refused
     table.notes = [*layout.found, *filter(None, (one.contradiction() for _, one in mapping.columns()))]
     if layout.comments:
         table.notes.append(f"{layout.comments} line{'s' * (layout.comments > 1)} before the header or of comments left out")
     missing = [channel for channel in ("shaft_speed", "radial_load") if not table.stamps.get(channel)]
     if missing:
-        why = ", ".join(_with_example(table, kind) for kind in table.refused) or "it has no rows" + " that match `only`" * bool(mapping.only)
+        why = ", ".join(_with_example(table, kind) for kind in refused) or "it has no rows" + " that match `only`" * bool(mapping.only)
         raise TableError(f"{path}: nothing usable for {' and '.join(missing)}: {why}")
-    if table.refused["time.backwards"] >= len(times) > 0:
-        why = f"{len(times)} rows rise in time, {table.refused['time.backwards']} go back; sort them by time, or choose one machine (only, --only)"
+    if refused["time.backwards"] >= len(times) > 0:
+        why = f"{len(times)} rows rise in time, {refused['time.backwards']} go back; sort them by time, or choose one machine (only, --only)"
         raise TableError(f"{path}, line {table.examples['time.backwards'][0][0]}: {why}")
     _find_gaps(table, mapping, np.diff(times) * 1e-9)
     return table
@@ -466,7 +485,7 @@ def _rows_of(path: Path, mapping: Mapping) -> tuple[Layout, Iterable[tuple[int, 
     if not is_parquet(path):
         layout = layout_of(path, mapping)
         return layout, records(path, layout)
-    layout = parquet_layout(path, mapping.column_names(), mapping.decimal)
+    layout = parquet_layout(path, mapping.column_names(), Marks(mapping.decimal or ".", mapping.thousands or ""))
     takes_timestamps = mapping.time.format == "iso" and not mapping.time.time_of_day
     return layout, parquet_records(path, layout, mapping.only, mapping.time.column, takes_timestamps)
 
@@ -477,13 +496,20 @@ def input_log(table: Table, path: Path) -> InputLog:
     for channel, stamps in table.stamps.items():
         values = [(value,) for value in table.values[channel]]
         series[channel] = Series(path.name, "column of a table", "header", list(stamps), list(stamps), values)
-    return InputLog(path, series, "")
+    lost = Counter({kind: count for kind, count in table.tally.refused.items() if not _was_never_there(kind)})
+    lost = Tally(there=lost.total(), refused=lost)
+    return InputLog(path, series, lost)
+
+
+def _was_never_there(kind: str) -> bool:
+    """Return whether a reason means that a channel has no value in a row, which is no fault of what was read."""
+    return kind.endswith(".empty_cell") and not kind.startswith("time.")
 
 
 def _with_example(table: Table, kind: str) -> str:
     """Return how often an error occurred, and the first of its kind."""
     line, text = table.examples[kind][0]
-    return f"{table.refused[kind]} x {kind} (line {line}: {text})"
+    return f"{table.tally.refused[kind]} x {kind} (line {line}: {text})"
 
 
 def layout_of(path: Path, mapping: Mapping) -> Layout:
@@ -500,16 +526,14 @@ def layout_of(path: Path, mapping: Mapping) -> Layout:
     lines = first_lines(path, layout.encoding)
     delimiter = "\t" if mapping.delimiter == "tab" else mapping.delimiter
     find_header(path, lines, mapping.column_names(), delimiter, layout)
-    if mapping.decimal is not None:
-        layout.decimal = mapping.decimal
-        return layout
     numbers = [one.column for _, one in mapping.columns()] + [mapping.time.column] * (mapping.time.format is None)
     try:
-        layout.decimal = decimal_mark(cells_in(lines, layout, numbers))
+        layout.marks = number_marks(cells_in(lines, layout, numbers), layout.delimiter, mapping.decimal, mapping.thousands)
     except TableError as error:
         raise TableError(f"{path}, {error}") from None
-    if layout.decimal == ",":
-        layout.found.append("decimal mark: comma")
+    layout.found += layout.marks._replace(
+        decimal="." if mapping.decimal else layout.marks.decimal, thousands="" if mapping.thousands else layout.marks.thousands
+    ).described
     return layout
 
 
@@ -519,9 +543,9 @@ class _RowReader:
     def __init__(self, mapping: Mapping, layout: Layout, table: Table):
         columns = {name: column for column, name in enumerate(layout.names)}
         self._table, self._width = table, len(layout.names)
-        self._comma = layout.decimal == ","
+        self._marks = layout.marks
         self._only = [(columns[name], text) for name, text in mapping.only.items()]
-        self._time = time_reader(mapping.time, self._comma)
+        self._time = time_reader(mapping.time, self._marks)
         self._time_columns = [columns[name] for name in (mapping.time.column, mapping.time.time_of_day) if name]
         self._load_columns = [(columns[one.column], one.column, *one.line()) for one in mapping.load_columns()]
         self._load = _load_law(mapping)
@@ -539,10 +563,10 @@ class _RowReader:
 
     def take(self, line: int, cells: list[str]) -> bool:
         """Add one row; return whether its time is good."""
-        if cells and len(cells) == self._width and any(cells[column].strip() != text for column, text in self._only):
+        if len(cells) == self._width and any(cells[column].strip() != text for column, text in self._only):
             self._table.left_out += 1
             return False
-        self._table.rows += 1
+        self._table.tally.there += 1
         time_ns = self._time_of(line, cells)
         if time_ns is None:
             return False
@@ -557,7 +581,7 @@ class _RowReader:
         """Return the row's time if it can be used, otherwise count the error."""
         refuse = self._table.refuse
         if len(cells) != self._width:
-            refuse("time.cells" if cells else "time.empty_line", line, f"{len(cells)} cells, expected {self._width}")
+            refuse("time.cells", line, f"{len(cells)} cells, expected {self._width}")
             return None
         text = " ".join(cells[column].strip() for column in self._time_columns).strip()
         try:
@@ -599,7 +623,7 @@ class _RowReader:
         if not text:
             raise _BadCell("empty_cell", f"{name} is empty")
         try:
-            number = float(_with_point(text, self._comma))
+            number = float(self._marks.plain(text))
         except ValueError:
             raise _BadCell("not_a_number", f"{name} = {text[:_SHOWN]!r} is not a number") from None
         if not math.isfinite(number):
@@ -610,7 +634,7 @@ class _RowReader:
         return value
 
 
-def time_reader(time: TimeColumn, comma: bool) -> Callable[[str, int | None], int]:
+def time_reader(time: TimeColumn, marks: Marks) -> Callable[[str, int | None], int]:
     """Return a function that converts a time cell to nanoseconds since 1970; it also takes the time of the row before, or None.
 
     In the hour that is told twice when the clocks are set back, a time that would not rise is the later one.
@@ -618,7 +642,7 @@ def time_reader(time: TimeColumn, comma: bool) -> Callable[[str, int | None], in
     Parameters
     ----------
     time : how times are written.
-    comma : whether the decimal mark of numbers is a comma.
+    marks : how numbers are written.
     """
     if time.format is not None:
         zone, is_iso = time.zone_info(), time.format == "iso"
@@ -635,7 +659,7 @@ def time_reader(time: TimeColumn, comma: bool) -> Callable[[str, int | None], in
     factor, epoch = Decimal(repr(time.nanoseconds_per_unit())), time.epoch_ns()
 
     def of_number(text: str, newest: int | None) -> int:
-        since_epoch = Decimal(_with_point(text, comma)) * factor
+        since_epoch = Decimal(marks.plain(text)) * factor
         if since_epoch.is_finite() and abs(since_epoch) >= _LONGEST_TIME:  # before it becomes an integer of 990,000 digits
             raise _TimeOutOfRange
         return _stamp(epoch + round(since_epoch))
@@ -648,13 +672,6 @@ def _stamp(time_ns: int) -> int:
     if not 0 <= time_ns < _TIMES_END:
         raise _TimeOutOfRange
     return time_ns
-
-
-def _with_point(text: str, comma: bool) -> str:
-    """Return a number with a decimal point; ``comma`` says that its decimal mark is a comma."""
-    if "_" in text or (comma and "." in text):  # float() accepts 1_000, and 1.000 where a comma is the mark
-        raise ValueError(text)
-    return text.replace(",", ".") if comma else text
 
 
 def _load_law(mapping: Mapping) -> Callable[[float, list[float]], float]:

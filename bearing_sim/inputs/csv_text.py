@@ -13,13 +13,14 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
-from typing import BinaryIO, TextIO
+from typing import BinaryIO, NamedTuple, TextIO
 
 from bearing_sim.files.limits import TABLE_COLUMNS, TABLE_FILE, TABLE_LINE, TABLE_ROWS, FileError, Limit, LimitError
 from bearing_sim.files.reading import open_regular
 from bearing_sim.scene.errors import did_you_mean, shortened
-from bearing_sim.scene.quantity import conversion
+from bearing_sim.scene.quantity import conversion, to_si
 
 DELIMITERS = (",", ";", "\t", "|")
 NAMES = {",": "comma", ";": "semicolon", "\t": "tab", "|": "vertical bar"}
@@ -35,8 +36,10 @@ _BINARY = {
     b"PK\x03\x04": "a workbook of a spreadsheet or another archive; save the sheet as CSV",
     b"PAR1": "Parquet; write its mapping by hand, since there is no text to guess it from",
 }
-_NUMBER = re.compile(r"[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}(?:[.,]\d{3})+(?:[.,]\d*)?)(?:[eE][-+]?\d+)?")  # no date, such as 1.2.2026
-_LIKE_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+")
+_SPACES = " \N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{THIN SPACE}\N{FIGURE SPACE}"
+_SEPARATORS = {"": "", ".": ".", ",": ",", "apostrophe": "'\N{RIGHT SINGLE QUOTATION MARK}", "space": _SPACES}
+"""The characters of each separator of thousands, by its name in a mapping."""
+_MINUS = "\N{MINUS SIGN}"
 _UNIT_LIKE = re.compile(r"(?=.*[^\W\d_]|.*[%°-])(?:\D*|[^\d:]*\d[^\d:]*)")
 _HEADED = (re.compile(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*"), re.compile(r"(.+?)\s*/\s*([^/\s]+(?:/[^/\s]+)?)"))
 _SPELLED = {
@@ -54,8 +57,60 @@ _SPELLED = {
 """What people write in a heading, in the spelling of `bearing_sim.scene.quantity`."""
 
 
+_PER_CENT, _PER_MILLE = r"%|per ?cent|pct|prozent", r"\N{PER MILLE SIGN}|per ?mille?|promille|permil"
+_RELATIVE = re.compile(rf"(?:({_PER_CENT})|({_PER_MILLE}))\s*(?:(?:of|von)\s+)?(.*)", re.IGNORECASE)
+_ENDS_RELATIVE = re.compile(rf"(?:{_PER_CENT}|{_PER_MILLE})\W*", re.IGNORECASE)
+AT_FULL_SCALE = {"rad/s": "1500 rpm", "N": "5 kN", "m/s^2": "9.81 m/s^2", "W": "2 MW", "N*m": "50 N*m", "m": "100 um"}
+"""By SI unit, an example of a quantity of which something may be a percentage; a temperature is none."""
+
+
 class TableError(ValueError):
     """A table that cannot be imported."""
+
+
+class Marks(NamedTuple):
+    """How numbers are written.
+
+    Attributes
+    ----------
+    decimal : mark before the decimals, ``.`` or ``,``.
+    thousands : between groups of three digits: ``.``, ``,``, ``apostrophe``, ``space`` of any width, or ``""`` for nothing.
+    """
+
+    decimal: str = "."
+    thousands: str = ""
+
+    def plain(self, text: str) -> str:
+        """Return a number as Python writes it; raise `ValueError` if its separators are not where these marks have them."""
+        if text[:1] == _MINUS:
+            text = f"-{text[1:]}"
+        if self.thousands and any(separator in text for separator in _SEPARATORS[self.thousands]):
+            if not _grouped(self).fullmatch(text):
+                raise ValueError(text)
+            for separator in _SEPARATORS[self.thousands]:
+                text = text.replace(separator, "")
+        if "_" in text or (self.decimal == "," and "." in text):  # float() accepts 1_000, and 1.000 where a comma is the mark
+            raise ValueError(text)
+        return text.replace(",", ".") if self.decimal == "," else text
+
+    @property
+    def described(self) -> list[str]:
+        """What is not usual, in words."""
+        words = {".": "dot", ",": "comma"}
+        found = [f"decimal mark: {words[self.decimal]}"] if self.decimal == "," else []
+        return found + ([f"separator of thousands: {words.get(self.thousands, self.thousands)}"] if self.thousands else [])
+
+
+_READINGS = tuple(Marks(decimal, thousands) for thousands in _SEPARATORS for decimal in ".," if decimal != thousands)
+"""All ways of writing numbers, the usual ones first."""
+
+
+@cache
+def _grouped(marks: Marks) -> re.Pattern:
+    """Return the pattern of a number that is written in one way, whether it has separators or not."""
+    separators, decimal = re.escape(_SEPARATORS[marks.thousands]), re.escape(marks.decimal)
+    whole = rf"(?:[1-9]\d{{0,2}}(?:[{separators}]\d{{3}})+|\d+)" if separators else r"\d+"
+    return re.compile(rf"[-+{_MINUS}]?(?:{whole}(?:{decimal}\d*)?|{decimal}\d+)(?:[eE][-+]?\d+)?")
 
 
 @dataclass
@@ -66,7 +121,7 @@ class Layout:
     ----------
     encoding : of the file, as Python names it.
     delimiter : between cells.
-    decimal : mark of numbers, ``.`` or ``,``.
+    marks : how its numbers are written.
     names : headings in order, without blanks around them.
     header_line : line number of the header.
     is_comment : whether the header is in a comment line.
@@ -77,7 +132,7 @@ class Layout:
 
     encoding: str
     delimiter: str = ","
-    decimal: str = "."
+    marks: Marks = Marks()
     names: tuple[str, ...] = ()
     header_line: int = 1
     is_comment: bool = False
@@ -291,40 +346,50 @@ def cells_in(lines: Sequence[str], layout: Layout, columns: Sequence[str]) -> It
         yield from ((number, name, cells[place]) for place, name in places if place < len(cells))
 
 
-def decimal_mark(cells: Iterable[tuple[int, str, str]]) -> str:
-    """Return the decimal mark of number cells, ``.`` where none has any.
+def number_marks(cells: Iterable[tuple[int, str, str]], delimiter: str = "", decimal: str | None = None, thousands: str | None = None) -> Marks:
+    """Return how the numbers in cells are written, by all of them together; as Python writes them where nothing says otherwise.
 
     Parameters
     ----------
     cells : (line number, heading, text).
+    delimiter : between cells.
+    decimal, thousands : where somebody has decided.
 
     Raises
     ------
     TableError
-        Both marks occur, or all commas may as well separate thousands.  The message names line and column and asks for ``decimal``.
+        No way of writing numbers fits all of them, or several do and give other values.  The message names line and column and asks for ``decimal``.
     """
-    comma = point = thousands = None
+    readings = [marks for marks in _READINGS if decimal in (None, marks.decimal) and thousands in (None, marks.thousands)]
+    if not readings:
+        raise TableError(f"decimal and thousands are both {decimal!r}; expected two different marks")
+    if decimal is not None and thousands is not None:
+        return readings[0]
+    ask = "say which is the decimal mark: decimal: ',' or '.' in the mapping, or --decimal"
+    fitting, told, first = readings, [], None
     for line, name, text in cells:
         text = text.strip()
-        if not _NUMBER.fullmatch(text):
+        if text.isdigit():
+            told.append((line, name, text))
             continue
-        if "," in text and "." in text:
-            return "," if text.rindex(",") > text.rindex(".") else "."
-        if "," in text:
-            place = (line, name, text)
-            if _LIKE_THOUSANDS.fullmatch(text):
-                thousands = thousands or place
-            else:
-                comma = comma or place
-        elif "." in text:
-            point = point or (line, name, text)
-    comma_like, ask = comma or thousands, "say which is the decimal mark: decimal: ',' or '.' in the mapping, or --decimal"
-    if comma_like and point:
-        cells = f"{comma_like[1]} = {comma_like[2]!r} has a comma, {point[1]} = {point[2]!r} in line {point[0]} a point"
-        raise TableError(f"line {comma_like[0]}: {cells}; {ask}")
-    if thousands and not comma:
-        raise TableError(f"line {thousands[0]}: {thousands[1]} = {thousands[2]!r} has a decimal comma or a separator of thousands; {ask}")
-    return "," if comma else "."
+        fits = [marks for marks in _READINGS if _grouped(marks).fullmatch(text)]
+        if not fits:
+            continue  # no number
+        told.append((line, name, text))
+        left = [marks for marks in fitting if marks in fits]
+        if not left and decimal is not None:
+            return Marks(decimal)  # each cell that does not fit is refused by itself
+        if not left:
+            raise TableError(f"line {line}: {name} = {text!r} is not written as {first[1]} = {first[2]!r} in line {first[0]}; {ask}")
+        first = (line, name, text) if first is None or len(left) < len(fitting) else first
+        fitting = left
+    if delimiter == "," and not any("," in text for _, _, text in told):
+        fitting = [marks for marks in fitting if marks.decimal == "."] or fitting
+    for line, name, text in told if len(fitting) > 1 else ():
+        values = sorted({float(marks.plain(text)) for marks in fitting})
+        if len(values) > 1:
+            raise TableError(f"line {line}: {name} = {text!r} is {values[0]:.10g} or, with a separator of thousands, {values[-1]:.10g}; {ask}")
+    return fitting[0]
 
 
 def records(path: Path, layout: Layout) -> Iterator[tuple[int, list[str]]]:
@@ -424,11 +489,51 @@ def spelled(unit: str) -> str:
     return _SPELLED.get(unit, unit)
 
 
+def is_relative(text: str) -> bool:
+    """Return whether a unit is per cent or per mille of something, named or not, or a heading ends in one."""
+    last = re.split(r"[\s_.(\[]", text.strip().rstrip(")] "))[-1]
+    return _RELATIVE.match(text.strip()) is not None or _ENDS_RELATIVE.fullmatch(last) is not None
+
+
+def percentage_question(unit: str, si_unit: str) -> str:
+    """Return what to say instead of a unit that is a percentage of nothing that is named."""
+    what = {"rad/s": "speed", "N": "force", "W": "power", "N*m": "torque"}.get(si_unit, "value")
+    found = _RELATIVE.match(unit.strip())
+    return f"the {what} at 100 %, such as '{'%' if found is None or found[1] else chr(0x2030)} of {AT_FULL_SCALE[si_unit]}'"
+
+
+def unit_line(unit: str, si_unit: str) -> tuple[float, float]:
+    """Return scale and offset of a unit: value in SI = scale x number + offset.
+
+    Parameters
+    ----------
+    unit : such as ``rpm``, or a percentage of a quantity, ``% of 1500 rpm``.
+    si_unit : that it converts to.
+
+    Raises
+    ------
+    ValueError
+        It is no unit of that quantity, or a percentage of nothing that is named.
+    """
+    found = _RELATIVE.fullmatch(unit.strip())
+    if found is None:
+        return conversion(spelled(unit), si_unit)
+    if si_unit not in AT_FULL_SCALE:
+        raise ValueError(f"unit = {unit!r}: expected a unit of this quantity, which is no percentage")
+    try:
+        reference = to_si(found[3], si_unit)
+    except ValueError:
+        reference = math.nan
+    if not 0.0 < reference < math.inf:
+        raise ValueError(f"unit = {unit!r}: of what? Expected {percentage_question(unit, si_unit)}")
+    return (0.01 if found[1] else 0.001) * reference, 0.0
+
+
 def is_unit_of(unit: str, si_unit: str) -> bool:
     """Return whether a text is a unit that converts to an SI unit."""
     if not unit or re.match(r"[-+.]?\d", unit) and not re.match(r"1/", unit):
         return False
     try:
-        return all(map(math.isfinite, conversion(unit, si_unit)))
+        return all(map(math.isfinite, unit_line(unit, si_unit)))
     except ValueError:
         return False

@@ -14,7 +14,15 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import MEASURED, MEASURED_CHANNELS, MEASURED_CLEARANCE, RING_TEMPERATURES, TEMPERATURES, ZERO_CELSIUS
+from bearing_sim.messages.topics import (
+    MEASURED,
+    MEASURED_CHANNELS,
+    MEASURED_CLEARANCE,
+    RING_TEMPERATURES,
+    TEMPERATURES,
+    ZERO_CELSIUS,
+    input_types,
+)
 from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
@@ -25,12 +33,15 @@ UNITS = {"shaft_speed": "rad/s", "radial_load": "N", **dict.fromkeys(TEMPERATURE
 TOPIC_UNITS = UNITS | dict.fromkeys(TEMPERATURES, "degC")
 """Unit of the values of each channel's topic; events name values in it."""
 
+_SCALAR = "std_msgs/msg/Float64"
 _OPTIONAL = (*TEMPERATURES, *MEASURED_CHANNELS)
 _RATE_WINDOW = 1.0  # [s] a rate is the number of messages over at least this long
 _RATE_TOLERANCE = 0.1  # relative, because timers jitter
 # Oil and rings warm up in minutes, and the clearance changes with them: their messages may be rarer by this factor.
 _SLOW_CHANNEL = dict.fromkeys((*TEMPERATURES, MEASURED_CLEARANCE), 10.0)
 _LARGEST_CLEARANCE = 0.01  # [m] beyond that of any rolling bearing: a measured one in another unit than metres
+_TIMELY = 0.5  # of its patience: a channel is late until a message follows another one within this, or ten come in time, so that jitter
+_LATE_FOR = 10  # around the patience does not alternate
 _SPACINGS_OF_RATE = 10.0  # of a log: over at least this many a rate is counted, so that one missing row is no change of rate
 _SPACINGS_OF_SILENCE = 3.0  # of a log: a message may be late by this factor of its channel's usual spacing
 _RISING_TO_FOLLOW = 3  # refused messages in a row with rising stamps after which the sender's clock counts as set
@@ -38,6 +49,9 @@ _RISING_TO_FOLLOW = 3  # refused messages in a row with rising stamps after whic
 _REMEMBERED = 16  # values of a channel in which a conflict of publishers is looked for
 _CONFLICT_TOLERANCE = 0.02  # of the largest value: publishers that differ by less measure the same quantity
 _REVERSALS = 4  # large jumps against the jump before, among the values remembered: one or two are a manoeuvre
+
+_FAR_AT_LEAST = 2.0  # [s] for which a stamp far from the clock is reported, so that reports at 1 Hz do not alternate where some stamps are good
+_DISAGREE_AT_LEAST = 5.0  # [s] likewise for publishers that disagree: messages of two do not always alternate
 
 _SET_ASIDE = 1.0  # [s of wall time] in which a jump of the clock may become known
 
@@ -55,7 +69,9 @@ _STANDS_IN = {
     "network": "the temperature of the thermal network stands in",
 }
 """What is used where the temperature of a ring is not measured, by the law of heat."""
-_OLD = ("input.time_repeated", "input.time_backwards")  # a message refused for these leaves nothing unknown: a later one is known
+OLD = ("input.time_repeated", "input.time_backwards")
+"""Refusals that leave nothing unknown at the stamp: a later message is known.  What a recording loses by them `bearing_sim.inputs.profile` counts."""
+
 _SPANS_KEPT = 1000  # of unknown inputs; then old ones are summed up
 
 
@@ -69,6 +85,13 @@ class _Channel:
     patience: float  # age from which on it is stale [s]
     stamp: float = -math.inf
     arrival: float = -math.inf
+    late: int = 0  # good messages that must come in time until the channel is not late any more
+    returned: float = -math.inf  # the newest good message of a channel that is late
+    is_rate_wrong: bool = False
+    offset: float = math.nan  # of the newest stamp from the receiver's clock [s]
+    far_offset: float = math.nan  # the newest offset beyond the tolerance [s]
+    far_at: float = -math.inf  # when that message was received
+    refused: float = -math.inf  # the newest refused message
     seen: bool = False
     received: float = -math.inf  # the newest message, good or not
     window_start: float = math.nan
@@ -109,7 +132,7 @@ class Coverage:
 
     def take_refused(self, channel: str, time: float, kind: str) -> None:
         """Take a refused message of a channel; ``kind`` is that of its event."""
-        if kind in _OLD or channel in MEASURED_CHANNELS or channel in RING_TEMPERATURES:  # the model predicts what these measure
+        if kind in OLD or channel in MEASURED_CHANNELS or channel in RING_TEMPERATURES:  # the model predicts what these measure
             return
         self._unknown.setdefault(channel, max(self._good.get(channel, time), self._settled))
         self.is_overloaded = self.is_overloaded or (kind == "input.too_large" and channel in REQUIRED)
@@ -124,11 +147,11 @@ class Coverage:
     def unknown_until(self, now: float, since: float = -math.inf) -> float:
         """Return the time for which inputs were unknown up to ``now`` [s], from ``since`` [s] on."""
         spans = [*self._spans, *((begin, now) for begin in self._unknown.values())]
-        return self._seconds + _covered((max(begin, since), min(end, now)) for begin, end in spans)
+        return self._seconds + covered((max(begin, since), min(end, now)) for begin, end in spans)
 
     def _settle(self, limit: float) -> None:
         """Sum up the spans as far as ``limit`` [s]."""
-        self._seconds += _covered((begin, min(end, limit)) for begin, end in self._spans if begin < limit)
+        self._seconds += covered((begin, min(end, limit)) for begin, end in self._spans if begin < limit)
         self._settled = limit
         self._spans = [(max(begin, limit), end) for begin, end in self._spans if end > limit]
 
@@ -138,7 +161,7 @@ class Coverage:
         return f"the life is at most, and the damage at least, the value given (bound: {', '.join(self.bounds)})" if self.is_overloaded else ""
 
 
-def _covered(spans: Iterable[tuple[float, float]]) -> float:
+def covered(spans: Iterable[tuple[float, float]]) -> float:
     """Return the length of the union of spans (from, to)."""
     seconds, reached = 0.0, -math.inf
     for begin, end in sorted(spans):
@@ -159,6 +182,7 @@ class InputGate:
     spacings : by channel, the usual spacing of the messages of a log [s]: its silence and its rate are judged by its own rate where this is
         outside of what the limits expect.  Empty for a live run.
     waits_for : the channels without whose first good message nothing is computed, for the texts of events.
+    stamp_tolerance : how far a stamp may be from the receiver's clock before that is reported [s].
 
     Attributes
     ----------
@@ -178,7 +202,9 @@ class InputGate:
         heat_law: str = "none",
         spacings: Mapping[str, float] = MappingProxyType({}),
         waits_for: Sequence[str] = ("shaft_speed",),
+        stamp_tolerance: float = math.inf,
     ):
+        self._stamp_tolerance = stamp_tolerance
         self._spacings, self._waits_for = spacings, waits_for
         self.limits, self.held, self._substitute, self._stands_in = limits, held, substitute, _STANDS_IN[heat_law]
         self._measured: dict[str, tuple[float, float]] = dict.fromkeys(MEASURED_CHANNELS, (math.nan, math.nan))
@@ -224,6 +250,10 @@ class InputGate:
             if received - state.received > state.patience and self._flowed(channel, state):
                 state.window_start = math.nan  # the silence says nothing about the rate
             state.received = max(state.received, received)
+            if arrival is not None and math.isfinite(stamp):
+                state.offset = stamp - arrival
+                if abs(state.offset) > self._stamp_tolerance:
+                    state.far_offset, state.far_at = state.offset, arrival
             elapsed = received - state.window_start
             if elapsed >= 0.0:
                 state.window_count += 1
@@ -248,6 +278,13 @@ class InputGate:
         if error is not None:
             return self.refuse(channel, received, *error)
         state.stamp, state.earlier_count = stamp, 0
+        gap = received - state.arrival
+        if state.patience < gap < math.inf:
+            state.late = _LATE_FOR
+        elif state.late:
+            state.late = state.late - 1 if gap > _TIMELY * state.patience else 0
+        if state.late:
+            state.returned = received
         state.arrival = max(state.arrival, received)
         self.accepted[channel] += 1
         self.coverage.take_good(channel, received)
@@ -256,6 +293,7 @@ class InputGate:
             return None
         if channel in self._expired:
             self._expired.remove(channel)
+            state.returned, state.late = -math.inf, 0  # it is used from the first message on
             state.window_start, state.window_count, state.rate = received, 0, math.nan  # the silence says nothing about its rate
             self._returned.append(Event(received, Level.OK, "input.returned", channel, "it is measured again", "the measured temperature is used"))
         self.held = with_values(self.held, channel, values)
@@ -293,6 +331,7 @@ class InputGate:
     def refuse(self, channel: str, time: float, kind: str, reason: str, level: Level = Level.ERROR) -> Event:
         """Count a refused message and return its event; for errors that only the caller can see, such as a missing joint."""
         self.refused[kind] += 1
+        self._channels[channel].refused = time
         self.coverage.take_refused(channel, time, kind)
         return Event(time, level, kind, channel, reason, f"message refused, {self._used_instead(channel)}")
 
@@ -307,16 +346,24 @@ class InputGate:
     def check(self, now: float) -> list[Event]:
         """Return what is wrong at ``now`` [s since the start] with the flow of messages, for as long as it is wrong.
 
-        Kinds ``input.stale`` (no good message for ``limits.stale_after``) and ``input.rate`` (outside ``minimum_rate`` to
-        ``maximum_rate``, with a tolerance of a tenth).  Nothing is judged before the first message of any channel, because a machine may be
-        switched on later than its monitor, and an optional channel only after its own first message.
+        Kinds ``input.stale`` (no good message for ``limits.stale_after``), ``input.rate`` (outside ``minimum_rate`` to ``maximum_rate``, with a
+        tolerance of a tenth until it is) and ``input.stamp_offset``.  The texts stay the same as long as the trouble does: `numbers` has what
+        changes.  Nothing is judged before the first message of any channel, because a machine may be switched on later than its monitor, and an
+        optional channel only after its own first message.
         """
         events = []
         for channel, state in self._channels.items():
-            event = self._stale_event(channel, state, now) or self._rate_event(channel, state, now)
-            if event is not None:
-                events.append(event)
+            flow = self._stale_event(channel, state, now) or self._rate_event(channel, state, now)
+            events += [event for event in (flow, self._stamp_event(channel, state, now)) if event is not None]
         return events
+
+    def numbers(self, now: float) -> dict[str, float]:
+        """Return what is known at ``now`` [s] of the flow of messages, for diagnostics: rates, age of the last good message, offset of stamps."""
+        found = {}
+        for channel, state in self._channels.items():
+            numbers = {"rate [Hz]": state.rate, "last good message [s ago]": now - state.arrival, "stamp offset [s]": state.offset}
+            found |= {f"{channel} {name}": number for name, number in numbers.items() if math.isfinite(number)}
+        return found
 
     def onsets(self, now: float) -> list[Event]:
         """Return those events of `check` that did not hold at the last call of ``onsets``: each trouble once, for logs."""
@@ -329,35 +376,72 @@ class InputGate:
         """Return the last measured message rate of a channel [Hz]; NaN until a window of messages is full."""
         return self._channels[channel].rate
 
+    def is_heard(self, channel: str) -> bool:
+        """Whether a message of a channel has come, good or not."""
+        state = self._channels[channel]
+        return state.seen or state.refused > -math.inf
+
+    def is_refusing(self, channel: str) -> bool:
+        """Whether messages of a channel have been refused since the last good one."""
+        state = self._channels[channel]
+        return state.refused > state.arrival
+
+    def absent(self, channel: str, now: float, waited: float, expected: float) -> Event | None:
+        """Return the event that a channel has had no good message at all within the time in which one is expected.
+
+        Parameters
+        ----------
+        now : time of the event [s].
+        waited : for how long messages could have come [s].
+        expected : time within which one is expected [s]; ten times as long for temperatures.
+        """
+        expected *= _SLOW_CHANNEL.get(channel, 1.0)
+        if self.accepted[channel] or waited <= expected:
+            return None
+        reason = f"no good message within {expected:g} s"
+        return Event(now, Level.WARN, "input.absent", channel, reason, self._used_instead(channel, in_words=True))
+
     def state(self, channel: str) -> str:
-        """Return the value of a channel that is used now, and how often it comes, in words."""
+        """Return what is used of a channel now, in words that change with that alone."""
         if not self._channels[channel].seen:
             return f"no message so far, {self._used_instead(channel)}"
         if not self.accepted[channel] or channel in self._expired:
             return self._used_instead(channel)
-        rate = self.rate(channel)
-        return self._shown(channel) if math.isnan(rate) else f"{self._shown(channel)}, {rate:.3g} messages a second"
+        return "its messages are used"
 
     def _stale_event(self, channel: str, state: _Channel, now: float) -> Event | None:
         if math.isnan(self._began) or (channel in _OPTIONAL and not state.seen):
             return None
-        age = now - max(state.arrival, self._began)
-        if age <= state.patience:
+        # One message after a silence is no flow: it must be followed by another one as it should.
+        if now - max(state.arrival, self._began) <= state.patience and not 0.0 <= now - state.returned <= state.patience:
             return None
-        since = f"no good message for {age:.3g} s" if state.arrival > -math.inf else f"no good message yet, {age:.3g} s after the first input"
-        return Event(now, Level.WARN, "input.stale", channel, f"{since}, expected one within {state.patience:.3g} s", self._used_instead(channel))
+        if state.arrival > -math.inf:
+            reason = f"no good message for longer than {state.patience:.3g} s"
+        else:
+            reason = f"no good message yet, expected one within {state.patience:.3g} s of the first input"
+        return Event(now, Level.WARN, "input.stale", channel, reason, self._used_instead(channel, in_words=True))
+
+    def _stamp_event(self, channel: str, state: _Channel, now: float) -> Event | None:
+        if math.isnan(state.far_offset) or (state.offset != state.far_offset and now - state.far_at > _FAR_AT_LEAST):
+            return None
+        side = "ahead of" if state.far_offset > 0.0 else "behind"
+        reason = f"stamps are more than {self._stamp_tolerance:g} s {side} this machine's clock"
+        return Event(
+            now, Level.WARN, "input.stamp_offset", channel, reason, "values are used as they arrive; set both machines' clocks by one source"
+        )
 
     def _is_stale(self, channel: str, now: float) -> bool:
         state = self._channels[channel]
         return now - state.arrival > state.patience
 
-    def _used_instead(self, channel: str) -> str:
+    def _used_instead(self, channel: str, in_words: bool = False) -> str:
+        """Return what is used without a good message, with its value or, for a text that lasts, in words."""
         if channel in RING_TEMPERATURES and math.isnan(getattr(self.held, channel)):
             return self._stands_in
         if self._substitute:
             return self._substitute
         if self.accepted[channel]:
-            return f"holding {self._shown(channel)}"
+            return "the last good value is held" if in_words else f"holding {self._shown(channel)}"
         if channel in self._waits_for:
             return "nothing is computed before the first good one"
         if channel in MEASURED_CHANNELS:
@@ -381,15 +465,18 @@ class InputGate:
             fastest = max(fastest, _SPACINGS_OF_SILENCE / spacing)
         return slowest, fastest
 
-    def _is_rate_good(self, channel: str, rate: float) -> bool:
+    def _is_rate_good(self, channel: str, rate: float, tolerance: float = _RATE_TOLERANCE) -> bool:
         slowest, fastest = self._rates(channel)
-        return slowest * (1 - _RATE_TOLERANCE) <= rate <= fastest * (1 + _RATE_TOLERANCE)
+        return slowest * (1 - tolerance) <= rate <= fastest * (1 + tolerance)
 
     def _rate_event(self, channel: str, state: _Channel, now: float) -> Event | None:
-        if math.isnan(state.rate) or self._is_rate_good(channel, state.rate):
+        state.is_rate_wrong = not math.isnan(state.rate) and not self._is_rate_good(
+            channel, state.rate, 0.0 if state.is_rate_wrong else _RATE_TOLERANCE
+        )
+        if not state.is_rate_wrong:
             return None
         slowest, fastest = self._rates(channel)
-        reason = f"messages arrive at {state.rate:.3g} Hz, expected {slowest:.3g} to {fastest:.3g} Hz"
+        reason = f"messages arrive at less than {slowest:.3g} Hz" if state.rate < fastest else f"messages arrive at more than {fastest:.3g} Hz"
         return Event(now, Level.WARN, "input.rate", channel, reason, "values are used as they arrive")
 
 
@@ -501,6 +588,7 @@ class PublisherConflict:
     def __init__(self, channel: str):
         self._channel = channel
         self._values: deque[tuple[float, ...]] = deque(maxlen=_REMEMBERED)
+        self._disagreed_at = -math.inf
         self.publishers = 1
 
     def take(self, values: tuple[float, ...]) -> None:
@@ -518,11 +606,71 @@ class PublisherConflict:
         """Return the event that holds at ``now`` [s]; None for a single publisher."""
         if self.publishers < 2:
             return None
-        reason, extremes = f"{self.publishers} publishers, expected one", self.disagreement
-        if extremes is None:
+        reason = f"{self.publishers} publishers, expected one"
+        if self.disagreement is not None:
+            self._disagreed_at = now
+        if not 0.0 <= now - self._disagreed_at <= _DISAGREE_AT_LEAST:
             return Event(now, Level.WARN, "input.publishers", self._channel, reason, "the newest value of any of them is used")
-        reason = f"{reason}, and they disagree: values jump between {' and '.join(shown(self._channel, (extreme,)) for extreme in extremes)}"
+        reason = f"{reason}, and they disagree"
         return Event(now, Level.ERROR, "input.publishers", self._channel, reason, "the newest value is used, which is wrong for one of them")
+
+    @property
+    def values(self) -> dict[str, str]:
+        """The values between which publishers jump, for diagnostics; empty while they do not."""
+        extremes = self.disagreement if self.publishers > 1 else None
+        return {} if extremes is None else {f"{self._channel} jumps between": " and ".join(shown(self._channel, (each,)) for each in extremes)}
+
+
+class Sources(NamedTuple):
+    """What is known of the topic of a channel: who could send its messages.
+
+    Attributes
+    ----------
+    topic, ros_type : its full name, and the type that is listened to.
+    publishers : publishers of this type whose quality of service fits.
+    other_types : types of the other publishers of the topic.
+    misfits : why the quality of service of publishers does not fit.
+    alternatives : other topics of this type that somebody publishes, the likeliest first.
+    """
+
+    topic: str
+    ros_type: str
+    publishers: int
+    other_types: tuple[str, ...] = ()
+    misfits: tuple[str, ...] = ()
+    alternatives: tuple[str, ...] = ()
+
+    def events(self, channel: str, now: float) -> list[Event]:
+        """Return the events of publishers that cannot be heard, which hold at ``now`` [s]."""
+        events = []
+        if self.other_types:
+            reason = f"{self.topic} has a publisher of {' and '.join(self.other_types)}, expected {self.ros_type}"
+            scalar = self.ros_type != _SCALAR and _SCALAR in self.other_types and _SCALAR in input_types(channel)
+            action = "it cannot be heard: publish the expected type, or remap the topic" + ", or set input_type to scalar" * scalar
+            events.append(Event(now, Level.WARN, "input.type", channel, reason, action))
+        if self.misfits:
+            reason = f"{self.topic} has a publisher whose quality of service does not fit: {'; '.join(self.misfits)}"
+            events.append(Event(now, Level.WARN, "input.qos", channel, reason, "it cannot be heard: change the quality of service of one of the two"))
+        return events
+
+    def explained(self, event: Event, has_been_good: bool, is_refusing: bool) -> Event:
+        """Return an event of a channel that lacks good messages, with the likely cause and what to do about it.
+
+        Parameters
+        ----------
+        has_been_good : whether a good message has come.
+        is_refusing : whether messages have been refused since the last good one.
+        """
+        if self.publishers and is_refusing:
+            cause, advice = f"messages come on {self.topic}, and are refused", ""
+        elif self.publishers:
+            sends = "sends too rarely, or no more" if has_been_good else "sends nothing"
+            cause, advice = f"{self.topic} has a publisher that {sends}", f"look at ros2 topic echo {self.topic}"
+        else:
+            cause, advice = f"nobody publishes {self.topic} ({self.ros_type})", "start its publisher, or remap the topic"
+            if self.alternatives:
+                advice += f": the type is published on {', '.join(self.alternatives)}"
+        return event._replace(reason=f"{event.reason}: {cause}", action="; ".join(filter(None, (event.action, advice))))
 
 
 def _jumps_to_and_fro(values: tuple[float, ...]) -> bool:

@@ -10,7 +10,7 @@ Reading takes what is there.  Judging (`bearing_sim.inputs.profile.judge`) passe
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.files.limits import LOG_MESSAGES, FileError, printable
+from bearing_sim.files.tally import Tally
 from bearing_sim.inputs.gate import REQUIRED, UNITS, shown
 from bearing_sim.messages import topics
 from bearing_sim.recording.bag import LATEST, RecordingError
@@ -76,12 +77,17 @@ class InputLog:
     ----------
     path : the recording; several of them are joined with ``+``.
     series : by channel (see `bearing_sim.inputs.gate.CHANNELS`): ``shaft_speed``, ``radial_load`` and the others where recorded.
-    unfinished : why reading stopped before the end of a file, or ``""``.
+    lost : what was there besides the messages in ``series`` and their errors and could not be read, with the reasons; where reading stopped.
     """
 
     path: Path
     series: Mapping[str, Series]
-    unfinished: str
+    lost: Tally = field(default_factory=Tally)
+
+    @property
+    def unfinished(self) -> str:
+        """Where and why reading stopped before the end of a file, or ``""``."""
+        return self.lost.unfinished
 
 
 class Source(NamedTuple):
@@ -230,23 +236,22 @@ def read_input_log(
     sources = {channel: where for channel, where in _sources(names).items() if channel not in constants}
     joints = dict.fromkeys(_CHANNELS, joint) | {topics.MEASURED: cage_joint, topics.MEASURED_CLEARANCE: topics.CLEARANCE_JOINT}
     wanted = _Wanted(sources, joints, stamps, {}, {}, {})
-    unfinished = []
+    lost = Tally()
     for each in paths:
         try:
-            if why := _read(BagReader(each), wanted):
-                unfinished.append(why)
+            lost.add([_read(BagReader(each), wanted)])
         except FileError as error:
             raise InputLogError(str(error)) from None
     together = paths[0] if len(paths) == 1 else Path(" + ".join(map(str, paths)))
     try:
         _check_found(together, wanted, tuple(each for each in required if each not in constants), names or {})
     except InputLogError as error:
-        raise InputLogError("; ".join([str(error), *unfinished])) from None
+        raise InputLogError("; ".join([str(error), *lost.unread])) from None
     for series in wanted.found.values():
         _sort_by_log_time(series)
     for channel, value in constants.items():
         wanted.found[channel] = _constant_series(wanted.found[measured[0]], value)
-    return InputLog(together, wanted.found, "; ".join(unfinished))
+    return InputLog(together, wanted.found, lost)
 
 
 class _Wanted(NamedTuple):
@@ -259,10 +264,12 @@ class _Wanted(NamedTuple):
     present: dict[str, str]  # type by topic
     others: dict[str, object]  # decoded, by topic
 
-    def reader(self, topic: str, ros_type: str, decode: Callable[[bytes], object]) -> Callable[[int, bytes], None]:
+    def reader(self, topic: str, ros_type: str, decode: Callable[[bytes], object], own_name: str) -> Callable[[int, bytes], None]:
         """Return a function that adds a topic's messages (log time, data) to the series of their channels."""
         self.present[topic] = ros_type or "?"
-        readers = [_message_reader(channel, where, ros_type, decode, self) for channel, where in self.sources.items() if where.topic == topic]
+        asked = {own_name or topic, *({topic} if topic.removeprefix("/") not in _CHANNELS else ())}  # a channel's name stands for the channel
+        named = {channel: where._replace(topic=topic) for channel, where in self.sources.items() if where.topic in asked}
+        readers = [_message_reader(channel, where, ros_type, decode, self) for channel, where in named.items()]
         if len(readers) < 2:
             return readers[0] if readers else self._keeper(topic, decode)
         return lambda log_time, data: [read(log_time, data) for read in readers]
@@ -287,15 +294,15 @@ def _sources(names: Mapping[str, str | Source | None] | None) -> dict[str, Sourc
         raise InputLogError(str(error)) from None
 
 
-def _read(bag: BagReader, wanted: _Wanted) -> str:
-    """Add a recording's messages; return why it ended early, or ``""``."""
+def _read(bag: BagReader, wanted: _Wanted) -> Tally:
+    """Add a recording's messages; return what could not be read."""
     readers: dict[BagTopic, Callable[[int, bytes], None]] = {}
     for found in bag:
         if isinstance(found, BagTopic):
             readers[found] = wanted.reader(*found)
         else:
             readers[found[0]](*found[1:])
-    return bag.unfinished
+    return replace(bag.tally, used=0, there=bag.tally.refused.total())
 
 
 def _message_reader(channel: str, where: Source, ros_type: str, decode: Callable, wanted: _Wanted) -> Callable[[int, bytes], None]:

@@ -11,7 +11,7 @@ from pathlib import Path
 from bearing_sim.extras import what_is_missing
 from bearing_sim.files.limits import TABLE_BYTES, TABLE_FILE, TABLE_ROWS, FileError
 from bearing_sim.files.reading import open_regular
-from bearing_sim.inputs.csv_text import Layout, TableError, within
+from bearing_sim.inputs.csv_text import Layout, Marks, TableError, within
 from bearing_sim.scene.errors import did_you_mean, shortened
 
 _MAGIC = b"PAR1"
@@ -30,14 +30,14 @@ def is_parquet(path: Path) -> bool:
         return False
 
 
-def parquet_layout(path: Path, wanted: Sequence[tuple[str, str]], decimal: str | None) -> Layout:
+def parquet_layout(path: Path, wanted: Sequence[tuple[str, str]], marks: Marks) -> Layout:
     """Return the layout of a Parquet table, whose names are its columns.
 
     Parameters
     ----------
     path : a file, or the folder of a data set; folders such as ``turbine=T01`` are a column.
     wanted : (place in the mapping, name) of each column that is needed.
-    decimal : mark of numbers that are written as text; None for a point.
+    marks : how numbers are written that are text.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def parquet_layout(path: Path, wanted: Sequence[tuple[str, str]], decimal: str |
     errors = [f"  {where}: no column {name!r}{did_you_mean(name, names)}" for where, name in wanted if name not in names]
     if errors:
         raise TableError("\n".join([f"{path}: the table has {', '.join(names) or 'no columns'}", *errors]))
-    return Layout("parquet", decimal=decimal or ".", names=tuple(dict.fromkeys(name for _, name in wanted)))
+    return Layout("parquet", marks=marks, names=tuple(dict.fromkeys(name for _, name in wanted)))
 
 
 def parquet_records(path: Path, layout: Layout, only: Mapping[str, str], time: str, takes_timestamps: bool) -> Iterator[tuple[int, list[str]]]:
@@ -78,7 +78,7 @@ def parquet_records(path: Path, layout: Layout, only: Mapping[str, str], time: s
     is_number = pyarrow.types.is_integer(table.schema.field(time).type) or pyarrow.types.is_floating(table.schema.field(time).type)
     if len(dataset.files) > 1 and (is_timestamp or is_number):
         table = table.sort_by(time)
-    columns = [_texts(table.column(name), layout.decimal) for name in layout.names]
+    columns = [_texts(table.column(name), layout.marks.decimal) for name in layout.names]
     for place, name in enumerate(layout.names):
         if name in only:  # as the mapping writes it, such as 3 for 3.0
             columns[place] = [only[name]] * len(table)
@@ -107,7 +107,7 @@ def values_of(path: Path, column: str) -> list[str]:
     TableError
         See `parquet_layout`.
     """
-    layout = parquet_layout(path, [("--by", column)], None)
+    layout = parquet_layout(path, [("--by", column)], Marks())
     return sorted({text for text in _texts(_read(path, _dataset(path), list(layout.names), None).column(column), ".") if text.strip()})
 
 

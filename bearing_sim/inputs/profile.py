@@ -6,6 +6,7 @@ instant, with the inputs at each of them: a whole log is one segment, a run that
 the same functions, so the model sees the same instants and the same inputs either way.  Times are whole nanoseconds.
 """
 
+import warnings
 from bisect import bisect_left, bisect_right
 from collections import Counter, deque
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -16,7 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.inputs.gate import REQUIRED, InputGate, patience, unknown_inputs, unused_event
+from bearing_sim.files.tally import PartlyUsedWarning, Tally
+from bearing_sim.inputs.gate import OLD, REQUIRED, InputGate, covered, patience, unknown_inputs, unused_event
 from bearing_sim.inputs.log import InputLog, InputLogError, ReadError, Series, usual_spacing
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.topics import INPUTS, MEASURED, MEASURED_CLEARANCE, RING_TEMPERATURES, TEMPERATURES
@@ -29,6 +31,7 @@ _EVENTS_KEPT = 5  # of one kind and channel; all are counted
 _SUBSTITUTE = "inputs are linear between good messages"
 
 _GAP_IN_SPACINGS = 10
+_JUMP = 10.0  # times as long a gap by stamps as by the clock of the recording is a jump of the stamps
 _SPACINGS_KNOWN = 100  # of a channel, from which the median is taken
 _FEW_SPACINGS = 3
 _LONGEST_UNKNOWN = 3600.0  # [s] longest spacing that is no gap while there are only a few spacings to compare it with
@@ -240,11 +243,11 @@ class InputProfile:
     end : last instant [ns since time 0].
     gaps : (from, to) [ns since time 0] without a good message of speed or load; these are not simulated.
     events : in order of time; of one kind and channel only the first few, and one that counts the rest.
-    refused : messages refused, by kind of event.
-    messages : messages offered.
+    tally : the messages of all channels: how many there were, were used, and were not and why.
     limits : that they were judged by.
-    log_seconds : for how long the log has messages of both speed and load, whether good or refused for their values.
+    log_seconds : for how long the log has messages of both speed and load, whether good or refused.
     unknown_seconds : for how long of that inputs are unknown, because their messages were refused.
+    dropped_seconds : for how long of that, by the clock of the recording, stamps were not later than the last one; it is not simulated.
     verdict : what that means for lives and damage (see `bearing_sim.inputs.gate.Coverage`).
     spacings : by channel, the usual spacing of the log's messages [s].
     """
@@ -255,18 +258,22 @@ class InputProfile:
     end: int
     gaps: list[tuple[int, int]]
     events: list[Event]
-    refused: Counter
-    messages: int
+    tally: Tally
     limits: InputLimits
     log_seconds: float
     unknown_seconds: float
+    dropped_seconds: float
     verdict: str
     spacings: Mapping[str, float]
 
     @property
     def unknown_event(self) -> Event:
         """The event at the end that says for how long inputs are unknown, and what that means."""
-        return unknown_inputs(self.end * 1e-9, self.unknown_seconds, self.log_seconds, self.verdict)
+        event = unknown_inputs(self.end * 1e-9, self.unknown_seconds, self.log_seconds, self.verdict)
+        if not self.dropped_seconds:
+            return event
+        action = f"{self.dropped_seconds:.4g} s of that are not simulated, because their stamps are not later than the last one"
+        return event._replace(action=f"{action}; {event.action}" if self.unknown_seconds > self.dropped_seconds else action)
 
     @property
     def instants(self) -> np.ndarray:
@@ -315,6 +322,11 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
         spacing so far, and at least ``limits.stale_after`` (`is_gap`).
     heat_law : the scene's; with ``none``, measured temperatures of rings are left out, which an event says.
 
+    Warns
+    -----
+    PartlyUsedWarning
+        Messages were refused or could not be read; ``tally`` of the result counts them.
+
     Raises
     ------
     InputLogError
@@ -331,10 +343,8 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
     for channel in unused:
         events.add(unused_event(0.0, channel))
     seen: dict[str, tuple[float, float]] = {}  # first and last time of messages that are good, or refused for their values
-    newest = -np.inf
-    messages = 0
-    for channel, stamp, given in _in_order(used):
-        messages += 1
+    newest, old = -np.inf, _OldStamps()
+    for channel, stamp, log_ns, given in _in_order(used):
         if isinstance(given, ReadError):
             events.add(gate.refuse(channel, max(newest, 0.0), given.kind, given.reason))
             continue
@@ -345,6 +355,7 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
             for event in gate.onsets(time):
                 events.add(event)
         refusal = gate.offer(channel, time, given)
+        old.take(channel, stamp, log_ns, "" if refusal is None else refusal.kind)
         for event in gate.take_returned():
             events.add(event)
         if refusal is None or gate.coverage.is_unknown(channel):
@@ -358,19 +369,106 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
     start, end = _overlap(log, stamps, gate.refused)
     if log.unfinished:
         events.add(Event((end - epoch) * 1e-9, Level.WARN, "log.unfinished", "", log.unfinished))
+    tally = Tally(there=gate.accepted.total() + gate.refused.total(), used=gate.accepted.total(), refused=gate.refused.copy())
+    tally.add([log.lost])
     rising = {channel: np.array(times, np.int64) - start for channel, times in stamps.items()}
     gaps = []
+    ill_stamped = old.channels | {name for name, series in used.items() if any(error.kind == "input.not_stamped" for error in series.errors)}
     for channel in REQUIRED:
-        for gap in gaps_of(rising[channel], limits, longest_gap):
-            gaps.append(gap)
+        own = gaps_of(rising[channel], limits, longest_gap)
+        gaps += own
+        for gap in own:
             events.add(gap_event((gap[0] + start - epoch) * 1e-9, channel, gap))
+        if jumps := _jumps_of_stamps(channel, log.series[channel], [(gap[0] + start, gap[1] + start) for gap in own]):
+            tally.notes += jumps
+            ill_stamped.add(channel)
+        _count_alone(tally, channel, rising, end - start, limits, spacings)
     shift = (epoch - start) * 1e-9
     kept = sorted((event._replace(time=event.time + shift) for event in events.kept()), key=lambda event: event.time)
     arrays = {channel: np.array(given, float) for channel, given in values.items()}
     begun, ended = max(seen[channel][0] for channel in REQUIRED), min(seen[channel][1] for channel in REQUIRED)
-    unknown = gate.coverage.unknown_until(ended, begun)
-    covered = ended - begun, unknown, gate.coverage.verdict
-    return InputProfile(start, rising, arrays, end - start, gaps, kept, gate.refused, messages, limits, *covered, spacings)
+    if ill_stamped and all(_has_clock(log.series[channel]) for channel in ill_stamped):
+        tally.remedies.append("--stamps log takes the times of recording instead of the stamps in the headers")
+    if not tally.is_whole:
+        warnings.warn(f"{log.path}: {tally.text}", PartlyUsedWarning, stacklevel=2)
+    dropped = old.seconds()
+    seconds = max(ended - begun, _logged_seconds(log)) if dropped else ended - begun
+    unknown = min(gate.coverage.unknown_until(ended, begun) + dropped, seconds)
+    return InputProfile(start, rising, arrays, end - start, gaps, kept, tally, limits, seconds, unknown, dropped, gate.coverage.verdict, spacings)
+
+
+class _OldStamps:
+    """For how long, by the clock of the recording, messages of speed or load were refused for their stamps and no later stamp makes up for it.
+
+    A message out of order costs no time, nor do stamps that stand still for a while and then go on where the clock is.
+
+    Attributes
+    ----------
+    channels : that had such messages.
+    """
+
+    def __init__(self):
+        self.channels: set[str] = set()
+        self._good: dict[str, tuple[int, int]] = {}  # by channel, stamp and log time of the last good message [ns]
+        self._runs: dict[str, list[int]] = {}  # by channel, of the refused messages since then: first and last log time [ns], number
+        self._spans: list[tuple[int, int]] = []
+
+    def take(self, channel: str, stamp: int, log_ns: int, refusal: str) -> None:
+        """Take a message with its stamp and log time [ns]; ``refusal`` is the kind of its event, ``""`` if it is good."""
+        if refusal in OLD:
+            self.channels.add(channel)
+            run = self._runs.setdefault(channel, [log_ns, log_ns, 0])
+            run[1], run[2] = log_ns, run[2] + 1
+        elif not refusal:
+            if channel in self._runs:
+                before = self._good[channel]
+                self._close(channel, (log_ns - before[1]) - (stamp - before[0]))
+            self._good[channel] = stamp, log_ns
+
+    def _close(self, channel: str, most: float = np.inf) -> None:
+        first, last, count = self._runs.pop(channel)
+        seconds = min((last - first) * count / max(count - 1, 1), most)  # with the time up to the next one
+        if channel in REQUIRED and seconds > 0:
+            self._spans.append((first, first + seconds))
+
+    def seconds(self) -> float:
+        """Return for how long [s], once both channels have ended."""
+        for channel in list(self._runs):
+            self._close(channel)
+        return covered(self._spans) * 1e-9
+
+
+def _has_clock(series: Series) -> bool:
+    """Whether the times of recording can stand in for stamps: most of them differ, unlike those of a converted file."""
+    return series.stamped_by == "header" and 2 * len(set(series.log_times)) > len(series.log_times)
+
+
+def _logged_seconds(log: InputLog) -> float:
+    """Return for how long the log has messages of both speed and load by the clock of the recording."""
+    times = [log.series[channel].log_times for channel in REQUIRED if log.series[channel].topic]
+    return (min(each[-1] for each in times) - max(each[0] for each in times)) * 1e-9
+
+
+def _jumps_of_stamps(channel: str, series: Series, gaps: Sequence[tuple[int, int]]) -> list[str]:
+    """Return in words which gaps [ns since the epoch] are there by the stamps only, but not by the clock of the recording."""
+    if not gaps or not _has_clock(series):
+        return []
+    logged = dict(zip(series.stamps, series.log_times))
+    jumps = [(end - begin, logged[end] - logged[begin]) for begin, end in gaps if end - begin > _JUMP * (logged[end] - logged[begin])]
+    if not jumps:
+        return []
+    stamps, clock = (1e-9 * each for each in max(jumps))
+    return [f"{channel}: stamps jump by {stamps:.4g} s within {clock:.3g} s of recording; --stamps log takes the times of recording"]
+
+
+def _count_alone(tally: Tally, channel: str, stamps: Mapping[str, np.ndarray], end: int, limits: InputLimits, spacings: Mapping[str, float]) -> None:
+    """Count good messages of speed or load as not used that are far from any of the other channel, which has not begun or has ended."""
+    (other,) = (each for each in REQUIRED if each != channel)
+    near = round(patience(limits, other, spacings[other]) * 1e9)
+    alone = int((stamps[channel] < -near).sum() + (stamps[channel] > end + near).sum())
+    if alone:
+        tally.used -= alone
+        tally.refused[f"no {other} at that time"] += alone
 
 
 def gap_event(time: float, channel: str, gap: tuple[int, int]) -> Event:
@@ -379,8 +477,8 @@ def gap_event(time: float, channel: str, gap: tuple[int, int]) -> Event:
     return Event(time, Level.WARN, "input.gap", channel, reason, "this time is not simulated, the state is held")
 
 
-def _in_order(found: Mapping[str, Series]) -> Iterator[tuple[str, int, tuple | ReadError]]:
-    """Yield (channel, stamp, values or error): each channel in the order of recording, all channels merged by the newest stamp so far.
+def _in_order(found: Mapping[str, Series]) -> Iterator[tuple[str, int, int, tuple | ReadError]]:
+    """Yield (channel, stamp, log time, values or error): each channel in the order of recording, all channels merged by the newest stamp so far.
 
     Log times do not order the channels among each other, because a sender may lag behind.
     """
@@ -390,12 +488,12 @@ def _in_order(found: Mapping[str, Series]) -> Iterator[tuple[str, int, tuple | R
         good = zip(series.log_times, series.stamps, series.values)
         bad = ((error.log_ns, None, error) for error in series.errors)
         newest = series.stamps[0] if series.stamps else 0
-        for _, stamp, given in merge(good, bad, key=lambda message: message[0]):
+        for log_ns, stamp, given in merge(good, bad, key=lambda message: message[0]):
             newest = max(newest, stamp or newest)
-            yield newest, channel, stamp, given
+            yield newest, channel, stamp, log_ns, given
 
-    for _, channel, stamp, given in merge(*map(messages, found), key=lambda message: message[0]):
-        yield channel, stamp, given
+    for _, *message in merge(*map(messages, found), key=lambda message: message[0]):
+        yield message
 
 
 class _Events:
@@ -428,7 +526,7 @@ def _overlap(log: InputLog, stamps: dict[str, list[int]], refused: Counter) -> t
             f"{channel} from {stamps[channel][0] * 1e-9:.3f} to {stamps[channel][-1] * 1e-9:.3f} s by {log.series[channel].stamped_by}"
             for channel in REQUIRED
         )
-        hint = "log times may agree better than header stamps"
+        hint = "the times of recording may agree better than the stamps in the headers: --stamps log"
         raise InputLogError(f"{log.path}: there is no time at which both shaft speed and radial load are known ({spans}); {hint}")
     return start, end
 

@@ -12,7 +12,7 @@ little-endian, and their texts do not end in a zero (http://wiki.ros.org/msg).
 
 import re
 import struct
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -24,6 +24,9 @@ from bearing_sim.messages.cdr import ENCAPSULATION, NUMBERS, ORDERS, typestore
 
 _SEPARATOR = re.compile(r"^={3,}[ \t\r]*$", re.MULTILINE)
 _NAMED = re.compile(r"\s*MSG:[ \t]+(\S+)[ \t\r]*(?:\n|$)")
+_NAMED_IDL = re.compile(r"\A\s*IDL:[ \t]*(\S*)[^\n]*(?:\n|$)")
+_PREPROCESSOR = re.compile(r"^[ \t]*#(?:[^\n\\]|\\\n|\\.)*", re.MULTILINE)  # an include names a part that stands in the same text
+_ENUM = re.compile(r"\benum\s+(\w+)\s*\{[^{}]*\}")  # CDR writes one as a number of 32 bits
 _TYPE = re.compile(r"([A-Za-z][\w/]{0,255})(?:<=\d{1,10})?(?:\[(<=)?(\d{0,10})\])?")
 _FIELD = re.compile(r"([A-Za-z]\w{0,255})(\s*=)?")
 _TEXTS = ("string", "wstring")
@@ -92,7 +95,7 @@ class _Cursor:
 _Read = Callable[[_Cursor], object]
 
 
-def decoder(name: str, encoding: str, definition: bytes) -> Callable[[bytes], object]:
+def decoder(name: str, encoding: str, definition: bytes, note: Callable[[str], None] = lambda text: None) -> Callable[[bytes], object]:
     """Return a function that decodes messages of a type into objects with the fields as attributes.
 
     Arrays of numbers are NumPy arrays, others are lists; a stamp is a message of ``sec`` and ``nanosec``.  The function raises
@@ -102,12 +105,13 @@ def decoder(name: str, encoding: str, definition: bytes) -> Callable[[bytes], ob
     ----------
     name : of the type, such as ``sensor_msgs/msg/JointState``.
     encoding : of the definition: ``ros2msg``, ``ros2idl``, or ``ros1msg``, which also says that messages are those of ROS 1.
-    definition : its text; where it is empty, or does not define a type that it contains, that of ROS 2 Jazzy is taken.
+    definition : its text; where it is empty, does not define a type that it contains, or cannot be parsed, that of ROS 2 Jazzy is taken.
+    note : called with a text for each type that is taken from ROS 2 because its definition cannot be parsed.
 
     Raises
     ------
     DefinitionError
-        The definition cannot be parsed, contains an unknown type or itself, or exceeds a limit.
+        The definition cannot be parsed and the type is none of ROS 2 Jazzy, or it contains an unknown type or itself, or exceeds a limit.
     """
     if len(definition) > DEFINITION.value:
         raise DefinitionError(f"the definition of {name[:80]} has {DEFINITION.refusal(len(definition))}")
@@ -115,14 +119,20 @@ def decoder(name: str, encoding: str, definition: bytes) -> Callable[[bytes], ob
         text = definition.decode()
     except UnicodeDecodeError:
         raise DefinitionError(f"the definition of {name[:80]} is no UTF-8 text") from None
+    types, faults = {}, {}
     if encoding == "ros2idl":
-        types = _from_idl(text)
+        types, faults = _from_idl(name, text)
     elif encoding in ("ros2msg", "ros1msg") or not text:
-        types = _from_msg(name, text)
+        try:
+            types = _from_msg(name, text)
+        except DefinitionError as error:
+            if encoding == "ros1msg":  # whose types differ from those of ROS 2, such as the header
+                raise
+            faults[_short(name)] = str(error)
     else:
-        raise DefinitionError(f"the definition of {name[:80]} is written in {encoding[:40]!r}; expected ros2msg, ros2idl or ros1msg")
+        faults[_short(name)] = f"the definition of {name[:80]} is written in {encoding[:40]!r}; expected ros2msg, ros2idl or ros1msg"
     is_ros1, items = encoding == "ros1msg", MESSAGE_ITEMS.value
-    read = _Readers(types, is_ros1).message(_short(name))
+    read = _Readers(types, is_ros1, faults, note).message(_short(name))
 
     def decode(data: bytes) -> object:
         data = bytes(data)
@@ -181,28 +191,38 @@ def _field_of(line: str, owner: str) -> tuple[str, FieldType] | None:
     return field[1], FieldType(name, -1 if kind[2] or not kind[3] else int(kind[3]))
 
 
-def _from_idl(text: str) -> dict[str, list[tuple[str, FieldType]]]:
-    """Return the fields of all types that a text in OMG IDL defines, by the names of types."""
+def _from_idl(name: str, text: str) -> tuple[dict[str, list[tuple[str, FieldType]]], dict[str, str]]:
+    """Return the fields of all types that a text in OMG IDL defines, and why a part cannot be parsed, by the names of types."""
     from rosbags.typesys import get_types_from_idl
 
-    found = {}
-    try:
-        for part in _SEPARATOR.split(text):
-            part = re.sub(r"\A\s*IDL:[^\n]*\n", "", part)
-            if part.strip():
-                found |= get_types_from_idl(part)
-    except Exception as error:  # the parser raises exceptions of many kinds
-        raise DefinitionError(f"the definition cannot be parsed as IDL ({type(error).__name__})") from None
+    found, faults = {}, {}
+    for part in _SEPARATOR.split(text):
+        own, named = name, _NAMED_IDL.match(part)
+        if named:
+            own, part = named[1] or name, part[named.end() :]
+        part = _ENUM.sub(r"typedef uint32 \1", _PREPROCESSOR.sub("", part))
+        if not part.strip():
+            continue
+        try:
+            found |= get_types_from_idl(part)
+        except Exception as error:  # the parser raises exceptions of many kinds; the third line is where it could not go on
+            at = [*str(error).splitlines(), "", "", ""][2]
+            rest = f" at {part[int(at) :].split(chr(10))[0][:40]!r}" if at.isdigit() else ""
+            faults[_short(own)] = f"the definition of {own[:80]} cannot be parsed as IDL{rest}"
     if sum(len(fields) for _, fields in found.values()) > DEFINITION_FIELDS.value:
         raise DefinitionError(f"the definition has {DEFINITION_FIELDS.refusal()}")
-    return {_short(name): _converted(fields) for name, (_, fields) in found.items()}
+    return {_short(each): _converted(fields, each, found) for each, (_, fields) in found.items()}, faults
 
 
-def _converted(fields) -> list[tuple[str, FieldType]]:
-    """Return fields as the rosbags library describes them as ours."""
+def _converted(fields, owner: str = "", known: Container[str] = ()) -> list[tuple[str, FieldType]]:
+    """Return fields as the rosbags library describes them as ours; names of types relative to that of ``owner`` are looked up in ``known``."""
+    scopes = owner.split("/")[:-1]
 
     def named(node, detail) -> str:
-        return detail[0].replace("octet", "byte") if node == Nodetype.BASE else _short(detail)
+        if node == Nodetype.BASE:
+            return detail[0].replace("octet", "byte")
+        candidates = ("/".join([*scopes[:k], detail]) for k in range(len(scopes), 0, -1))
+        return _short(detail if detail in known else next((each for each in candidates if each in known), detail))
 
     found = []
     for name, (node, detail) in fields:
@@ -221,10 +241,12 @@ class _Readers:
     ----------
     types : fields by the name of the type; types that are not there are those of ROS 2 Jazzy.
     is_ros1 : whether messages are serialised as in ROS 1.
+    faults : why the definition of a type cannot be parsed, by the name of the type.
+    note : called with a text where that of ROS 2 is used instead.
     """
 
-    def __init__(self, types: Mapping[str, list[tuple[str, FieldType]]], is_ros1: bool):
-        self._types, self._is_ros1 = types, is_ros1
+    def __init__(self, types: Mapping[str, list[tuple[str, FieldType]]], is_ros1: bool, faults: Mapping[str, str], note: Callable[[str], None]):
+        self._types, self._is_ros1, self._faults, self._note = types, is_ros1, faults, note
         self._made: dict[str, _Read] = {}
         self._levels: dict[str, int] = {}  # of messages within messages, by type
         self._open: list[str] = []
@@ -267,8 +289,11 @@ class _Readers:
             return [(field, FieldType(number)) for field, number in _ROS1[name]]
         package, _, short = name.partition("/")
         standard = typestore().fielddefs.get(f"{package}/msg/{short}")
+        fault = self._faults.get(name)
         if standard is None:
-            raise DefinitionError(f"{name[:80] or 'the type'} is not defined in the recording, nor a standard message of ROS 2")
+            raise DefinitionError(fault or f"{name[:80] or 'the type'} is not defined in the recording, nor a standard message of ROS 2")
+        if fault:
+            self._note(f"{fault}; that of ROS 2 Jazzy is used")
         return _converted(standard[1])
 
     def _field(self, kind: FieldType) -> _Read:

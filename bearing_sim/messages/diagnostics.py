@@ -2,12 +2,14 @@
 """Diagnostics: one diagnostic_msgs/DiagnosticStatus for each subject of a bearing, whether there is anything to say about it or not.
 
 Programs that collect diagnostics, such as diagnostic_aggregator, know a status by its name alone, keep the newest of each name, and take a
-name that is silent for some seconds for a fault.  A report therefore has every subject of `SUBJECTS`, in every state, once.  An event belongs
-to one subject (`subject_of`); several events of a subject share its status.
+name that is silent for some seconds for a fault.  A report therefore has every subject of `SUBJECTS` that the run uses, in every state, once; those
+that it does without share the status `UNUSED`.  An event belongs to one subject (`subject_of`); several events of a subject share its status.
+
+Alarms are raised where the text of a status changes.  So a text changes with the state alone; numbers, which change all the time, are values.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cache
 from types import MappingProxyType
 from typing import NamedTuple
@@ -20,6 +22,9 @@ from bearing_sim.model.sample import RING_TEMPERATURES
 
 WHOLE = "condition"
 """The subject of the first status of a report: its level and message are those of the worst event, its values are all numbers."""
+
+UNUSED = "unused"
+"""The subject of the last status of a report: the names of the subjects that the run does without, and why."""
 
 
 class Subject(NamedTuple):
@@ -49,7 +54,7 @@ _VALUES |= {name: f"{name.replace('_', ' ')} measured [" for name in RING_TEMPER
 SUBJECTS = (
     Subject("run", "the state of the node, the phase of the run, and the solver", ("run.", "solver.", "reproduction.", "study."), ("phase", "state")),
     Subject("clock", "the clock: `/clock` where `use_sim_time` is set", ("clock.",), ("clock [s]", "behind the clock [s]")),
-    *(Subject(name, f"the messages of the topic `{name}`", (), (f"{name} rate [Hz]", _VALUES.get(name, name))) for name in _CHANNELS),
+    *(Subject(name, f"the messages of the topic `{name}`", (), (f"{name} ", _VALUES.get(name, name))) for name in _CHANNELS),
     Subject(
         "inputs",
         "all inputs together, and the log that they come from",
@@ -126,6 +131,7 @@ def report(
     hardware_id: str = "",
     remarks: Mapping[str, str] = MappingProxyType({}),
     otherwise: str = "OK",
+    unused: Collection[str] | None = None,
 ) -> dict:
     """Return diagnostic_msgs/DiagnosticArray: one status for the whole, then one for each subject.
 
@@ -138,6 +144,7 @@ def report(
     hardware_id : of the bearing.
     remarks : messages of subjects without events, by name.
     otherwise : message of subjects without events or remark.
+    unused : subjects that share the status `UNUSED` unless they have events; None: there is no such status.
     """
     events = list(events)
     of_subject: dict[str, list[Event]] = {}
@@ -148,10 +155,16 @@ def report(
         for name in _subjects_of_value(key):
             shown.setdefault(name, {})[key] = value
     status = [_status(component, WHOLE, hardware_id, events, {**values, "events": len(events)}, otherwise)]
+    left_out = {subject.name for subject in SUBJECTS} & set(unused or ()) - of_subject.keys()
     for subject in SUBJECTS:
+        if subject.name in left_out:
+            continue
         own = of_subject.get(subject.name, ())
         told = {**shown.get(subject.name, {}), "events": len(own), **_event_values(own)}
         status.append(_status(component, subject.name, hardware_id, own, told, remarks.get(subject.name, otherwise)))
+    if unused is not None:
+        why = {subject.name: remarks.get(subject.name, otherwise) for subject in SUBJECTS if subject.name in left_out}
+        status.append(_status(component, UNUSED, hardware_id, (), {**why, "events": 0}, f"not used: {', '.join(why) or 'nothing'}"))
     return {"header": header(stamp_ns), "status": status}
 
 
@@ -166,7 +179,7 @@ def _status(component: str, subject: str, hardware_id: str, events: Sequence[Eve
     level, text = Level.OK, remark
     if events:
         worst = max(events, key=lambda event: event.level)
-        level, text = worst.level, worst.text
+        level, text = worst.level, worst._replace(count=1).text  # how often is a value
         if len(events) > 1:
             text += f" (and {len(events) - 1} more)"
     pairs = [{"key": key, "value": f"{value:.9g}" if isinstance(value, float) else str(value)} for key, value in values.items()]

@@ -93,6 +93,24 @@ class Origin(NamedTuple):
     frame_id: str
 
 
+class Names(NamedTuple):
+    """What a run is called in the messages of its recording; as in the ROS graph where a node records it.
+
+    Attributes
+    ----------
+    topics : full names of topics by their own, where they differ from ``/NAME``.
+    component, hardware_id : of the statuses of diagnostics (see `bearing_sim.messages.diagnostics.report`); the bearing's name where empty.
+    """
+
+    topics: Mapping[str, str]
+    component: str
+    hardware_id: str
+
+
+OWN_NAMES = Names({}, "bearing_sim", "")
+"""Those of a run without a node."""
+
+
 def header(stamp_ns: int, frame_id: str = "") -> dict:
     """Return std_msgs/Header."""
     return {"stamp": stamp(stamp_ns), "frame_id": frame_id}

@@ -29,7 +29,7 @@ class _Range:
         self.law, self.low, self.high = law, low, high
         # An alarm's hysteresis is a fraction of its limit.
         self._alarms = [Alarm(limit, _HOLD, below) for limit, below in ((low, True), (high, False)) if math.isfinite(limit)]
-        self.holding: Exceedance | None = None  # the latest, while the warning holds
+        self.holding: Exceedance | None = None  # the first, while the warning holds: its text stays
 
     @property
     def is_pending(self) -> bool:
@@ -46,7 +46,7 @@ class _Range:
         """Take the value at an instant [s] and return the event if the warning begins or ends."""
         raised, before = [alarm.judge(now, value) for alarm in self._alarms], self.holding
         if value < self.low or value > self.high:
-            self.holding = self.law.exceeded(value, self.low, self.high)
+            self.holding = before or self.law.exceeded(value, self.low, self.high)
         elif not any(raised):
             self.holding = None
         if (before is None) == (self.holding is None):

@@ -101,13 +101,14 @@ class Watch:
     ):
         self.kind, self._subject, self._unit, self._factor, self._below = kind, subject, unit, factor, below
         self._alarms = ((Level.ERROR, Alarm(error, hold, below)), (Level.WARN, Alarm(warning, hold, below)))
-        self._value = math.nan
+        self._raised_at: dict[Level, float] = {}  # the value with which each alarm was raised
 
     def judge(self, now: float, value: float) -> None:
         """Take the value at an instant [s]."""
-        self._value = value
-        for _, alarm in self._alarms:
-            if alarm.limit is not None:
+        for level, alarm in self._alarms:
+            if alarm.limit is not None and not alarm.raised and alarm.judge(now, value):
+                self._raised_at[level] = value
+            elif alarm.limit is not None:
                 alarm.judge(now, value)
 
     def is_calm(self, values: np.ndarray) -> bool:
@@ -116,20 +117,12 @@ class Watch:
         return not any(alarm.limit is not None and (alarm.is_pending or alarm.reaches(worst)) for _, alarm in self._alarms)
 
     def event(self, now: float) -> Event | None:
-        """Return the event of the more severe alarm that is raised, or None."""
+        """Return the event of the more severe alarm that is raised, or None; its text has the value with which that was raised, and stays."""
         for level, alarm in self._alarms:
             if alarm.raised:
-                return Event(now, level, self.kind, self._subject, f"{self._shown(self._value)} {self._relation(alarm)}")
+                relation = "is below" if self._below else "has reached"
+                return Event(now, level, self.kind, self._subject, f"{self._shown(self._raised_at[level])} {relation} {self._shown(alarm.limit)}")
         return None
-
-    def _relation(self, alarm: Alarm) -> str:
-        limit = self._shown(alarm.limit)
-        if math.isnan(self._value):
-            return f"now, after it was {'below' if self._below else 'at'} {limit} or {'less' if self._below else 'more'}"
-        if alarm.reaches(self._value):
-            return f"is below {limit}" if self._below else f"has reached {limit}"
-        back = self._shown(alarm.back_at)
-        return f"is back from {'below' if self._below else 'above'} {limit}, not yet {'above' if self._below else 'below'} {back} for long enough"
 
     def _shown(self, value: float) -> str:
         return f"{self._factor * value:.4g} {self._unit}".rstrip()
@@ -262,7 +255,7 @@ class Monitor:
         events = [event for watch in self._watches.values() if (event := watch.event(now)) is not None]
         events += self._temperatures.events(now)
         if self._damage >= 1.0:
-            events.append(Event(now, Level.ERROR, "bearing.life_used", "damage", f"{self._damage:.3g} of the rating life is used up"))
+            events.append(Event(now, Level.ERROR, "bearing.life_used", "damage", "the rating life is used up"))
         return events
 
     @property

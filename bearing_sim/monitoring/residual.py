@@ -409,16 +409,11 @@ class ResidualMonitor:
 
     def events(self, now: float) -> list[Event]:
         """Return the event of a change that holds, stamped ``now`` [s]."""
-        side = self._cusum.side
+        side, of = self._cusum.side, self._of
         if not side:
             return []
-        steps, height = (self._cusum.rising_for, self._cusum.up) if side > 0 else (self._cusum.falling_for, self._cusum.down)
-        lasted, rarity, of = steps * self._detection.batch, self._detection.false_alarm_time / _HOUR, self._of
-        reason = (
-            f"{of.whose} {of.verdicts[side]} for about {lasted:.3g} s of measurement: now {of.factor * self._newest_mean:+.3g} {of.unit}, "
-            f"usually {of.factor * self._whitener.mean:+.3g} "
-            f"(CUSUM {height:.3g} over {self._cusum.threshold:.3g}, one false alarm in {rarity:.4g} h)"
-        )
+        rarity = self._detection.false_alarm_time / _HOUR
+        reason = f"{of.whose} {of.verdicts[side]}, usually {of.factor * self._whitener.mean:+.3g} {of.unit} (one false alarm in {rarity:.4g} h)"
         return [Event(now, Level.WARN, "residual.shift", of.what, reason)]
 
     def values(self, now: float) -> dict[str, object]:
@@ -432,6 +427,8 @@ class ResidualMonitor:
             f"{what}, deviation [{unit}]": self.deviation,
             f"{what}, usual mean [{unit}]": self._whitener.mean if self._whitener.count else math.nan,
             f"{what}, CUSUM of its threshold [%]": 100 * self._cusum.height / self._cusum.threshold,
+            f"{what}, newest batch [{unit}]": self._newest_mean,
+            f"{what}, changed for [s of measurement]": self.changing_for if self._cusum.side else 0.0,
             f"{what}, verdict": self.verdict(now),
         }
 

@@ -1,11 +1,12 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A file to which whole records are appended, and which stays readable when the disk is full or somebody deletes it."""
+"""A file to which whole records are appended, and which can be completed when the disk is full and stays readable when somebody deletes it."""
 
 import errno
 import fcntl
 import itertools
 import os
 import shutil
+import tempfile
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -13,15 +14,21 @@ from pathlib import Path
 from bearing_sim.files.outputs import rename_without_replacing
 from bearing_sim.messages.events import Level
 
+NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
+"""Numbers of the errors of a full disk."""
 _COPY = 1024 * 1024  # [byte] copied at once
+# [byte] reserved for the end of a file: half of it for the chunk in progress, schemas, channels and the metadata of a bag, which take 0.1 MB with all
+# topics; the other half, and more as the file grows, for its index: 0.4 kB for a chunk of some 40 kB.
+_END, _END_PER_BYTE = 256 * 1024, 1 / 32
 
 
 class AppendFile:
     """A file being written.
 
     `write` hands data to the operating system at once and never raises.  When a write fails, the file is cut back to the last whole record,
-    `error` says why, and this record and later ones are kept for another try (`retry`).  A file that is deleted or replaced while it is being
-    written is restored from its open descriptor.  One thread at a time may use it.
+    `error` says why, and this record and later ones are kept for another try (`retry`).  Space on the disk is reserved for the end of the file, so
+    that `complete` succeeds on a full disk.  A file that is deleted or replaced while it is being written is restored from its open descriptor.
+    One thread at a time may use it.
 
     Parameters
     ----------
@@ -37,12 +44,18 @@ class AppendFile:
     Raises
     ------
     OSError
-        It cannot be made.
+        It cannot be made, or there is no space for its end.
     """
 
     def __init__(self, path: Path, keep_free: float = 0.0):
         self.path, self._keep_free = path, keep_free
         self._descriptor = _created(path)
+        try:
+            self._reserve = _Reserve(path.parent)
+        except OSError as error:
+            os.close(self._descriptor)
+            path.unlink(missing_ok=True)
+            raise OSError(error.errno, f"{path} cannot be begun: {error.strerror}") from None
         self._written = 0  # [byte] of whole records in the file
         self._unwritten: list[bytes] = []
         self.error: OSError | None = None
@@ -68,7 +81,18 @@ class AppendFile:
                 self._stop(error.errno, f"{self.path} could not be written: {error.strerror}; its first {self._written / 1e6:.4g} MB are whole")
                 return False
             self._written += len(self._unwritten.pop(0))
+        if self.error is None:
+            try:
+                self._reserve.hold(_END // 2 + round(self._written * _END_PER_BYTE))
+            except OSError as error:
+                written = f"{self._written / 1e6:.4g} MB"
+                self._stop(error.errno, f"{self.path} could not be continued: {error.strerror}; there is space to complete its {written}")
         return True
+
+    def complete(self) -> bool:
+        """Append the records that could not be written yet, in the space that was reserved; return whether all of them are in the file."""
+        self._reserve.release()
+        return self.retry()
 
     def check(self) -> None:
         """Restore the file if somebody deleted it, and stop writing if the disk is nearly full."""
@@ -86,6 +110,7 @@ class AppendFile:
 
     def close(self) -> None:
         """Close the file; records that could not be written are lost."""
+        self._reserve.release()
         os.close(self._descriptor)
         self._unwritten.clear()
 
@@ -118,6 +143,51 @@ class AppendFile:
         text = f"{self.path} was {what} while it was being written; all {self._written / 1e6:.4g} MB of it are in {path}, where writing continues"
         self.path = path
         self.news.append((Level.WARN, "recording.restored", text))
+
+
+class _Reserve:
+    """Space on a disk that nobody else can take: a file without a name, of which nothing is left when the process ends.
+
+    Without effect where the system or the file system cannot reserve space.
+
+    Parameters
+    ----------
+    folder : on that disk.
+
+    Raises
+    ------
+    OSError
+        There is not enough space.
+    """
+
+    def __init__(self, folder: Path):
+        self._file, self._held = None, 0
+        if hasattr(os, "posix_fallocate"):
+            self._file = tempfile.TemporaryFile(dir=folder, buffering=0)
+        try:
+            self.hold(_END)
+        except OSError:
+            self.release()
+            raise
+
+    def hold(self, size: int) -> None:
+        """Reserve so many bytes; a little more is reserved at once so that this is rarely done."""
+        if self._file is None or size <= self._held:
+            return
+        wanted = max(size, self._held + _END) if self._held else size
+        try:
+            os.posix_fallocate(self._file.fileno(), 0, wanted)
+        except OSError as error:
+            if error.errno in NO_SPACE:
+                raise
+            self.release()
+        self._held = wanted
+
+    def release(self) -> None:
+        """Give the space back."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
 
 
 def set_aside(path: Path) -> Path | None:

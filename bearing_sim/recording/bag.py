@@ -12,6 +12,7 @@ import yaml
 from bearing_sim.files.limits import BAG_METADATA, FileError
 from bearing_sim.files.outputs import replaced
 from bearing_sim.files.reading import read_text, why_not_readable
+from bearing_sim.files.tally import Tally
 from bearing_sim.files.yaml_text import values_of
 
 ACTIVE = ".active"
@@ -36,6 +37,19 @@ QOS = [
 
 class RecordingError(FileError):
     """A recording that cannot be used: the message says what is wrong, where, what was expected and what to do."""
+
+
+class PartialRecording(RecordingError):
+    """A recording of which only a part could be read, raised after all of that part: nobody takes it for the whole.
+
+    Attributes
+    ----------
+    tally : what was there, what was used, and what was not and why.
+    """
+
+    def __init__(self, where: str, tally: Tally):
+        self.tally = tally
+        super().__init__(f"{tally.text}; allow_partial=True takes the part for what it is", where)
 
 
 class Limits(NamedTuple):
@@ -234,13 +248,13 @@ def folder_metadata(path: Path) -> dict | None:
 
 def _files_in(path: Path) -> list[Path]:
     """Return the files of a bag's folder in order, those that its metadata lists first."""
-    files, named = sorted([*path.glob("*.mcap"), *path.glob(f"*.mcap{ACTIVE}")], key=_by_number), listed_files(path)
+    files, named = sorted([*path.glob("*.mcap"), *path.glob(f"*.mcap{ACTIVE}")], key=by_number), listed_files(path)
     if named is not None:
         # A killed recorder leaves files that are unfinished or not listed yet; they come last.
         files = named + [file for file in files if file.name.endswith(ACTIVE) or file.stem.startswith(f"{path.name}_") and file not in named]
     return files
 
 
-def _by_number(file: Path) -> tuple:
-    """Order ``run_10.mcap`` after ``run_9.mcap``."""
+def by_number(file: Path) -> tuple:
+    """Return the key by which ``run_10.mcap`` comes after ``run_9.mcap``."""
     return tuple(int(part) if part.isdigit() else part for part in re.split(r"(\d+)", file.name))

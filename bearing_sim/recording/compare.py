@@ -169,7 +169,7 @@ def _alternating(*sides: Iterator[list[tuple[str, str, _Column]]]) -> Iterator[t
 def _batches(path: str | Path, delay: int, warn: Callable[[str], None]) -> Iterator[list[tuple[str, str, _Column]]]:
     """Yield parts of a recording, as (topic, type, messages) in the order of each topic; log times less a delay [ns]."""
     for file in mcap_files(path):
-        reader = McapReader(file, in_rows=lambda topic: True)
+        reader = McapReader(file, in_rows=lambda topic: True, own_topics=True)
         columns: dict[int, list[_Column]] = defaultdict(list)  # by channel
         size = 0
         for record in reader:

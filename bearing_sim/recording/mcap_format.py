@@ -35,6 +35,8 @@ CHECKSUM_RECORD = struct.Struct("<BQQI")
 CHECKSUM_HEAD = RECORD.pack(CHECKSUM, CHECKSUM_RECORD.size - RECORD.size)
 """How each checksum record begins."""
 PROFILE = "ros2"
+OWN_TOPIC = "bearing_sim_topic"
+"""Key in the metadata of a channel: what its topic is called here, where a node publishes it under another name."""
 _KINDS = {
     Opcode.HEADER: records.Header,
     Opcode.FOOTER: records.Footer,
@@ -46,6 +48,12 @@ _KINDS = {
     Opcode.METADATA: records.Metadata,
     Opcode.METADATA_INDEX: records.MetadataIndex,
 }
+
+
+def own_topic(channel: records.Channel) -> str:
+    """Return what the topic of a channel is called here, such as ``/cage_slip``; its full name unless a node has recorded it under another."""
+    own = channel.metadata.get(OWN_TOPIC, "")
+    return f"/{own}" if own else channel.topic
 
 
 class DamagedRecord(ValueError):

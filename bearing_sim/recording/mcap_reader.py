@@ -35,6 +35,7 @@ from bearing_sim.recording.mcap_format import (
     checksum_record,
     chunk_index_places,
     message_at,
+    own_topic,
     packed,
     parsed,
 )
@@ -100,6 +101,7 @@ class McapReader:
     path : the file.
     in_rows : whether messages of a topic may come many at once, as `Rows`; none do if absent.
     stops_at_damage : whether to read nothing after the first damaged chunk or record.
+    own_topics : whether topics are named as here, whatever a node that recorded them called them (see `mcap_format.own_topic`).
     corrects : whether a single flipped bit is corrected where the checksums say which one it is; it counts as damage nevertheless.
 
     Attributes
@@ -121,8 +123,15 @@ class McapReader:
         It cannot be read.
     """
 
-    def __init__(self, path: str | Path, in_rows: Callable[[str], bool] | None = None, stops_at_damage: bool = False, corrects: bool = False):
-        self.path, self._in_rows, self._stops, self._corrects = Path(path), in_rows, stops_at_damage, corrects
+    def __init__(
+        self,
+        path: str | Path,
+        in_rows: Callable[[str], bool] | None = None,
+        stops_at_damage: bool = False,
+        corrects: bool = False,
+        own_topics: bool = False,
+    ):
+        self.path, self._in_rows, self._stops, self._corrects, self._own_topics = Path(path), in_rows, stops_at_damage, corrects, own_topics
         self._decompress = zstandard.ZstdDecompressor().decompress
         with _opened(self.path) as stream:
             self.size = self.path.stat().st_size
@@ -188,8 +197,8 @@ class McapReader:
         if isinstance(record, Schema):
             self._schemas[record.id] = record.name
         elif isinstance(record, Channel):
-            self.topics[record.id] = record.topic
-            self.types[record.topic] = self._schemas.get(record.schema_id, "")
+            topic = self.topics[record.id] = own_topic(record) if self._own_topics else record.topic
+            self.types[topic] = self._schemas.get(record.schema_id, "")
         return [record] if isinstance(record, _CONTENT) else []
 
     def _decompressed(self, chunk: Chunk, needs_checksum: bool) -> bytes:
@@ -329,7 +338,7 @@ class FileIndex(NamedTuple):
 
     Attributes
     ----------
-    types : message type by topic.
+    types : message type by topic, named as here (see `mcap_format.own_topic`).
     present : topics that have messages.
     metadata : metadata records by name.
     log_ns : log times of the messages of the topic asked for [ns since the epoch], uint64.
@@ -374,7 +383,7 @@ def _index(stream: BinaryIO, size: int, topic: str) -> FileIndex | None:
             found[type(record)].append(record)
         at = end
     schemas = {schema.id: schema.name for schema in found[Schema]}
-    topics = {channel.id: channel.topic for channel in found[Channel]}
+    topics = {channel.id: own_topic(channel) for channel in found[Channel]}
     counts = Counter({channel: count for each in found[Statistics] for channel, count in each.channel_message_counts.items()})
     if counts.total() != sum(each.message_count for each in found[Statistics]):
         return None
@@ -384,7 +393,7 @@ def _index(stream: BinaryIO, size: int, topic: str) -> FileIndex | None:
     if len(log_ns) != sum(counts[channel] for channel in wanted):
         return None
     return FileIndex(
-        {channel.topic: schemas.get(channel.schema_id, "") for channel in found[Channel]},
+        {topics[channel.id]: schemas.get(channel.schema_id, "") for channel in found[Channel]},
         {topics[channel] for channel, count in counts.items() if count and channel in topics},
         _metadata(stream, size, found[MetadataIndex]),
         log_ns,

@@ -2,6 +2,7 @@
 """Read recordings of runs: MCAP messages to blocks of samples, events and measurements, as sinks take them."""
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
@@ -13,6 +14,8 @@ import yaml
 from mcap.records import Channel, Metadata
 from rosbags.serde import SerdeError
 
+from bearing_sim.files.limits import printable
+from bearing_sim.files.tally import Tally
 from bearing_sim.messages.bands import Bands, bands_of_message
 from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, typestore
 from bearing_sim.messages.diagnostics import events_of
@@ -34,7 +37,7 @@ from bearing_sim.messages.topics import (
     input_values,
 )
 from bearing_sim.model.sample import flat, new_block
-from bearing_sim.recording.bag import LATEST, RecordingError, mcap_files
+from bearing_sim.recording.bag import LATEST, PartialRecording, RecordingError, mcap_files
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import FileIndex, McapReader, Rows, read_index
 from bearing_sim.recording.writer import COMMAND, METADATA
@@ -68,9 +71,13 @@ class Received(NamedTuple):
 class Recording:
     """A recording of one run; opening a finished one reads only its index.
 
+    Iterating over an unfinished or damaged recording, by whichever method, yields what can be read of it and then raises `PartialRecording`,
+    unless ``allow_partial`` is set.
+
     Parameters
     ----------
     path : what `bearing_sim.recording.writer.McapSink` wrote, finished or not: an MCAP file or the folder of a bag.
+    allow_partial : whether the end of what can be read is no error; ``tally`` then says what is missing.
 
     Attributes
     ----------
@@ -82,7 +89,7 @@ class Recording:
     start_ns : wall time of sample time 0 [ns since the epoch].
     samples : number of samples.
     first_time, last_time : simulated times of the first and the last sample [s].
-    unfinished : why reading stops before the end of the recording, or ``""``; of a finished but damaged file only once it has been read.
+    tally : how many of the samples were used, and why not all; where files end early, of a finished but damaged one only once it has been read.
 
     Raises
     ------
@@ -90,9 +97,9 @@ class Recording:
         The file does not exist or is not MCAP, or it has no scene in its metadata or no samples.
     """
 
-    def __init__(self, path: str | Path):
-        self.path = Path(path)
-        self.unfinished = ""
+    def __init__(self, path: str | Path, allow_partial: bool = False):
+        self.path, self._allow_partial = Path(path), allow_partial
+        self.tally = Tally("samples")
         self.files = mcap_files(self.path)
         parts = [self._index_of(file) for file in self.files]
         metadata = next((part.metadata[METADATA] for part in reversed(parts) if METADATA in part.metadata), None)
@@ -101,7 +108,7 @@ class Recording:
         self.command = next((part.metadata[COMMAND].get("command", "") for part in parts if COMMAND in part.metadata), "")
         listing = ", ".join(sorted(set().union(*(part.present for part in parts)))) or "no topics"
         if metadata is None and self.unfinished:
-            raise RecordingError(f"{self.path}: no scene can be read: {self.unfinished}")
+            raise RecordingError(f"{self.path}: no scene can be read: {'; '.join([*self.tally.unread, *self.tally.remedies])}")
         if metadata is None:
             raise RecordingError(f"{self.path}: no metadata record {METADATA!r}, so this is no recording of bearing_sim; it has {listing}")
         try:
@@ -114,8 +121,13 @@ class Recording:
         times = np.unique(np.concatenate([part.log_ns for part in parts])).astype(np.int64)
         if not len(times):
             raise RecordingError(f"{self.path}: no samples on {', '.join(sorted(_SAMPLE_TOPICS))}; it has {listing}")
-        self.samples = len(times)
+        self.samples = self.tally.there = len(times)
         self.first_time, self.last_time = ((int(edge) - self.start_ns) * 1e-9 for edge in times[[0, -1]])
+
+    @property
+    def unfinished(self) -> str:
+        """Where and why reading stops before the end of the recording, or ``""``."""
+        return self.tally.unfinished
 
     @property
     def duration(self) -> float:
@@ -161,10 +173,11 @@ class Recording:
             yield from self._records_of(file)
 
     def _records_of(self, file: Path) -> Iterator[tuple[tuple[str, ...], Message | Rows | Metadata]]:
-        reader = McapReader(file, in_rows=_SAMPLE_TOPICS.__contains__, stops_at_damage=True)
+        reader = McapReader(file, in_rows=_SAMPLE_TOPICS.__contains__, stops_at_damage=True, own_topics=True)
         for record in reader:
             if isinstance(record, Channel):
-                self._require_type(record.topic, reader.types[record.topic])
+                topic = reader.topics[record.id]
+                self._require_type(topic, reader.types[topic])
             elif isinstance(record, Rows):
                 yield tuple(reader.topics[channel] for channel in record.channels), record
             elif isinstance(record, Message):
@@ -173,9 +186,11 @@ class Recording:
             elif isinstance(record, Metadata):
                 yield (), record
         if not reader.is_finished:
-            name = "the file" if len(self.files) == 1 else file.name
-            advice = f"; bearing-sim recover {file} -o GOOD.mcap saves what follows" if reader.damaged else ""
-            self.unfinished = f"{name} ends early ({reader.ends}); what was complete before that is shown{advice}"
+            name = "the file" if len(self.files) == 1 else printable(file.name)
+            found = Tally(unread=[f"{name} ends early ({reader.ends}); what was complete before that is used"])
+            what = "saves what follows the damage" if reader.damaged else "completes the file"
+            found.remedies.append(f"bearing-sim recover {printable(file)} -o GOOD.mcap {what}")
+            self.tally.add([found])
 
     def _require_type(self, topic: str, ros_type: str) -> None:
         expected = _TYPES.get(topic)
@@ -244,6 +259,15 @@ class Recording:
         last = samples.take()
         if len(last):
             yield last
+        self._count(samples.complete, samples.incomplete)
+
+    def _count(self, complete: int, incomplete: int) -> None:
+        """Count the samples that were read; raise `PartialRecording` if these are not all."""
+        unread = max(self.samples - complete, 0)
+        self.tally.there, self.tally.used = complete + incomplete + unread, complete
+        self.tally.refused = Counter({reason: count for reason, count in (("incomplete", incomplete), ("not readable", unread)) if count})
+        if not self.tally.is_whole and not self._allow_partial:
+            raise PartialRecording(printable(self.path), self.tally)
 
 
 class _Samples:
@@ -253,10 +277,15 @@ class _Samples:
     ----------
     scene : what was simulated.
     start_ns : wall time of sample time 0 [ns since the epoch].
+
+    Attributes
+    ----------
+    complete, incomplete : samples that `take` has returned, and left out.
     """
 
     def __init__(self, scene: Scene, start_ns: int):
         self._scene, self._start_ns = scene, start_ns
+        self.complete = self.incomplete = 0
         self._block = new_block(ROWS_PER_BLOCK, scene.bearing.roller.count)
         self._count = 0  # samples begun since the last `take`
         self._log_ns: int | None = None
@@ -350,7 +379,9 @@ class _Samples:
     def take(self) -> np.ndarray:
         """Return the samples so far, without one that a kill cut short: its loads, written last, are missing."""
         block, self._count = self._block[: self._count], 0
-        block = block[~np.isnan(block["inner_load"]).all(axis=1)]
+        is_complete = ~np.isnan(block["inner_load"]).all(axis=1)
+        block = block[is_complete]
+        self.complete, self.incomplete = self.complete + len(block), self.incomplete + int((~is_complete).sum())
         if not self._scene.bodies_tilt:
             for field in _OF_TILTING_LEVELS:
                 block[field] = 0.0

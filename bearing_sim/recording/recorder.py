@@ -91,6 +91,7 @@ class Recorder(AbstractContextManager):
         wait: bool = True,
         frame: str = topics.FRAME,
         metadata: Mapping[str, Mapping[str, str]] | None = None,
+        names: topics.Names = topics.OWN_NAMES,
     ) -> "LiveRecording":
         """Begin a recording; the other parameters are those of `bearing_sim.recording.writer.McapSink`.
 
@@ -103,7 +104,7 @@ class Recorder(AbstractContextManager):
         OSError
             The file cannot be made, or no process can be started.
         """
-        options = {"limits": limits, "advance": advance, "frame": frame, "metadata": metadata}
+        options = {"limits": limits, "advance": advance, "frame": frame, "metadata": metadata, "names": names}
         recording = LiveRecording(self._living_client(), Path(path), scene, int(start_ns), options)
         if wait:
             recording.wait_until_open()

@@ -14,12 +14,16 @@ import sys
 import threading
 import traceback
 from collections.abc import Iterator
+from contextlib import suppress
 from types import SimpleNamespace
 from typing import BinaryIO
 
 from bearing_sim.messages.cdr import load_message_types
 from bearing_sim.model.sample import sample_dtype
+from bearing_sim.recording.append_file import NO_SPACE
 from bearing_sim.recording.writer import McapSink
+
+_RETRY_EVERY = 2.0  # [s] to complete a recording once there is space again; the last try is at the end of the process
 
 
 def main() -> None:
@@ -66,6 +70,7 @@ class RecorderServer:
         self._sinks: dict[int, McapSink] = {}
         self._failed: set[int] = set()
         self._closing: list[threading.Thread] = []
+        self._ending = threading.Event()
 
     def do(self, number: int, name: str, arguments: tuple) -> None:
         """Open or close a recording, or call a method of its sink; after the first error, which is reported, the recording gets nothing more."""
@@ -89,6 +94,7 @@ class RecorderServer:
 
     def close(self) -> None:
         """Complete what is not complete yet."""
+        self._ending.set()
         for number in list(self._sinks):
             self._close(number)
         for thread in self._closing:
@@ -106,10 +112,18 @@ class RecorderServer:
     def _complete(self, number: int, sink: McapSink) -> None:
         try:
             sink.close()
+            lacks_space = False
         except Exception as error:
             self._report(number, error=_described(error))
+            lacks_space = isinstance(error, OSError) and error.errno in NO_SPACE
         self._report_news_of(number, sink)
         self._report(number, closed=True)
+        while lacks_space:
+            is_last = self._ending.wait(_RETRY_EVERY)
+            with suppress(OSError):
+                sink.close()
+                return
+            lacks_space = not is_last
 
     def _report_news_of(self, number: int, sink: McapSink) -> None:
         if news := sink.news():

@@ -11,6 +11,7 @@ from typing import BinaryIO
 
 from mcap.records import Attachment, Channel, Header, Metadata, Schema
 
+from bearing_sim.files.limits import printable
 from bearing_sim.files.outputs import Output
 from bearing_sim.recording.bag import Part, RecordingError, TopicCount, bag_metadata
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
@@ -41,6 +42,8 @@ class Contents:
     ends : why not, or ``""``.
     has_checksums : whether the format has some, which were verified.
     covers_all : whether these cover all of the file; otherwise only chunks and, where the writer made one, the summary.
+    undecodable : by topic, why its first message cannot be decoded, although it can be read.
+    notes : how messages are read in another way than the file says, such as unpacked.
     """
 
     path: Path
@@ -61,6 +64,8 @@ class Contents:
     ends: str = ""
     has_checksums: bool = True
     covers_all: bool = False
+    undecodable: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
 
     @property
     def is_sound(self) -> bool:
@@ -88,7 +93,25 @@ def contents(path: str | Path, progress: Callable[[float], None] = lambda done: 
     OSError
         It cannot be read.
     """
-    return _walk(McapReader(path), progress, lambda record: None)
+    found = _walk(McapReader(path), progress, lambda record: None)
+    untried, bag = {topic for topic, count in found.messages.items() if count}, BagReader(path)
+    for item in bag:
+        if not isinstance(item, BagTopic):
+            _try(found, untried, *item)
+            if not untried:
+                break
+    found.notes = bag.tally.notes
+    return found
+
+
+def _try(found: Contents, untried: set[str], topic: BagTopic, log_ns: int, data: bytes) -> None:
+    """Enter into contents whether a message can be decoded, if it is the first of its topic."""
+    if topic.name in untried:
+        untried.remove(topic.name)
+        try:
+            topic.decode(data)
+        except Exception as error:  # decoders raise exceptions of any kind on damaged data
+            found.undecodable[topic.name] = printable(str(error))
 
 
 def foreign_contents(path: str | Path) -> Contents | None:
@@ -104,16 +127,19 @@ def foreign_contents(path: str | Path) -> Contents | None:
         return None
     files = [path] if path.is_file() else [file for file in path.iterdir() if file.is_file()]
     found = Contents(path, sum(file.stat().st_size for file in files), has_checksums=False, library="another program (SQLite or ROS 1)")
-    first, last = math.inf, -math.inf
+    first, last, untried = math.inf, -math.inf, set()
     try:
         for item in bag:
             if isinstance(item, BagTopic):
                 found.types[item.name] = item.ros_type
+                untried.add(item.name)
                 continue
             topic, log_ns, _ = item
+            _try(found, untried, *item)
             found.messages[topic.name] += 1
             first, last = min(first, log_ns), max(last, log_ns)
-        found.is_finished, found.ends = not bag.unfinished, bag.unfinished
+        found.is_finished, found.ends = bag.tally.is_whole, bag.tally.text if not bag.tally.is_whole else ""
+        found.notes = bag.tally.notes
     except RecordingError as error:
         if not found.types:
             raise

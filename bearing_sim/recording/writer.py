@@ -8,8 +8,9 @@ import math
 import os
 import threading
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +23,7 @@ from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.sample_messages import BandMessages, InputMessages
 from bearing_sim.recording.append_file import AppendFile, set_aside
 from bearing_sim.recording.bag import ACTIVE, QOS_TEXT, UNLIMITED, Limits, Part, TopicCount, bag_metadata, write_bag_metadata
-from bearing_sim.recording.mcap_format import Message
+from bearing_sim.recording.mcap_format import OWN_TOPIC, Message
 from bearing_sim.recording.mcap_writer import McapWriter, SampleRows, widened
 from bearing_sim.recording.provenance import git_hash, package_version, versions
 from bearing_sim.scene.loader import scene_to_yaml
@@ -59,6 +60,11 @@ class McapFile(AbstractContextManager):
     flush_every : time between flushes [s].
     replace : whether a finished file of the same name is replaced at `close`.
     keep_free : free space to leave on the disk [byte]; below it writing stops with an OSError.
+    names : full names of topics by their own, under which they are written where they differ.
+
+    Attributes
+    ----------
+    is_complete : whether `close` has completed it.
 
     Raises
     ------
@@ -75,8 +81,9 @@ class McapFile(AbstractContextManager):
         flush_every: float = 0.5,
         replace: bool = False,
         keep_free: float = 0.0,
+        names: Mapping[str, str] = MappingProxyType({}),
     ):
-        self.path, self._replace = Path(path), replace
+        self.path, self._replace, self._names = Path(path), replace, names
         if self.path.is_dir():
             raise IsADirectoryError(f"{self.path} is a folder; expected the name of a file to write")
         if self.path.exists() and not replace:
@@ -101,7 +108,7 @@ class McapFile(AbstractContextManager):
         self._span: tuple[int, int] | None = None
         self._lock = threading.RLock()
         self._closing = threading.Event()
-        self._closed = False
+        self._closed = self.is_complete = False
         self._file.check()
         if self._file.error is not None:
             self._file.close()
@@ -211,6 +218,7 @@ class McapFile(AbstractContextManager):
         except FileExistsError:
             raise
         except OSError:
+            self._file.close()
             self.active_path.unlink(missing_ok=True)
             raise
         if kind is not None:
@@ -237,23 +245,22 @@ class McapFile(AbstractContextManager):
         Raises
         ------
         OSError
-            It could not be completed; what could be written is in ``<path>.active``.
+            It could not be completed; what could be written is in ``<path>.active``, and another call tries again to write the rest.
         """
         self._closing.set()
         self._flusher.join()
         with self._lock:
-            if self._closed:
+            if self.is_complete:
                 return
-            self._closed = True
-            try:
+            if not self._closed:
+                self._closed = True
                 metadata = bag_metadata([self.part()], [self.topic_counts()], self._custom_data)
                 self._writer.add_metadata("rosbag2", {"serialized_metadata": metadata})
                 self._writer.finish()
-                complete = self._file.retry()
-            finally:
-                self._file.close()
-            if not complete:
+            if not self._file.complete():
                 raise self._error()
+            self.is_complete = True
+            self._file.close()
             if named:
                 _rename(self.active_path, self.path, self._replace)
 
@@ -264,7 +271,8 @@ class McapFile(AbstractContextManager):
     def topic_counts(self) -> list[TopicCount]:
         """Return the entries of its topics in the metadata of its bag."""
         return [
-            TopicCount(topic, channel.ros_type, message_type(channel.ros_type).hash, self._counts[topic]) for topic, channel in self._channels.items()
+            TopicCount(self._full_name(topic), channel.ros_type, message_type(channel.ros_type).hash, self._counts[topic])
+            for topic, channel in self._channels.items()
         ]
 
     def _register(self, topic: str, ros_type: str) -> _Channel:
@@ -272,9 +280,14 @@ class McapFile(AbstractContextManager):
         if ros_type not in self._schemas:
             self._schemas[ros_type] = self._writer.add_schema(ros_type, "ros2msg", kind.definition.encode())
         metadata = {"offered_qos_profiles": QOS_TEXT, "topic_type_hash": kind.hash}
-        self._channels[topic] = _Channel(self._writer.add_channel(topic, "cdr", self._schemas[ros_type], metadata), ros_type)
+        if (name := self._full_name(topic)) != topic:
+            metadata[OWN_TOPIC] = topic.removeprefix("/")
+        self._channels[topic] = _Channel(self._writer.add_channel(name, "cdr", self._schemas[ros_type], metadata), ros_type)
         self._counts[topic] = 0
         return self._channels[topic]
+
+    def _full_name(self, topic: str) -> str:
+        return self._names.get(topic.removeprefix("/"), topic)
 
     def _flush_regularly(self, interval: float) -> None:
         while not self._closing.wait(interval):
@@ -314,7 +327,7 @@ class SplitFiles:
     ----------
     path : ``run.mcap`` is one file, or ``run_0.mcap``, ``run_1.mcap`` ... if ``limits`` split it.  A name without ``.mcap`` is a bag: a
         folder of such files with a ``metadata.yaml``, as rosbag2 makes it.
-    metadata, custom_data, flush_every, replace : see `McapFile`; a bag is never replaced.
+    metadata, custom_data, flush_every, replace, names : see `McapFile`; a bag is never replaced.
     limits : when the next file begins.
 
     Raises
@@ -331,18 +344,25 @@ class SplitFiles:
         flush_every: float = 0.5,
         replace: bool = False,
         limits: Limits = UNLIMITED,
+        names: Mapping[str, str] = MappingProxyType({}),
     ):
-        self.path, self._limits = Path(path), limits
+        self.path, self._limits, self._names = Path(path), limits, names
         self._is_bag = self.path.suffix != ".mcap"
         self._is_split = math.isfinite(limits.part_size) or math.isfinite(limits.part_duration)
         if self._is_bag and self.path.exists():
             what = "is a folder" if self.path.is_dir() else "exists"
             raise FileExistsError(f"{self.path} {what}; a recording does not replace another one (a name that ends in .mcap makes a single file)")
         self._metadata, self._custom_data, self._flush_every, self._replace = metadata, custom_data, flush_every, replace
-        self._done: list[tuple[Part, list[TopicCount]]] = []
+        self._done: list[McapFile] = []  # the files before the current one
         self._news: list[tuple[Level, str, str]] = []
         self._completing: threading.Thread | None = None
-        self._current = self._open()
+        try:
+            self._current = self._open(0)
+        except OSError:
+            if self._is_bag:
+                with suppress(OSError):  # it was not made, or somebody has put something into it
+                    self.path.rmdir()
+            raise
 
     @property
     def current(self) -> McapFile:
@@ -362,34 +382,49 @@ class SplitFiles:
         return news + self._current.news()
 
     def close(self, interrupted: bool = False) -> None:
-        """Complete the last file and the bag; a second call does nothing.
+        """Complete the last file and the bag; a second call does nothing but what could not be done before.
 
         Parameters
         ----------
         interrupted : whether the recording ends before its time; then it does not replace an older one, but stays ``<path>.active``.
+
+        Raises
+        ------
+        OSError
+            A file could not be completed; the metadata of the bag name the others.
         """
         if self._completing is not None:
             self._completing.join()
-        self._current.close(named=not (interrupted and self._current.path.exists()))
+        errors: list[OSError] = []
+        for file in (*self._done, self._current):
+            try:
+                file.close(named=not (interrupted and file.path.exists()))
+            except OSError as error:
+                errors.append(error)
         if self._is_bag:
-            self._write_metadata([*self._done, (self._current.part(), self._current.topic_counts())])
+            try:
+                self._write_metadata([*self._done, self._current])
+            except OSError as error:
+                errors.append(error)
+        if errors:
+            raise errors[0]
 
     def _path_of(self, number: int) -> Path:
         if self._is_bag:
             return self.path / f"{self.path.name}_{number}.mcap"
         return self.path.with_stem(f"{self.path.stem}_{number}") if self._is_split else self.path
 
-    def _open(self) -> McapFile:
-        number = len(self._done)
+    def _open(self, number: int) -> McapFile:
         metadata = {name: {**record, "part": str(number)} if name == METADATA else record for name, record in self._metadata.items()}
-        return McapFile(self._path_of(number), metadata, self._custom_data, self._flush_every, self._replace, self._limits.keep_free)
+        limits = self._limits
+        return McapFile(self._path_of(number), metadata, self._custom_data, self._flush_every, self._replace, limits.keep_free, self._names)
 
     def _begin_next(self) -> None:
         full = self._current
         if self._completing is not None:
             self._completing.join()
-        self._done.append((full.part(), full.topic_counts()))
-        self._current = self._open()
+        self._current = self._open(len(self._done) + 1)
+        self._done.append(full)
         # On a thread of its own, because completing waits for the disk.
         self._completing = threading.Thread(target=self._complete, args=(full,), name="mcap-complete", daemon=True)
         self._completing.start()
@@ -403,8 +438,11 @@ class SplitFiles:
             self._news.append((Level.ERROR, "recording.part", f"{full.path} could not be completed: {error}"))
         self._news += full.news()
 
-    def _write_metadata(self, done: list[tuple[Part, list[TopicCount]]]) -> None:
-        write_bag_metadata(self.path, bag_metadata([part for part, _ in done], [counts for _, counts in done], self._custom_data))
+    def _write_metadata(self, files: Sequence[McapFile]) -> None:
+        """Write the metadata of the bag, which name those of its files that are complete."""
+        if complete := [file for file in files if file.is_complete]:
+            metadata = bag_metadata([file.part() for file in complete], [file.topic_counts() for file in complete], self._custom_data)
+            write_bag_metadata(self.path, metadata)
 
 
 class McapSink(AbstractContextManager):
@@ -423,6 +461,7 @@ class McapSink(AbstractContextManager):
     advance : duration [s] and number of samples of each of the run's calls of the model, if they are always the same; goes into the metadata,
         so that the run can be reproduced by the same calls.
     frame : the bearing's, in the headers of what is recorded of samples.
+    names : under which topics and statuses are recorded.
 
     Raises
     ------
@@ -442,9 +481,10 @@ class McapSink(AbstractContextManager):
         seed: int | None = None,
         advance: tuple[float, int] | None = None,
         frame: str = topics.FRAME,
+        names: topics.Names = topics.OWN_NAMES,
     ):
         self.start_ns, self._frame = int(start_ns), frame
-        self._bearing = scene.bearing.name
+        self._status_names = {"component": names.component, "hardware_id": names.hardware_id or scene.bearing.name}
         recorded = topics.recorded(scene).values()
         self._topics = tuple(topic for topic in recorded if not topic.repeats)
         self._whole_topics = tuple(sorted(recorded, key=lambda topic: not topic.repeats))  # those that repeat others come first
@@ -460,7 +500,8 @@ class McapSink(AbstractContextManager):
             record["seed"] = str(seed)
         if advance is not None:
             record |= {"advance_seconds": repr(float(advance[0])), "advance_samples": str(advance[1])}
-        self._files = SplitFiles(path, {METADATA: record, **(metadata or {})}, {"generator": "bearing_sim", **origin}, flush_every, replace, limits)
+        records, custom_data = {METADATA: record, **(metadata or {})}, {"generator": "bearing_sim", **origin}
+        self._files = SplitFiles(path, records, custom_data, flush_every, replace, limits, names.topics)
 
     @property
     def path(self) -> Path:
@@ -534,12 +575,12 @@ class McapSink(AbstractContextManager):
     def write_event(self, event: Event) -> None:
         """Write one event as diagnostics."""
         time_ns = self._time_ns(event.time)
-        self._write_diagnostics(time_ns, diagnostics.news(time_ns, event, hardware_id=self._bearing))
+        self._write_diagnostics(time_ns, diagnostics.news(time_ns, event, **self._status_names))
 
     def write_diagnostics(self, time: float, events: Iterable[Event] = (), values: Mapping[str, object] | None = None) -> None:
         """Write a report of all subjects (see `bearing_sim.messages.diagnostics.report`)."""
         time_ns = self._time_ns(time)
-        self._write_diagnostics(time_ns, diagnostics.report(time_ns, events, values or {}, hardware_id=self._bearing))
+        self._write_diagnostics(time_ns, diagnostics.report(time_ns, events, values or {}, **self._status_names))
 
     def _write_diagnostics(self, time_ns: int, message: dict) -> None:
         name, ros_type = topics.DIAGNOSTICS

@@ -3,11 +3,13 @@
 
 import dataclasses
 import json
+import math
 import shlex
 import subprocess
 import time
 from collections.abc import Callable
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
+from difflib import SequenceMatcher
 from functools import partial
 from pathlib import Path
 
@@ -15,13 +17,14 @@ from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallba
 from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 from std_srvs.srv import SetBool, Trigger
 
 from bearing_sim.estimation.response import ResponseModel, kept_response
 from bearing_sim.extras import what_is_missing
+from bearing_sim.inputs.gate import REQUIRED, Sources
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.events import Event, Level
@@ -30,8 +33,10 @@ from bearing_sim.messages.topics import Topic
 from bearing_sim.ros.messages import InputReader, Refused, message, message_class
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, follows_clock, scene_values_in
 from bearing_sim.ros.polling import PolledSubscriptions
+from bearing_sim.ros.qos import INPUT_QOS, LOSSY_QOS, entities_of_bearing, profiles
+from bearing_sim.ros.rclpy_internals import raw_publish
 from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
-from bearing_sim.ros.warm_up import WarmUp, levels_to_compile, start_compiling
+from bearing_sim.ros.warm_up import WarmUp, levels_to_compile
 from bearing_sim.runtime.governor import RECORD as GOVERNOR_RECORD
 from bearing_sim.runtime.governor import Governor, governor_record, settings_to_fall
 from bearing_sim.runtime.health import Condition, Phase, not_running
@@ -50,23 +55,22 @@ from bearing_sim.view.viewer import stream_url, viewer_command
 
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
 _SCALAR = "std_msgs/msg/Float64"
-STATE_QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
-# Like sensor data, so that any publisher matches, but deeper: a recording must not miss inputs when the machine stalls.
-_INPUT_QOS = QoSProfile(depth=200, reliability=ReliabilityPolicy.BEST_EFFORT)
-# With sim time, a lost message would make this run differ from the recording it follows.
-_LOSSLESS_QOS = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
-_LOSSY_QOS = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.BEST_EFFORT)
-_SIM_TIME_OUTPUT_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)  # one step of /clock may bring many outputs at once
 
 
 def subscribe_to_all(
-    node: Node, kind: type, topic: str, callback: Callable, replace: Callable[[Subscription], None], report_loss: Callable[[str], None]
+    node: Node,
+    kind: type,
+    topic: str,
+    callback: Callable,
+    profile: QoSProfile,
+    replace: Callable[[Subscription], None],
+    report_loss: Callable[[str], None],
 ) -> Subscription:
     """Return a subscription to serialised messages that loses none where its publishers are reliable.
 
     Parameters
     ----------
-    kind, topic, callback : as for ``create_subscription``.
+    kind, topic, callback, profile : as for ``create_subscription``.
     replace : called with the subscription that takes over when a publisher offers best effort only; messages may then be lost.
     report_loss : called with a text when that happens, and when messages were lost.
     """
@@ -77,15 +81,40 @@ def subscribe_to_all(
         fallen.append(True)
         report_loss(f"{topic}: a publisher offers best effort only; if messages are lost, this run differs from the recording")
         node.destroy_subscription(subscription)
-        replace(node.create_subscription(kind, topic, callback, _LOSSY_QOS, event_callbacks=losses, raw=True))
+        replace(node.create_subscription(kind, topic, callback, LOSSY_QOS, event_callbacks=losses, raw=True))
 
     fallen: list[bool] = []
     losses = SubscriptionEventCallbacks(
         message_lost=lambda info: report_loss(f"{topic}: {info.total_count} messages were lost; inputs are interpolated linearly across the gap")
     )
     events = SubscriptionEventCallbacks(incompatible_qos=fall_back, message_lost=losses.message_lost)
-    subscription = node.create_subscription(kind, topic, callback, _LOSSLESS_QOS, event_callbacks=events, raw=True)
+    subscription = node.create_subscription(kind, topic, callback, profile, event_callbacks=events, raw=True)
     return subscription
+
+
+class PublishedTopics:
+    """Finds topics that somebody publishes; looks once a second for all bearings of a node.
+
+    Parameters
+    ----------
+    node : asked for the graph.
+    """
+
+    def __init__(self, node: Node):
+        self._node, self._looked_at = node, -math.inf
+        self._by_type: dict[str, list[str]] = {}
+
+    def like(self, name: str, ros_type: str) -> tuple[str, ...]:
+        """Return at most two topics of a type, other than outputs of bearings, those first whose names are closest to ``name``."""
+        if time.monotonic() - self._looked_at >= _DIAGNOSTICS_PERIOD:
+            self._looked_at, self._by_type = time.monotonic(), {}
+        if ros_type not in self._by_type:
+            of_type = (found for found, types in self._node.get_topic_names_and_types() if ros_type in types)
+            own = {subscription.topic_name for subscription in self._node.subscriptions}
+            candidates = (found for found in of_type if found not in own and found.rpartition("/")[2] not in topics.OUTPUTS)
+            self._by_type[ros_type] = sorted(found for found in candidates if self._node.count_publishers(found))
+        ranked = sorted(self._by_type[ros_type], key=lambda found: -SequenceMatcher(None, found, name).ratio())
+        return tuple(ranked[:2])
 
 
 class DeferredCall:
@@ -126,16 +155,16 @@ class Outputs:
     node : owner of the publishers.
     scene : of the bearing; its level determines the topics.
     name_of : ``name_of(topic)`` returns the name under which a topic is published.
-    qos : offered QoS.
+    profile_of : ``profile_of(topic)`` returns the offered QoS.
     frame : the bearing's.
     """
 
-    def __init__(self, node: Node, scene: Scene, name_of: Callable[[str], str], qos: QoSProfile, frame: str):
-        self._node, self._name_of, self._qos, self._frame = node, name_of, qos, frame
+    def __init__(self, node: Node, scene: Scene, name_of: Callable[[str], str], profile_of: Callable[[str], QoSProfile], frame: str):
+        self._node, self._name_of, self._profile_of, self._frame = node, name_of, profile_of, frame
         self._topics, self._rollers = tuple(topics.outputs(scene).values()), scene.bearing.roller.count
         self._publishers = [self._publisher(topic) for topic in self._topics]
         self._borrowed = ExitStack()
-        self._sends = [_raw_publish(publisher, self._borrowed) for publisher in self._publishers]
+        self._sends = [raw_publish(publisher, self._borrowed) for publisher in self._publishers]
         self._messages: SampleMessages | None = None
         self._residual_topic = topics.MEASUREMENTS["cage_slip_residual"]
         self._residual = self._publisher(self._residual_topic)
@@ -199,19 +228,9 @@ class Outputs:
 
     def _publisher(self, topic: Topic) -> Publisher:
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
-        return self._node.create_publisher(message_class(topic.ros_type), self._name_of(topic.name), self._qos, event_callbacks=quiet)
-
-
-def _raw_publish(publisher: Publisher, borrowed: ExitStack) -> Callable[[bytes], None]:
-    """Return the function that publishes a serialised message, valid until ``borrowed`` is closed.
-
-    This is what `Publisher.publish` calls in the end.  Entering the handle once instead of at every message saves a sixth of the cost.
-    """
-    handle = publisher.handle
-    if not hasattr(handle, "publish_raw"):  # another version of rclpy
-        return publisher.publish
-    borrowed.enter_context(handle)
-    return handle.publish_raw
+        return self._node.create_publisher(
+            message_class(topic.ros_type), self._name_of(topic.name), self._profile_of(topic.name), event_callbacks=quiet
+        )
 
 
 class BearingInterface:
@@ -222,13 +241,15 @@ class BearingInterface:
     Parameters
     ----------
     node : owner of topics and services.
-    settings : of this bearing; if it has a name, its topics and services are below that name.
+    settings : of this bearing; if it has a name, its topics are below that name in the namespace, its services below that name and the node's.
     shared : settings of the node.
 
     Raises
     ------
     SceneError
         The scene cannot be used.
+    SettingsError
+        The quality of service of a topic cannot be used.
     OSError
         The bearing's state cannot be used.
     """
@@ -236,6 +257,7 @@ class BearingInterface:
     def __init__(self, node: LifecycleNode, settings: BearingSettings, shared: NodeSettings):
         self._node, self._logger, self.settings, self._shared = node, node.get_logger(), settings, shared
         self.scene: Scene = load_scene(settings.scene, settings.scene_overrides, settings.allow_outside)
+        self._profiles = profiles(node.parameters, entities_of_bearing(self.scene, self._full_name, follows_clock(node)))
         self._keeper = self._open_state(settings.serial)
         self.live: LiveModel | SimTimeModel | None = None
         self._wanted_serial = settings.serial  # in use from ~/replace_bearing on
@@ -245,14 +267,17 @@ class BearingInterface:
         self._governor: Governor | None = None
         self._settings: list[KeptSetting] = []  # measured ones, along which the governor falls
         self._courses: tuple[KeptCourse, ...] = ()  # that these were measured on
+        self._wants_governor = False
         self._new_governor: Governor | None = None  # made on the warm-up thread, taken over at the next review
         self._compiling: subprocess.Popen | None = None
         self._last_level: Level | None = None
         self._next_report_ns = 0
         self._now_ns = node.now_ns
         self._subscriptions: dict[str, Subscription] = {}
+        self._types: dict[str, str] = {}  # that are listened to, by channel
+        self._found: dict[str, tuple[int, int, Sources]] = {}  # by channel: publishers of any type, and good messages, when they were looked at
         self.component = node.component_of(settings.name)
-        self._outputs = Outputs(node, self.scene, self._topic_name, _SIM_TIME_OUTPUT_QOS if follows_clock(node) else STATE_QOS, settings.frame)
+        self._outputs = Outputs(node, self.scene, self._topic_name, partial(self._profile, "publisher"), settings.frame)
         self._publish_residuals_soon = DeferredCall(node, self._publish_residuals)
         self._services = [
             node.create_service(kind, self._service_name(name), self._served(act))
@@ -284,18 +309,20 @@ class BearingInterface:
         """Compile or load the model, which takes seconds to minutes; runs on the thread of `WarmUp`."""
         settings = self.settings
         try:
-            prepare(settings.has_view, None if follows_clock(self._node) else self._node.recorder)
+            recorder = None if follows_clock(self._node) else self._node.recorder
+            if settings.record or settings.has_view:
+                prepare(settings.has_view, recorder)
             self._outputs.prepare()
             self._response = kept_response(self.scene) if self.scene.estimation.is_asked else None
             simulation = warmed_up(self.scene)
             governs = self._shared.governor and not follows_clock(self._node)  # with sim time no time is skipped
             kept = read_front(self.scene)
             self._settings, self._courses = settings_to_fall(self.scene, kept), () if kept is None else kept.at(self.scene).courses
-            if governs and levels_to_compile(self.scene):
-                self._compiling = start_compiling(self.scene, lower=True)
-            elif governs:
-                self._governor = governor_of(simulation, self._settings, self._courses)
+            self._wants_governor = governs  # made once the run has begun, which does not wait for the code of other levels
             self._simulation = simulation
+            if not settings.record:  # for a recording that a service asks for, which reports why it cannot be made
+                with suppress(OSError):
+                    prepare(False, recorder)
         except IntegrationError as error:
             self.error = f"the scene's own operating conditions cannot be computed: {error}"
         except Exception as error:  # a programming error: reported by the node, where users look
@@ -320,6 +347,8 @@ class BearingInterface:
                 shared.clock_jump_back,
                 keeper=self._keeper,
                 response=self._response,
+                inputs_expected_within=shared.inputs_expected_within,
+                clock_tolerance=shared.clock_tolerance,
             )
             self.live.tick(self._now_ns())
         else:
@@ -337,6 +366,8 @@ class BearingInterface:
                 threads=self._node.solver_threads,
                 keeper=self._keeper,
                 response=self._response,
+                inputs_expected_within=shared.inputs_expected_within,
+                stamp_tolerance=shared.stamp_tolerance,
             )
             temperature = self.scene.lubricant.temperature
             if self._simulation.inputs.oil_temperature != temperature:  # set while inactive, or given by the topic in the last run
@@ -355,8 +386,6 @@ class BearingInterface:
         self._log(f"ready: listening to {', '.join(subscription.topic_name for subscription in self._subscriptions.values())}")
         if self._settings and shared.governor and not follows_clock(self._node):
             self._log(f"the governor falls along measured settings: {'; '.join(setting.name for setting in self._settings)}")
-        if self._compiling is not None:
-            self._log("compiling levels of lower fidelity for the governor in the background, once for this version")
 
     def tick(self, now_ns: int) -> None:
         """Pass on a reading of /clock, if the model follows it."""
@@ -372,7 +401,7 @@ class BearingInterface:
         """
         for subscription in self._subscriptions.values():
             self._listener.destroy_subscription(subscription)
-        self._subscriptions = {}
+        self._subscriptions, self._found = {}, {}
         live, self.live = self.live, None
         stopped = live.close() if live is not None else True
         if live is not None:
@@ -410,7 +439,7 @@ class BearingInterface:
             return
         self._join_governor(warm_up)
         if follows_clock(self._node) and self.live.solver.phase is Phase.WAITING:
-            self._count_publishers()  # whether the run waits for a first oil temperature is decided once, when it starts
+            self._look_for_publishers()  # whether the run waits for a first oil temperature is decided once, when it starts
         for event in self.live.collect(now_ns):
             self._log_event(event)
         self._outputs.update_subscribed()
@@ -419,6 +448,7 @@ class BearingInterface:
         for bands in self.live.bands():
             self._outputs.publish_bands(bands, [self.live.stamp(time) for time in bands.times.tolist()])
         if self._report_is_due(self.live.level):
+            self._look_for_publishers()  # once a second is enough
             self._report(now_ns, self.live.condition(now_ns))
 
     def _report_is_due(self, level: Level) -> bool:
@@ -426,19 +456,43 @@ class BearingInterface:
 
     def _report(self, now_ns: int, condition: Condition) -> None:
         """Publish the condition on /diagnostics."""
-        if self.live is not None:  # counting publishers once a second is enough
-            self._count_publishers()
         self._last_level = condition.level
         self._next_report_ns = time.monotonic_ns() + round((_DIAGNOSTICS_PERIOD - self._node.review_period / 2) * 1e9)
         self._node.publish_diagnostics(now_ns, condition, self.component, self.hardware_id)
         if self.live is not None:
             self.live.record_diagnostics(condition, now_ns)
 
-    def _count_publishers(self) -> None:
-        names = {channel: each.topic_name for channel, each in self._subscriptions.items() if channel != topics.VIBRATION.name}
-        unused = {channel: self._node.resolve_topic_name(self._topic_name(channel)) for channel in topics.INPUTS if channel not in names}
-        for channel, name in (names | unused).items():
-            self.live.note_publishers(channel, self._node.count_publishers(name))
+    def _look_for_publishers(self) -> None:
+        """Tell the model who publishes its inputs, and which topics the scene does not use have a publisher."""
+        for channel in (*self._types, *(channel for channel in topics.INPUTS if channel not in self._types)):
+            name, accepted = self._full_name(channel), self.live.gate.accepted[channel]
+            count = self._node.count_publishers(name)
+            if channel not in self._types:
+                self.live.note_publishers(channel, count)
+                continue
+            before = self._found.get(channel)
+            # Looking at each publisher costs more than counting them: where nothing changes and messages come, nothing is to be found.
+            if before is None or count != before[0] or (accepted == before[1] and (count or channel in REQUIRED)):
+                self._found[channel] = count, accepted, self._sources_of(channel, name, count)
+            else:
+                self._found[channel] = count, accepted, before[2]
+            self.live.note_sources(channel, self._found[channel][2])
+
+    def _sources_of(self, channel: str, name: str, count: int) -> Sources:
+        ros_type, profile = self._types[channel], self._subscriptions[channel].qos_profile
+        if not count:
+            alternatives = self._node.published_topics.like(name, ros_type) if channel in REQUIRED else ()
+            return Sources(name, ros_type, 0, alternatives=alternatives)
+        publishers, others, misfits = 0, [], []
+        for publisher in self._node.get_publishers_info_by_topic(name):
+            compatibility, reason = qos_check_compatible(publisher.qos_profile, profile)
+            if publisher.topic_type != ros_type:
+                others.append(publisher.topic_type)
+            elif compatibility == QoSCompatibility.ERROR:
+                misfits.append(reason.removeprefix("ERROR: ").rstrip(";. "))
+            else:
+                publishers += 1
+        return Sources(name, ros_type, publishers, tuple(sorted(set(others))), tuple(sorted(set(misfits))))
 
     def reason_to_refuse(self, changes: dict[str, object]) -> str:
         """Return why changes of this bearing's parameters are refused; empty if they can be applied."""
@@ -484,8 +538,8 @@ class BearingInterface:
         self._shared = dataclasses.replace(self._shared, governor=wanted)
         if follows_clock(self._node):
             return
-        if wanted and self._governor is None and self._compiling is None and self.is_warm:
-            warm_up.request(self._make_governor)
+        if wanted and self._governor is None and self.is_warm:
+            self._wants_governor = True
         elif self.live is not None:
             self.live.govern(self._governor if wanted else None)
 
@@ -531,27 +585,29 @@ class BearingInterface:
     def _subscribe(self, channel: str, ros_type: str) -> None:
         joints = {topics.MEASURED: self.settings.cage_joint, topics.MEASURED_CLEARANCE: topics.CLEARANCE_JOINT}
         joint = joints.get(channel, self.settings.joint)
+        self._types[channel] = ros_type
         receive = partial(self._receive, channel, InputReader(channel, ros_type, joint, self.settings.frame_id, self._node.transforms))
         kind, name = message_class(ros_type), self._topic_name(channel)
         if follows_clock(self._node):
             replace = partial(self._subscriptions.__setitem__, channel)
-            self._subscriptions[channel] = subscribe_to_all(self._node, kind, name, receive, replace, self._report_loss)
+            profile = self._profile("subscription", channel)
+            self._subscriptions[channel] = subscribe_to_all(self._node, kind, name, receive, profile, replace, self._report_loss)
             return
-        quiet = SubscriptionEventCallbacks(use_default_callbacks=False)  # any publisher matches: nothing to watch
-        self._subscriptions[channel] = self._listener.create_subscription(kind, name, receive, _INPUT_QOS, event_callbacks=quiet, raw=True)
+        self._subscriptions[channel] = self._listen(channel, kind, receive)
+
+    def _listen(self, name: str, kind: type, receive: Callable[[bytes], None]) -> Subscription:
+        """Return a subscription to serialised messages of an input, of which some may be lost."""
+        profile = self._profile("subscription", name)
+        events = SubscriptionEventCallbacks(use_default_callbacks=profile != INPUT_QOS)  # which any publisher matches: nothing to watch
+        return self._listener.create_subscription(kind, self._topic_name(name), receive, profile, event_callbacks=events, raw=True)
 
     def _subscribe_to_vibration(self) -> None:
         """Listen to blocks of vibration; not in simulated time, where a result would come at an instant that depends on the machine."""
         if follows_clock(self._node):
             self._log("vibration: not listened to with use_sim_time; find the cage speed with bearing-sim vibration, and send cage_speed_measured")
             return
-        topic = topics.VIBRATION
-        kind, name = message_class(topic.ros_type), self._topic_name(topic.name)
-        quiet = SubscriptionEventCallbacks(use_default_callbacks=False)
-        subscription = self._listener.create_subscription(
-            kind, name, partial(self._receive_vibration, kind), _INPUT_QOS, event_callbacks=quiet, raw=True
-        )
-        self._subscriptions[topic.name] = subscription
+        topic, kind = topics.VIBRATION.name, message_class(topics.VIBRATION.ros_type)
+        self._subscriptions[topic] = self._listen(topic, kind, partial(self._receive_vibration, kind))
 
     def _receive_vibration(self, kind: type, cdr: bytes) -> None:
         live = self.live
@@ -575,11 +631,20 @@ class BearingInterface:
     def _topic_name(self, name: str) -> str:
         return f"{self.settings.name}/{name}" if self.settings.name else name
 
+    def _full_name(self, name: str) -> str:
+        """Return the name of a topic after namespace and remapping."""
+        return self._node.resolve_topic_name(self._topic_name(name))
+
+    def _profile(self, kind: str, name: str) -> QoSProfile:
+        return self._profiles[self._full_name(name), kind]
+
     def _service_name(self, name: str) -> str:
-        return f"{self.settings.name}/{name}" if self.settings.name else f"~/{name}"
+        return "/".join(filter(None, (self._node.service_prefix, self.settings.name, name)))
 
     def _make_governor(self) -> None:
         """Make a governor, on the thread of `WarmUp`."""
+        if self._simulation is None:  # the run has ended, and its thread has not
+            return
         try:
             self._new_governor = governor_of(self._simulation, self._settings, self._courses)
         except IntegrationError as error:
@@ -588,13 +653,20 @@ class BearingInterface:
     def _join_governor(self, warm_up: WarmUp) -> None:
         """Hand over the governor once its levels are compiled; until then a machine that is too slow skips time."""
         if self._compiling is not None and self._compiling.poll() is not None:
-            self._compiling = None
+            self._compiling, self._wants_governor = None, False
             warm_up.request(self._make_governor)
+        elif self._wants_governor and self._compiling is None:
+            if not levels_to_compile(self.scene):
+                self._wants_governor = False
+                warm_up.request(self._make_governor)
+            elif (compiling := warm_up.compile_lower(self.scene)) is not None:
+                self._compiling = compiling
+                self._log("compiling levels of lower fidelity for the governor in the background, once for this version")
         if self._new_governor is not None:
             self._governor, self._new_governor = self._new_governor, None
             if self._shared.governor:
                 self.live.govern(self._governor)
-                self._log("levels of lower fidelity are compiled: the governor can use them")
+                self._log("the governor can use levels of lower fidelity")
 
     def _receive(self, channel: str, reader: InputReader, cdr: bytes) -> None:
         live = self.live
@@ -617,15 +689,26 @@ class BearingInterface:
             return found
 
         def opened(start_ns: int):
-            limits = limits_of(self._shared)
+            limits, further = limits_of(self._shared), (self.settings.frame, records, self._recorded_names())
             if follows_clock(self._node):
-                sink = open_lossless_recording(path, self.scene, start_ns, limits, self.settings.frame, records)
+                sink = open_lossless_recording(path, self.scene, start_ns, limits, *further)
             else:
-                sink = open_recording(path, self.scene, start_ns, limits, self.live.schedule, self._node.recorder, self.settings.frame, records)
+                sink = open_recording(path, self.scene, start_ns, limits, self.live.schedule, self._node.recorder, *further)
             self._log(f"recording {sink.path}" + (f" ({path} exists and is kept)" if sink.path != path else ""))
             return sink
 
-        self.live.open("record", opened, reopen=True)
+        try:
+            self.live.open("record", opened, reopen=True)
+        except OSError as error:
+            self.live.sinks.fail("record", self.live.run_time(self._now_ns()), error)
+            raise
+
+    def _recorded_names(self) -> topics.Names:
+        """Return the names that topics and statuses have in the ROS graph."""
+        scene, diagnostics = self.scene, topics.DIAGNOSTICS[0]
+        own = {*topics.recorded(scene), *topics.inputs(scene), *topics.MEASUREMENTS, *topics.estimated(scene)}
+        full = {name: self._full_name(name) for name in sorted(own)} | {diagnostics: self._node.resolve_topic_name(f"/{diagnostics}")}
+        return topics.Names({name: each for name, each in full.items() if each != f"/{name}"}, self.component, self.hardware_id)
 
     def _open_view(self) -> None:
         """Open the view; the node does without where its packages are not installed."""

@@ -21,6 +21,7 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import IO, NamedTuple
 
@@ -203,8 +204,11 @@ class _Bearing:
 
 def taken(subscription, serialised: bool = True):
     """Yield all messages that a subscription has, each with what the middleware knows about it."""
-    with subscription.handle:
-        while (found := subscription.handle.take_message(subscription.msg_type, serialised)) is not None:
+    from bearing_sim.ros.rclpy_internals import taker
+
+    with ExitStack() as borrowed:
+        take = taker(subscription, borrowed, serialised)
+        while (found := take()) is not None:
             yield found
 
 

@@ -8,12 +8,19 @@ node's lifecycle and its parameters.  Run it with ``bearing_node``, ``python -m 
 **Lifecycle.**  Configuring checks parameters and scenes, creates publishers and services, and starts compiling the models on a separate
 thread.  It answers within a second however long compiling takes: lifecycle managers give up on slow answers, and the node stays responsive.
 Activating opens inputs and recordings of each bearing as soon as its model is compiled: a fleet does not wait for its slowest member.
-``/diagnostics`` reports in every state what the node is waiting for.  Each activation is a new run: state and damage start over (``~/pause``
-holds them), recordings get fresh names.  Unless ``autostart`` is false, the node configures and activates itself.
+``/diagnostics`` reports in every state what the node is waiting for, as a warning where a bearing should be monitored and is not.  Each activation
+is a new run: state and damage start over (``~/pause`` holds them), recordings get fresh names.  Unless ``autostart`` is false, the node configures
+itself, and activates itself once the first of its models is compiled, so that *active* means that there is something that it monitors.
 """
 
-import dataclasses
 import sys
+
+if __name__ == "__main__":  # before anything is imported, which takes a second or two: a signal must end the node cleanly in the meantime, too
+    from bearing_sim.programs import bearing_node
+
+    sys.exit(bearing_node())
+
+import dataclasses
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -22,9 +29,10 @@ from functools import partial, wraps
 from rclpy.clock import Clock, ClockType, JumpHandle, JumpThreshold
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
 from bearing_sim.inputs.static_transforms import StaticTransforms
@@ -33,12 +41,14 @@ from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.numerics.cores import cores
 from bearing_sim.recording.recorder import Recorder
-from bearing_sim.ros.interface import STATE_QOS, BearingInterface
+from bearing_sim.ros.interface import BearingInterface, PublishedTopics
 from bearing_sim.ros.messages import message_class
 from bearing_sim.ros.network import close_other_interfaces
 from bearing_sim.ros.parameters import BearingSettings, NodeSettings, ParameterServer, SettingsError, follows_clock, scene_values_in
 from bearing_sim.ros.polling import POLLED_FROM, PolledSubscriptions
 from bearing_sim.ros.process import CannotRun, run_node
+from bearing_sim.ros.qos import STATE_QOS, entities_of_bearing, profiles, publisher
+from bearing_sim.ros.rclpy_internals import RclError, wrap_service
 from bearing_sim.ros.transforms import TransformInterface
 from bearing_sim.ros.warm_up import WarmUp
 from bearing_sim.ros.workers import NodeLink, Order, Worker, Workers, passed_arguments, process_count, shares, worker_connection
@@ -54,7 +64,7 @@ _REVIEWED_AT_ONCE = 10  # bearings; a node with more of them reviews each less o
 _LONGEST_REVIEW = 3  # times as long as with few bearings
 _LATE = 5  # review periods without a review
 _NODE = {"node_name": "bearing_node"}
-_WARMING = "warming up: compiling the model; messages received now are not used"
+_WARMING = Event(0.0, Level.WARN, "run.warming_up", "", "warming up, not monitored yet: compiling the model; messages that come now are not used")
 
 
 def _reported(transition: Callable) -> Callable:
@@ -81,18 +91,19 @@ def _reported(transition: Callable) -> Callable:
 
 def _refuse_impossible_transitions(node: LifecycleNode) -> None:
     """Answer "no" to a request for a transition that the current state does not have; rclpy alone would end the process."""
-    (service,) = (service for service in node.services if service.srv_name.endswith("/change_state"))
-    change_state = service.callback
 
-    def answered(request, response):
-        try:
-            return change_state(request, response)
-        except rclpy_implementation.RCLError as error:
-            node.get_logger().warning(f"transition {request.transition.label or request.transition.id} refused: {' '.join(str(error).split())}")
-            response.success = False
-            return response
+    def answering(change_state: Callable) -> Callable:
+        def answered(request, response):
+            try:
+                return change_state(request, response)
+            except RclError as error:
+                node.get_logger().warning(f"transition {request.transition.label or request.transition.id} refused: {' '.join(str(error).split())}")
+                response.success = False
+                return response
 
-    service.callback = answered
+        return answered
+
+    wrap_service(node, "change_state", answering)
 
 
 def _worker_options(order: Order) -> dict[str, object]:
@@ -125,6 +136,9 @@ class BearingNode(LifecycleNode):
         self._ended, self._order, self._arguments = ended, order, arguments
         self._component = self.get_fully_qualified_name().lstrip("/") if order is None else order.component
         self.error = ""  # why the last transition failed
+        # Subjects that have been reported, by component: a status that is not reported any more would turn stale.
+        self._told_of: dict[str, set[str]] = {} if order is None else dict(order.reported)
+        self.published_topics = PublishedTopics(self)
         self.bearings: list[BearingInterface] = []
         self._to_review: deque[BearingInterface] = deque()
         self.workers = Workers()
@@ -137,28 +151,33 @@ class BearingNode(LifecycleNode):
         self.parameters = ParameterServer(self)
         self._shared: NodeSettings | None = None
         self._frames: TransformInterface | None = None
-        name, ros_type = topics.DIAGNOSTICS
-        quiet = PublisherEventCallbacks(use_default_callbacks=False)
-        self._diagnostics = self.create_publisher(message_class(ros_type), f"/{name}", STATE_QOS, event_callbacks=quiet)
+        self._diagnostics: Publisher | None = None
+        self._report_by(STATE_QOS)
         self.review_period = _REVIEW_PERIOD[follows_clock(self)]
         self._ticks = 0  # of the timer of reviews
         _create_steady_timer(self, self.review_period, self._review)
         self._clock_watch = self._watch_clock()
+        self._activates_itself = False  # as soon as there is something to monitor
         self.manages_itself = bool(self.parameters.value("autostart"))
         if order is None:
             _refuse_impossible_transitions(self)
 
     def start(self) -> None:
-        """Configure and activate, as requested by ``autostart``.
+        """Configure, and activate once the first model is compiled, as requested by ``autostart``.
 
         Raises
         ------
         CannotRun
-            Parameters, a scene or a recording cannot be used.
+            Parameters or a scene cannot be used.
         """
-        for transition in (self.trigger_configure, self.trigger_activate):
-            if transition() != SUCCESS:
-                raise CannotRun(self.error.partition("failed: ")[2] or self.error)
+        if self.trigger_configure() != SUCCESS:
+            raise self._failure()
+        self._activates_itself = True
+
+    def declare_parameters(self, namespace: str, parameters: Sequence[tuple], ignore_override: bool = False) -> list[Parameter]:
+        """Declare parameters; an empty list, which has no type in a parameter file, counts as a list with an empty text: rclpy would raise."""
+        typed = [(name, [""], *rest[1:]) if rest and rest[0] is None else (name, *rest) for name, *rest in parameters]
+        return super().declare_parameters(namespace, typed, ignore_override)
 
     def close(self) -> bool:
         """Stop the models and complete recordings.  Returns whether all threads ended."""
@@ -174,6 +193,8 @@ class BearingNode(LifecycleNode):
     def on_configure(self, state) -> TransitionCallbackReturn:
         """Check parameters, load scenes, create topics and services, and start compiling."""
         self._shared, bearings = self.parameters.settings()
+        name = self.resolve_topic_name(f"/{topics.DIAGNOSTICS[0]}")
+        self._report_by(profiles(self.parameters, [publisher(name, STATE_QOS)])[name, "publisher"])
         processes = process_count(int(self.parameters.value("processes")), len(bearings), cores())
         if processes > 1:
             self._start_workers(bearings, processes)
@@ -186,6 +207,7 @@ class BearingNode(LifecycleNode):
         except Exception:
             self._release()
             raise
+        self.parameters.warn_of_unknown_topics()
         for bearing in self.bearings:
             self._warm_up.request(partial(self._warm_up.compile, bearing.scene))
             self._warm_up.request(bearing.warm_up)
@@ -195,7 +217,7 @@ class BearingNode(LifecycleNode):
     @_reported
     def on_activate(self, state) -> TransitionCallbackReturn:
         """Start the bearings that have warmed up; the others follow as soon as they have."""
-        if errors := [bearing.error for bearing in self.bearings if bearing.error]:
+        if not self._activates_itself and (errors := [bearing.error for bearing in self.bearings if bearing.error]):
             raise CannotRun(f"{errors[0]}; clean up and configure again")
         self.workers.activate(True)
         try:
@@ -203,7 +225,7 @@ class BearingNode(LifecycleNode):
         except Exception:
             self._close()
             raise
-        self._state = "active"
+        self._state, self._activates_itself = "active", False
         return super().on_activate(state)
 
     @_reported
@@ -276,8 +298,21 @@ class BearingNode(LifecycleNode):
         values = {"state": self._state, **condition.values}
         if self._order is not None and self._order.restarts:
             values["state: restarts of the process"] = self._order.restarts
-        fields = diagnostics.report(now_ns, condition.events, values, component, hardware_id, condition.remarks, condition.otherwise)
+        before = self._told_of.get(component, set())
+        unused = condition.unused - before
+        fields = diagnostics.report(now_ns, condition.events, values, component, hardware_id, condition.remarks, condition.otherwise, unused)
+        if new := {status["name"].partition(": ")[2] for status in fields["status"]} - before:
+            self._note_reported(component, new)
         self._diagnostics.publish(message_type(topics.DIAGNOSTICS[1]).serialize(fields))
+
+    def _note_reported(self, component: str, subjects: set[str]) -> None:
+        """Note subjects that have been reported for the first time."""
+        self._told_of.setdefault(component, set()).update(subjects)
+
+    @property
+    def service_prefix(self) -> str:
+        """What the names of the bearings' services begin with: the node's name, also in a worker process, whose own name is hidden."""
+        return "~" if self._order is None else f"/{self._order.component}"
 
     def component_of(self, bearing: str) -> str:
         """Return the first half of the names of a bearing's statuses: the node's name, and the bearing's if it has one."""
@@ -298,6 +333,16 @@ class BearingNode(LifecycleNode):
         clock = self.get_clock()
         return clock.now().nanoseconds if clock.ros_time_is_active else time.time_ns()  # the same, without the overhead
 
+    def _report_by(self, profile: QoSProfile) -> None:
+        """Publish diagnostics with this quality of service."""
+        if self._diagnostics is not None:
+            if self._diagnostics.qos_profile == profile:
+                return
+            self.destroy_publisher(self._diagnostics)
+        name, ros_type = topics.DIAGNOSTICS
+        quiet = PublisherEventCallbacks(use_default_callbacks=False)
+        self._diagnostics = self.create_publisher(message_class(ros_type), f"/{name}", profile, event_callbacks=quiet)
+
     def _open_warm_bearings(self) -> None:
         for bearing in self.bearings:
             if bearing.live is None and bearing.is_warm and not bearing.error:
@@ -310,6 +355,7 @@ class BearingNode(LifecycleNode):
                 self._warm_up.request(bearing.warm_up)  # its model is still in use by the thread that did not end
 
     def _release(self) -> None:
+        self._activates_itself = False
         self._close()
         self._warm_up.cancel()
         self.workers.end()
@@ -336,8 +382,7 @@ class BearingNode(LifecycleNode):
     def _review(self) -> None:
         """Start bearings that have warmed up, review every bearing, and report the node's state if it has none."""
         self._reviewed = time.monotonic()
-        if self._state == "active":
-            self._start_late()
+        self._start_warm()
         now_ns = self.now_ns()
         period = _REVIEW_PERIOD[follows_clock(self)]
         every = 1 if follows_clock(self) else min(1 + len(self.bearings) // (_REVIEWED_AT_ONCE + 1), _LONGEST_REVIEW)
@@ -357,8 +402,7 @@ class BearingNode(LifecycleNode):
         events = {name: self._state_event(None) for name in dict.fromkeys(self.parameters.bearings() or [""]) if not self.workers}
         for worker in self.workers:
             if not worker.is_configured:
-                warming = Event(0.0, Level.OK, "run.warming_up", "", _WARMING)
-                event = Event(0.0, Level.ERROR, "run.failed", "", worker.loss) if worker.loss else warming
+                event = Event(0.0, Level.ERROR, "run.failed", "", worker.loss) if worker.loss else _WARMING
                 events |= dict.fromkeys(worker.bearings, event)
         for name, event in events.items():
             serial = str(self.parameters.value("serial", name))
@@ -369,10 +413,11 @@ class BearingNode(LifecycleNode):
         self._scenes = {each.name: load_scene(each.scene, each.scene_overrides, each.allow_outside) for each in bearings}
         for name, scene in self._scenes.items():
             self.parameters.show_scene(name, scene)
+            profiles(self.parameters, entities_of_bearing(scene, lambda topic: self.resolve_topic_name(f"{name}/{topic}"), follows_clock(self)))
         node, workers = self.get_name(), []
         for number, share in enumerate(shares(list(self._scenes), processes), 1):
             own = self.parameters.for_worker([settings for settings in bearings if settings.name in share])
-            order = Order(f"_{node}_{number}", self.get_namespace(), self._component, passed_arguments(self._arguments, node), own, 0)
+            order = Order(f"_{node}_{number}", self.get_namespace(), self._component, passed_arguments(self._arguments, node), own, 0, self._told_of)
             workers.append(Worker(share, order))
             self.get_logger().info(f"process {workers[-1].pid} for {workers[-1].named}")
         self.workers = Workers(workers)
@@ -411,15 +456,23 @@ class BearingNode(LifecycleNode):
         if self._to_review:
             self.executor.create_task(self._review_next)
 
-    def _start_late(self) -> None:
+    def _start_warm(self) -> None:
         """Start bearings that have warmed up; end a node that manages itself if a recording or all its bearings fail."""
+        if self._activates_itself and any(each.is_warm for each in (*self.bearings, *self.workers)) and self.trigger_activate() != SUCCESS:
+            self._end(self._failure())
+            return
         try:
-            self._open_warm_bearings()
+            if self._state == "active":
+                self._open_warm_bearings()
         except OSError as error:
             self._take_failure(CannotRun(str(error)))
             return
         if self.bearings and self.manages_itself and all(bearing.error for bearing in self.bearings):
             self._end(CannotRun("\n".join(bearing.error for bearing in self.bearings), exit_code=1))
+
+    def _failure(self) -> CannotRun:
+        """Return why the last transition failed."""
+        return CannotRun(self.error.partition("failed: ")[2] or self.error)
 
     def _end(self, error: CannotRun) -> None:
         if not self._ended.done():
@@ -429,7 +482,7 @@ class BearingNode(LifecycleNode):
         if self.error:
             return Event(0.0, Level.ERROR, "run.failed", "", self.error)
         if bearing is not None and not bearing.is_warm:
-            return Event(0.0, Level.OK, "run.warming_up", "", _WARMING)
+            return _WARMING
         text = {
             "unconfigured": "unconfigured: waiting to be configured",
             "inactive": "inactive: ready to be activated",
@@ -453,7 +506,7 @@ class WorkerNode(BearingNode):
     """
 
     def __init__(self, ended: Future, link: NodeLink):
-        self._link, self._is_listening = link, False
+        self._link, self._is_listening, self._has_told_warm = link, False, False
         super().__init__(ended, link.order)
         self.manages_itself = True  # what makes it impossible to run is passed to the node
         if len(link.order.parameters["bearings"]) > POLLED_FROM and not follows_clock(self):  # with sim time no message may be lost
@@ -477,6 +530,9 @@ class WorkerNode(BearingNode):
         if not self._is_listening:  # there is an executor now
             self._is_listening = True
             self._link.listen(lambda message: self.executor.create_task(self._obey, *message), self._end_soon)
+        if not self._has_told_warm and any(bearing.is_warm for bearing in self.bearings):
+            self._has_told_warm = True
+            self._link.send("warm")
         super()._review()
 
     def _obey(self, kind: str, *rest) -> None:
@@ -493,6 +549,11 @@ class WorkerNode(BearingNode):
             super().report_soon()
         elif kind == "end":
             self._end_now()
+
+    def _note_reported(self, component: str, subjects: set[str]) -> None:
+        """Tell the node, so that other processes report them, too, should this one end."""
+        super()._note_reported(component, subjects)
+        self._link.send("reported", component, subjects)
 
     def _fail(self) -> None:
         self._link.send("failed", self.error.partition("failed: ")[2] or self.error, 2)
@@ -537,7 +598,3 @@ def main(args: list[str] | None = None) -> int:
         link = NodeLink(connection)
         return run_node("bearing_node", lambda ended: _started(WorkerNode(ended, link)), ["--ros-args", *link.order.arguments])
     return run_node("bearing_node", lambda ended: _started(BearingNode(ended, arguments=arguments)), args)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

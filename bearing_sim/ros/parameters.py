@@ -124,6 +124,27 @@ DECLARATIONS = (
         "with use_sim_time, what happens when /clock jumps back: reset: state and damage start over; error: the last state is held",
         choices=("reset", "error"),
     ),
+    Declaration(
+        "clock_tolerance",
+        0.1,  # an assumption: far above what delays of messages make of a clock, far below a loop of a log
+        "with use_sim_time, step back of /clock [s] below which it counts as late messages, not as a jump: nothing happens",
+        0.0,
+        10.0,
+    ),
+    Declaration(
+        "stamp_tolerance",
+        2.0,  # an assumption: clocks that anything keeps together agree better, and no message is under way for that long
+        "without use_sim_time, how far stamps of inputs may be from the node's clock [s] before it warns; inputs act as they arrive all the same",
+        0.0,
+        1e9,
+    ),
+    Declaration(
+        "inputs_expected_within",
+        10.0,  # an assumption: the other nodes of a machine have started by then
+        "time from the start of a run [s] after which the node warns of a shaft_speed or radial_load without a good message",
+        0.0,
+        1e6,
+    ),
     Declaration("maximum_lag", 0.2, "lag behind real time up to which the model catches up [s]; time beyond it is skipped and reported", 0.02, 10.0),
     Declaration("governor", True, "whether to use a level of lower fidelity while the machine is too slow for the scene's level", running=True),
     Declaration("record", "", "MCAP file, or bag folder (no .mcap), to record from the start; empty: only on ~/start_recording", per_bearing=True),
@@ -187,7 +208,7 @@ class BearingSettings:
     @property
     def scene_overrides(self) -> list[str]:
         """All scene fields to change, as `bearing_sim.scene.loader.load_scene` takes them."""
-        return [*self.overrides, *(f"{name}={scene_value(name, value)!r}".replace("=None", "=null") for name, value in self.conditions.items())]
+        return [*self.overrides, *(f"{name}={_written(name, scene_value(name, value))}" for name, value in self.conditions.items())]
 
 
 @dataclass(frozen=True)
@@ -199,6 +220,9 @@ class NodeSettings:
     sample_rate: float
     maximum_lag: float
     clock_jump_back: str
+    clock_tolerance: float
+    stamp_tolerance: float
+    inputs_expected_within: float
     governor: bool
     record_part_size: float
     record_part_duration: float
@@ -235,6 +259,11 @@ _OPTIONAL = {path for path, default in _DEFAULTS.items() if default is None}
 def scene_value(name: str, parameter: float) -> float | None:
     """Return the scene's value for a scene parameter: None for 0 where the field is optional."""
     return None if name in _OPTIONAL and parameter == 0.0 else parameter
+
+
+def _written(name: str, value: float | None) -> str:
+    """Return a scene's value as a scene file has it, with its unit where a plain number would be refused."""
+    return "null" if value is None else _SCENE_FIELDS[name].written(value)
 
 
 def parameter_value(name: str, scene: Scene) -> float:
@@ -285,7 +314,7 @@ def checked(declaration: Declaration, name: str, value: object) -> object:
 def _pose_numbers(declaration: Declaration, name: str, value: object) -> list[float]:
     """Return the numbers of a position or an orientation; raises as `checked`."""
     try:
-        if isinstance(value, str):
+        if isinstance(value, str) or any(isinstance(number, str) for number in value):
             raise TypeError
         numbers = [float(number) for number in value]
         if declaration.name == "frame_orientation":
@@ -321,7 +350,10 @@ def descriptor(declaration: Declaration) -> ParameterDescriptor:
     return filled
 
 
-_OF_EVERY_NODE = ("use_sim_time", "start_type_description_service", "qos_overrides")
+QOS_OVERRIDES = "qos_overrides"
+"""First part of the names of parameters of the quality of service, as rclpy has it."""
+_OF_EVERY_NODE = ("use_sim_time", "start_type_description_service", QOS_OVERRIDES)
+_TOPICS_OF_EVERY_NODE = ("/clock", "/parameter_events", "/rosout")
 _TABLE = {row.name: row for row in (*DECLARATIONS, *SCENE_DECLARATIONS)}
 _RESERVED = {name.partition(".")[0] for name in (*_TABLE, *_OF_EVERY_NODE)}
 
@@ -356,7 +388,7 @@ class ParameterServer:
             self._declare_bearing(name, given)
         for name in given:
             if name not in self._known and not name.startswith(_OF_EVERY_NODE):
-                node.get_logger().warning(f"parameter {name!r} is unknown and ignored{did_you_mean(name, self._known)}")
+                self._warn_of_unknown(name)
         node.add_pre_set_parameters_callback(self._converted)
         node.add_on_set_parameters_callback(self._validate)
         node.add_post_set_parameters_callback(self._after_change)
@@ -387,6 +419,26 @@ class ParameterServer:
                 self._show({f"{bearing.name}.{row.name}": getattr(bearing, row.name) for bearing in bearings if bearing.name})
         return shared, [dataclasses.replace(bearing, overrides=tuple(text for text in bearing.overrides if text.strip())) for bearing in bearings]
 
+    def declare_further(self, rows: Sequence[Declaration]) -> dict[str, object]:
+        """Declare parameters whose names are known only now, and return their values; those that nobody has set have their defaults.
+
+        Raises
+        ------
+        SettingsError
+            Listing every one of them that cannot be used.
+        """
+        is_set = [row.name for row in rows if row.name in self._chosen and self._node.has_parameter(row.name)]
+        self._declare(rows, "", {name: self._node.get_parameter(name).value for name in is_set})
+        if errors := [self._errors[row.name] for row in rows if row.name in self._errors]:
+            raise SettingsError(list(dict.fromkeys(errors)))
+        return {row.name: self._node.get_parameter(row.name).value for row in rows}
+
+    def warn_of_unknown_topics(self) -> None:
+        """Tell which parameters of the quality of service belong to no topic of the node; to be called when all are declared."""
+        for name in sorted(self._chosen - self._known.keys()):
+            if name.startswith(f"{QOS_OVERRIDES}.") and not name.startswith(tuple(f"{QOS_OVERRIDES}.{topic}." for topic in _TOPICS_OF_EVERY_NODE)):
+                self._warn_of_unknown(name)
+
     def show_scene(self, bearing: str, scene: Scene) -> None:
         """Set the scene parameters of a bearing to its scene's values."""
         prefix = f"{bearing}." if bearing else ""
@@ -415,6 +467,9 @@ class ParameterServer:
     def bearings(self) -> list[str]:
         """Return the names of the bearings; empty for one bearing without a name."""
         return [name for name in self._node.get_parameter("bearings").value if name.strip()]
+
+    def _warn_of_unknown(self, name: str) -> None:
+        self._node.get_logger().warning(f"parameter {name!r} is unknown and ignored{did_you_mean(name, self._known)}")
 
     def _bearing_settings(self, name: str, position: int) -> BearingSettings:
         values = {row.name: self.value(row.name, name) for row in DECLARATIONS if row.per_bearing}
@@ -479,10 +534,12 @@ class ParameterServer:
     def _validate(self, parameters: list[Parameter]) -> SetParametersResult:
         if self._is_own_change:
             return SetParametersResult(successful=True)
-        changes, self._unchanged = {}, {each.name for each in parameters if self._node.get_parameter_or(each.name).value == each.value}
+        changes, self._unchanged = {}, set(filter(None, map(self._name_if_unchanged, parameters)))
         for parameter in parameters:
             row, name = self._known.get(parameter.name), parameter.name
-            if name == "use_sim_time" and self._node.is_running and parameter.value != self._node.get_parameter(name).value:
+            if name in self._unchanged:
+                continue
+            if name == "use_sim_time" and self._node.is_running:
                 return SetParametersResult(successful=False, reason=self._needs_configure(name))
             if row is None:
                 continue
@@ -492,10 +549,19 @@ class ParameterServer:
                 return SetParametersResult(successful=False, reason=str(error))
             if row.running:
                 changes[name] = value
-            elif self._node.is_running and value != self._node.get_parameter(name).value:
+            elif self._node.is_running:
                 return SetParametersResult(successful=False, reason=self._needs_configure(name))
         reason = self._node.reason_to_refuse(changes) if changes else ""
         return SetParametersResult(successful=not reason, reason=reason)
+
+    def _name_if_unchanged(self, parameter: Parameter) -> str:
+        """Return the name of a parameter that has this value already, empty otherwise: to set it changes nothing."""
+        name, now = parameter.name, self._node.get_parameter_or(parameter.name).value
+        if name in self._errors or isinstance(now, bool) != isinstance(parameter.value, bool):
+            return ""
+        is_list = isinstance(parameter.value, Iterable) and not isinstance(parameter.value, str)
+        is_same = list(now or ()) == list(parameter.value) if is_list else now == parameter.value
+        return name if is_same else ""
 
     def _needs_configure(self, name: str) -> str:
         node = self._node.get_fully_qualified_name()
@@ -505,11 +571,11 @@ class ParameterServer:
     def _after_change(self, parameters: list[Parameter]) -> None:
         if self._is_own_change:
             return
-        known = {parameter.name: parameter.value for parameter in parameters if parameter.name in self._known}
+        known = {each.name: each.value for each in parameters if each.name in self._known and each.name not in self._unchanged}
         self._chosen.update(known)
         for name in known:
             self._errors.pop(name, None)
-        if waiting := [name for name in known if not self._known[name].running and name not in self._unchanged]:
+        if waiting := [name for name in known if not self._known[name].running]:
             self._node.get_logger().info(f"{', '.join(waiting)}: takes effect at the next configure")
         changes = {name: value for name, value in known.items() if self._known[name].running}
         if changes:

@@ -18,7 +18,6 @@ import click
 import rclpy
 from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
@@ -33,6 +32,7 @@ from bearing_sim.messages import topics
 from bearing_sim.ros.messages import message, message_class
 from bearing_sim.ros.network import close_other_interfaces, use_loopback
 from bearing_sim.ros.process import signals_end
+from bearing_sim.ros.rclpy_internals import RclError
 from bearing_sim.ros.shared_memory import remove_unfinished_ports
 from bearing_sim.runtime.sim_time import CAUGHT_UP
 from bearing_sim.simulation import Inputs
@@ -220,7 +220,7 @@ class Player:
         while not self.wants_end():
             try:
                 self._publishers[due.channel].publish(filled)
-            except rclpy_implementation.RCLError:  # the queue is full of messages that a slow subscriber has not acknowledged
+            except RclError:  # the queue is full of messages that a slow subscriber has not acknowledged
                 time.sleep(_SLICE)
             else:
                 break
@@ -339,7 +339,7 @@ def command(context, log, rate, clock_rate, stamps, start_paused, loop, use_limi
     ended: Future = context.obj  # done after a signal
     try:
         node = rclpy.create_node("bearing_player", start_parameter_services=False)
-    except rclpy_implementation.RCLError as error:
+    except RclError as error:
         click.echo(f"bearing_player: cannot start ROS: {' '.join(str(error).split())}", err=True)
         context.exit(2)
     close_other_interfaces(node)

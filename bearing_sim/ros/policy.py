@@ -14,7 +14,7 @@ import click
 from bearing_sim.messages import topics
 
 SERVICES = ("reset", "get_stored_state", "replace_bearing", "accept_change", "start_recording", "stop_recording", "pause")
-"""Of each bearing: below its name in a node with several, else below the node."""
+"""Of each bearing, below the node: in a node with several below the bearing's name there."""
 
 _LIFECYCLE = ("change_state", "get_state", "get_available_states", "get_available_transitions", "get_transition_graph")
 _PARAMETERS = ("describe_parameters", "get_parameter_types", "get_parameters", "list_parameters", "set_parameters", "set_parameters_atomically")
@@ -40,7 +40,7 @@ def policy(namespace: str = "/", node: str = "bearing_node", bearings: Sequence[
     inputs = [f"{prefix}{name}" for prefix in prefixes for name in (*topics.INPUTS, *topics.MEASURED_CHANNELS)]
     vibration = [f"{prefix}{topics.VIBRATION.name}" for prefix in prefixes]  # where a scene asks for it
     outputs = [f"{prefix}{name}" for prefix in prefixes for name in (*topics.OUTPUTS, topics.RESIDUAL, *topics.ESTIMATED)]
-    offered = [f"{name}/{service}" for name in bearings for service in SERVICES] or [f"~/{service}" for service in SERVICES]
+    offered = [f"~/{prefix}{service}" for prefix in prefixes for service in SERVICES]
     workers = [f"_{node}_{number}" for number in range(1, processes + 1)]
     bearing_node = _enclave(
         namespace,

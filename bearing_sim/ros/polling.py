@@ -14,6 +14,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
+from bearing_sim.ros.rclpy_internals import taker
+
 POLLED_FROM = 10
 """Bearings in a process from which on this pays."""
 
@@ -33,20 +35,19 @@ class PolledSubscriptions:
     def __init__(self, node: Node):
         options = {"start_parameter_services": False, "enable_rosout": False}
         self._node = rclpy.create_node(f"{node.get_name()}_inputs", namespace=node.get_namespace(), context=node.context, **options)
-        self._taken: dict[Subscription, tuple[Callable[[bytes], None], ExitStack]] = {}
+        self._taken: dict[Subscription, tuple[Callable[[bytes], None], Callable[[], tuple[bytes, dict] | None], ExitStack]] = {}
         self._timer = node.create_timer(_PERIOD, self._take, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def create_subscription(self, kind: type, topic: str, callback: Callable[[bytes], None], qos: QoSProfile, **options) -> Subscription:
         """Subscribe; parameters as of ``rclpy.node.Node.create_subscription``."""
         subscription = self._node.create_subscription(kind, topic, callback, qos, **options)
         borrowed = ExitStack()
-        borrowed.enter_context(subscription.handle)  # once instead of at every look
-        self._taken[subscription] = callback, borrowed
+        self._taken[subscription] = callback, taker(subscription, borrowed), borrowed
         return subscription
 
     def destroy_subscription(self, subscription: Subscription) -> None:
         """End a subscription."""
-        self._taken.pop(subscription)[1].close()
+        self._taken.pop(subscription)[-1].close()
         self._node.destroy_subscription(subscription)
 
     def destroy(self) -> None:
@@ -56,6 +57,6 @@ class PolledSubscriptions:
         self._node.destroy_node()
 
     def _take(self) -> None:
-        for subscription, (callback, _) in list(self._taken.items()):
-            while (found := subscription.handle.take_message(subscription.msg_type, True)) is not None:
+        for callback, take, _ in list(self._taken.values()):
+            while (found := take()) is not None:
                 callback(found[0])

@@ -9,7 +9,6 @@ from contextlib import contextmanager
 
 import rclpy
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.logging import get_logger
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
@@ -17,6 +16,7 @@ from rclpy.task import Future
 
 from bearing_sim.recording.priority import lower_thread_priority
 from bearing_sim.ros.network import use_loopback
+from bearing_sim.ros.rclpy_internals import RclError, make_executor
 from bearing_sim.ros.shared_memory import remove_unfinished_ports
 
 _TIMERS = "dds.ev"  # name of the timer thread of Fast DDS
@@ -29,18 +29,6 @@ class CannotRun(Exception):
     def __init__(self, message: str, exit_code: int = 2):
         super().__init__(message)
         self.exit_code = exit_code
-
-
-def make_executor() -> Executor:
-    """Return the executor of the process: rclpy's EventsExecutor if there is one, which does not rebuild its wait set at every message.
-
-    It must spin on the main thread: elsewhere it delivers nothing.
-    """
-    try:
-        from rclpy.experimental import EventsExecutor
-    except ImportError:
-        return SingleThreadedExecutor()
-    return EventsExecutor()
 
 
 def spin(executor: Executor, ended: Future) -> None:
@@ -105,7 +93,7 @@ def _run(name: str, make_node: Callable[[Future], Node], args: list[str] | None,
             get_logger(name).warning(warning)
         try:
             node = make_node(ended)
-        except rclpy_implementation.RCLError as error:  # such as a middleware that cannot do what the environment asks for
+        except RclError as error:  # such as a middleware that cannot do what the environment asks for
             raise CannotRun(_cannot_start(error)) from error
         # Every published message wakes the timer thread; if it preempts the publisher, that costs a fifth of the node's processor time.
         lower_thread_priority(_TIMERS)

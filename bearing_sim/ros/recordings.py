@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bearing_sim.messages.topics import FRAME
+from bearing_sim.messages.topics import FRAME, OWN_NAMES, Names
 from bearing_sim.recording.bag import Limits
 from bearing_sim.recording.recorder import Recorder, RestartingRecorder
 from bearing_sim.runtime.pacing import TickSchedule
@@ -47,6 +47,7 @@ def open_recording(
     recorder: Recorder,
     frame: str = FRAME,
     records: Callable[[], Mapping[str, Mapping[str, str]]] = dict,
+    names: Names = OWN_NAMES,
 ):
     """Return a recording in real time, under a fresh name if ``path`` exists.
 
@@ -61,6 +62,7 @@ def open_recording(
     recorder : the process that records.
     frame : the bearing's.
     records : returns further metadata records of a recording that begins now, by name.
+    names : under which topics and statuses are recorded.
 
     Raises
     ------
@@ -70,18 +72,24 @@ def open_recording(
     advance = (schedule.tick, schedule.samples) if schedule.every == 1 else None
 
     def begin(wait: bool):
-        return recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait, frame=frame, metadata=records())
+        return recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait, frame=frame, metadata=records(), names=names)
 
     return RestartingRecorder(begin)
 
 
 def open_lossless_recording(
-    path: Path, scene: Scene, start_ns: int, limits: Limits, frame: str = FRAME, records: Callable[[], Mapping[str, Mapping[str, str]]] = dict
+    path: Path,
+    scene: Scene,
+    start_ns: int,
+    limits: Limits,
+    frame: str = FRAME,
+    records: Callable[[], Mapping[str, Mapping[str, str]]] = dict,
+    names: Names = OWN_NAMES,
 ):
     """Return a recording written in this process, which the model waits for, as a run by sim time needs; otherwise as `open_recording`."""
     from bearing_sim.recording.writer import McapSink
 
-    return McapSink(fresh_path(path), scene, start_ns, records(), limits=limits, frame=frame)
+    return McapSink(fresh_path(path), scene, start_ns, records(), limits=limits, frame=frame, names=names)
 
 
 def limits_of(settings: "NodeSettings") -> Limits:

@@ -15,6 +15,7 @@ from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import message_type, typestore
 from bearing_sim.ros.messages import message_class
 from bearing_sim.ros.parameters import BearingSettings, SettingsError
+from bearing_sim.ros.qos import profiles, publisher, subscription
 
 _TOPIC, _TYPE = "/tf_static", "tf2_msgs/msg/TFMessage"
 _LACKS = "transforms between frames need the package tf2_msgs, which is not installed (ros-DISTRO-tf2-msgs)"
@@ -58,9 +59,11 @@ class TransformInterface:
         self.transforms.take(own)
         if kind is None:
             return
-        self._subscription = node.create_subscription(kind, _TOPIC, self._receive, _qos(100), raw=True)
+        name = node.resolve_topic_name(_TOPIC)
+        chosen = profiles(node.parameters, [subscription(name, _qos(100)), *([publisher(name, _qos(1))] if own else [])])
+        self._subscription = node.create_subscription(kind, _TOPIC, self._receive, chosen[name, "subscription"], raw=True)
         if own:
-            self._publisher = node.create_publisher(kind, _TOPIC, _qos(1))
+            self._publisher = node.create_publisher(kind, _TOPIC, chosen[name, "publisher"])
             self._publisher.publish(message_type(_TYPE).serialize(topics.transforms(node.now_ns(), own)))
             for parent, child, *_ in own:
                 node.get_logger().info(f"static transform from {child!r} to {parent!r} on {_TOPIC}")

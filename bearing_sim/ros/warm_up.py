@@ -45,6 +45,7 @@ class WarmUp:
         self._thread: threading.Thread | None = None
         self._is_frozen = self._is_closed = False
         self._compiler: subprocess.Popen | None = None
+        self._lower: subprocess.Popen | None = None  # belongs to the bearing for which it was started
 
     def request(self, job: Callable[[], None]) -> None:
         """Run a job, which must not raise, after all jobs requested before."""
@@ -80,6 +81,13 @@ class WarmUp:
             self._compiler = start_compiling(scene)
         self._compiler.wait()
         self._compiler = None
+
+    def compile_lower(self, scene: Scene) -> subprocess.Popen | None:
+        """Start a process that compiles the levels below a scene's own; None while one does so for another bearing, which often needs the same."""
+        if self._lower is not None and self._lower.poll() is None:
+            return None
+        self._lower = start_compiling(scene, lower=True)
+        return self._lower
 
     @property
     def is_working(self) -> bool:

@@ -37,6 +37,7 @@ class Order(NamedTuple):
     arguments: list[str]  # remappings and log settings, as on the command line after --ros-args
     parameters: dict[str, object]
     restarts: int  # how often it was started before
+    reported: dict[str, set[str]]  # subjects of statuses that have been reported, by component; the node's own
 
 
 class Ended(NamedTuple):
@@ -100,6 +101,8 @@ class Worker:
     ----------
     is_configured : bool
         Whether its topics are there and it reports for its bearings.
+    is_warm : bool
+        Whether a model of its bearings has been compiled.
     wanted_active : bool
         Whether it is to be active.
     loss : str
@@ -110,7 +113,7 @@ class Worker:
 
     def __init__(self, bearings: Sequence[str], order: Order, clock: Callable[[], float] = time.monotonic):
         self.bearings, self._order, self._clock = list(bearings), order, clock
-        self.wanted_active, self.is_configured = False, False
+        self.wanted_active = self.is_configured = self.is_warm = False
         self.loss, self.errors = "", []
         self._wait, self._started_at, self._start_at = _FIRST_WAIT, clock(), 0.0
         self._ended: Ended | None = None
@@ -215,6 +218,10 @@ class Worker:
             self.is_configured, self.loss = True, ""
             if self.wanted_active:
                 self._send("activate")
+        elif kind == "warm":
+            self.is_warm = True
+        elif kind == "reported":
+            self._order.reported.setdefault(rest[0], set()).update(rest[1])
         elif kind == "failed":
             self._ended = Ended(*rest)
         elif kind == "errors":

@@ -5,6 +5,9 @@ Settings are levels, or those that `bearing-sim trade` has measured on the beari
 (`bearing_sim.scene.kept_front`); then the errors of the one that runs are known.  The criterion is the recent cost of ticks, simulated over
 wall seconds.  The ratio of costs between a setting and the one above was measured when the upper one last ran, so the cost of the present one
 predicts whether the upper one would keep real time.
+
+Bearings that share threads can be too slow together although each alone is fast enough.  What counts then is the time from the instant at which a
+tick could have begun, of the bearing that waits longest; the governors change one after the other, so that no more of them fall than must.
 """
 
 import dataclasses
@@ -16,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.steady.table_builder import cached_table
+from bearing_sim.runtime.solver_threads import CommonPace
 from bearing_sim.scene.fidelity import NUMBERS, lower_levels
 from bearing_sim.scene.kept_front import KeptCourse, KeptFront, KeptSetting, complete_overrides, is_coarser
 from bearing_sim.scene.loader import with_setting
@@ -27,6 +31,7 @@ _TOO_SLOW = 1.05  # times real time: below this the lag grows, or soon will
 _FAST_ENOUGH = 1.4  # predicted for the level above before it is used: well over _TOO_SLOW, so that it is not left again at once
 _MEMORY = 0.25  # [s] over which the factor is a mean: short, so that a change comes before the lag that can be caught up is used up
 _LONGEST_WAIT = 300.0  # [s]
+_NO_FASTER = 0.8  # times as fast as the setting above, beyond what a busy machine makes of one that is as fast
 _WORTH_A_CHANGE = 1.25  # times as fast as the setting above
 RECORD = "bearing_sim_governor"
 """Name of a recording's metadata record of the settings that a governor can choose."""
@@ -127,40 +132,57 @@ class Governor:
         self._wait, self._came_up = self._patience, False
         return self._ladder[0]
 
-    def consider(self, simulated: float, spent: float) -> Change | None:
+    def consider(self, simulated: float, spent: float, waited: float = 0.0, common: CommonPace | None = None, now: float = 0.0) -> Change | None:
         """Take one tick and return the change that it calls for, or None.
 
         Parameters
         ----------
         simulated : length of the tick [s].
         spent : wall time that computing it took [s].
+        waited : wall time from when the tick could have begun until it did, because others had the thread [s].
+        common : pace of the bearings that share threads with this one; None if there are none.
+        now : when the tick ended [s], monotonic.
         """
         elapsed = max(simulated, spent)
         kept = math.exp(-elapsed / _MEMORY)
-        self._simulated, self._spent = self._simulated * kept + simulated, self._spent * kept + spent
+        self._simulated, self._spent, self._waited = self._simulated * kept + simulated, self._spent * kept + spent, self._waited * kept + waited
         self._stayed += elapsed
         if self._stayed < _MEMORY:  # the first ticks of a level are not typical
             return None
+        if common is not None:
+            common.note(self, (self._spent + self._waited) / self._simulated, now)
+        change = self._change_at(elapsed, common, now)
+        if change is not None and common is not None:
+            common.forget(self)
+        return change
+
+    def _change_at(self, elapsed: float, common: CommonPace | None, now: float) -> Change | None:
+        """Return the change that the recent ticks call for after one more, which took so long [s], or None."""
         if not math.isnan(self._left_at):
-            self._cost_ratios[self._rung - 1] = max(self.factor / self._left_at, 1.0)
-            self._left_at = math.nan
-        factor = self.factor
-        if factor < _TOO_SLOW and self._rung + 1 < len(self._ladder):
-            return self._go_down()
+            ratio, self._left_at = self.factor / self._left_at, math.nan
+            self._cost_ratios[self._rung - 1] = max(ratio, 1.0)
+            if ratio < _NO_FASTER:
+                return self._drop()
+        factor, share = self.factor, 0.0 if common is None else common.slowest(now)
+        if self._rung + 1 < len(self._ladder):
+            if factor < _TOO_SLOW:
+                return self._go_down(f"level {self.setting or self.level} reaches {in_digits(factor, 3)} of real time on this machine")
+            if share * _TOO_SLOW > 1.0 and common.takes_turn(now):
+                return self._go_down(f"the bearings that share a process reach {in_digits(1.0 / share, 3)} of real time on this machine")
         if self._rung == 0:
             return None
         promised = factor / self._cost_ratios[self._rung - 1]
+        if share:
+            promised = min(promised, 1.0 / (share + 1.0 / promised - 1.0 / factor))
         self._promising = self._promising + elapsed if promised > _FAST_ENOUGH else 0.0
-        return self._go_up(promised) if self._promising >= self._wait else None
+        return self._go_up(promised) if self._promising >= self._wait and (common is None or common.takes_turn(now)) else None
 
-    def _go_down(self) -> Change:
+    def _go_down(self, reason: str) -> Change:
         if self._came_up:
             self._wait = min(2.0 * self._wait, _LONGEST_WAIT) if self._stayed < self._wait else self._patience
-        factor, left = self.factor, self.setting or self.level
+        factor = self.factor
         simulation = self._change(self._rung + 1)
-        text = (
-            f"level {left} reaches {in_digits(factor, 3)} of real time on this machine: {self._told()} continues from the same cage angle and speed"
-        )
+        text = f"{reason}: {self._told()} continues from the same cage angle and speed"
         self._left_at, self._came_up = factor, False
         return Change(simulation, True, text, self.setting)
 
@@ -169,6 +191,17 @@ class Governor:
         text = f"level {self._told()}, expected to reach {in_digits(promised, 3)} of real time, continues from the same cage angle and speed"
         self._came_up = True
         return Change(simulation, False, text, self.setting)
+
+    def _drop(self) -> Change:
+        """Go back from a setting that is no faster than the one above, as level ``steady`` may be without a table, and do without it."""
+        dropped, name = self._rung, self.setting or self.level
+        simulation = self._change(dropped - 1)
+        del self._ladder[dropped], self._cost_ratios[dropped]
+        if self._settings:
+            del self._settings[dropped]
+        self._cost_ratios[dropped - 1] = math.nan
+        advice = " (bearing-sim table builds the table that makes it faster)" if name == "steady" else ""
+        return Change(simulation, False, f"level {name} is no faster here and is not used again{advice}: {self._told()} continues", self.setting)
 
     def _told(self) -> str:
         """Return the setting that runs, with its measured errors where it has any."""
@@ -186,7 +219,7 @@ class Governor:
 
     def _begin(self, rung: int) -> None:
         self._rung = rung
-        self._simulated = self._spent = self._stayed = self._promising = 0.0
+        self._simulated = self._spent = self._waited = self._stayed = self._promising = 0.0
         self._left_at = math.nan
 
 

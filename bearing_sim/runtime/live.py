@@ -16,11 +16,11 @@ import numpy as np
 from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.estimation.two_states import laws_of_table
-from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, unused_event, with_values
+from bearing_sim.inputs.gate import CHANNELS, REQUIRED, Coverage, InputGate, PublisherConflict, Sources, unused_event, with_values
 from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.messages import topics
-from bearing_sim.messages.bands import Bands
-from bearing_sim.messages.diagnostics import SETTING_ERRORS, further_condition
+from bearing_sim.messages.bands import BANDS, Bands
+from bearing_sim.messages.diagnostics import SETTING_ERRORS, further_condition, sink_subject
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.plausibility import plausibility
 from bearing_sim.model.sample import RING_TEMPERATURES, joined
@@ -122,6 +122,8 @@ class Model:
     start_ns : run time 0 [ns since the epoch].
     keeper : of the bearing's state; None where nothing is remembered.
     response : of the scene, for what its block ``estimation`` asks for; without one nothing is estimated, which is reported.
+    inputs_expected_within : time from the start within which a good message of speed and of load is expected [s], and of any channel that
+        somebody publishes.
 
     Attributes
     ----------
@@ -130,18 +132,28 @@ class Model:
     """
 
     def __init__(
-        self, scene: Scene, gate: InputGate, solver: Solver, start_ns: int, keeper: StateKeeper | None = None, response: ResponseModel | None = None
+        self,
+        scene: Scene,
+        gate: InputGate,
+        solver: Solver,
+        start_ns: int,
+        keeper: StateKeeper | None = None,
+        response: ResponseModel | None = None,
+        inputs_expected_within: float = 10.0,
     ):
         self.keeper = keeper
+        self._inputs_expected_within = inputs_expected_within
+        self._sources: dict[str, Sources] = {}
         self._estimation = LiveEstimation(scene, response) if response is not None and scene.estimation.is_asked else None
         self._bands: list[Bands] = []
+        self._slip_band = math.nan  # upper end of the newest band of slip
         self._counted: np.void | None = None  # the newest sample that is in the bearing's state
         self.scene, self.gate, self.solver, self.start_ns = scene, gate, solver, start_ns
         self.health, self.monitor, self.limits = Health(), Monitor(scene), LimitsMonitor(scene, laws_of_table(scene))
         self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
         self.sinks = SinkRegistry()
         self.level = Level.OK
-        self._conflicts = {channel: PublisherConflict(channel) for channel in UNITS}
+        self._conflicts = {channel: PublisherConflict(channel) for channel in CHANNELS}
         self._unused: set[str] = set()
         self._residuals: list[tuple[int, float]] = []
         for finding in plausibility(scene):
@@ -195,6 +207,11 @@ class Model:
         self._conflicts[channel].publishers = count
         if channel in RING_TEMPERATURES and not self.scene.uses_ring_temperatures:
             self._unused = self._unused | {channel} if count else self._unused - {channel}
+
+    def note_sources(self, channel: str, sources: Sources) -> None:
+        """Take what is known of the topic of a channel."""
+        self._sources[channel] = sources
+        self.note_publishers(channel, sources.publishers)
 
     def adjust(self, thresholds: Thresholds) -> None:
         """Use other thresholds from now on; what was learned about the measured cage is kept."""
@@ -309,6 +326,8 @@ class Model:
         for bands in self._estimation.take(block):
             self.sinks.write_bands(now, bands)
             self._bands.append(bands)
+            if bands.topic == BANDS:
+                self._slip_band = float(bands.numbers[-1, bands.names.index("cage_slip"), 2])
 
     def reset(self, timeout: float = 2.0) -> bool:
         """Return state and damage to the start (see `bearing_sim.runtime.solver.Solver.reset`)."""
@@ -342,15 +361,36 @@ class Model:
         further = further_condition(self.scene, newest) if newest is not None else {}
         values = numbers(self.gate, self.solver) | {"level": self._running_level} | self._setting_values() | further
         values["inputs unknown [s]"] = self.gate.coverage.unknown_until(now)
+        values |= self._flow_numbers(now)
+        for conflict in self._conflicts.values():
+            values |= conflict.values
         values |= self.monitor.values | self.residual.values(now) | self.sinks.values | self._values()
         values |= self.keeper.values if self.keeper is not None else {}
         values |= self._estimation.values(now) if self._estimation is not None else {}
         said = remarks(self.gate, self.solver, self._running_setting or self._running_level) | self.sinks.remarks
-        said["estimate"] = "nothing is estimated: the scene does not ask for it" if self._estimation is None else self._estimation.remark
-        said["vibration"] = "not listened to: the scene does not ask for it, or the run has simulated time"
-        said |= self._remarks()
-        said["state"] = "nothing is remembered" if self.keeper is None else str(self.keeper.path)
-        return Condition(self._events(now), values, said)
+        if self._estimation is not None:
+            said["estimate"] = self._estimation.remark
+        if self.keeper is not None:
+            said["state"] = str(self.keeper.path)
+        unused = self._idle_subjects()
+        return Condition(self._events(now), values, said | self._remarks() | unused, unused=frozenset(unused))
+
+    def _idle_subjects(self) -> dict[str, str]:
+        """Return the subjects of diagnostics that this run does without, and why."""
+        published = {channel for channel, sources in self._sources.items() if sources.publishers}
+        idle = (channel for channel in CHANNELS if channel not in REQUIRED and channel not in published and not self.gate.is_heard(channel))
+        unused = {channel: self.gate.state(channel) for channel in idle}
+        if "view" not in map(sink_subject, self.sinks.by_name):
+            unused["view"] = "no view"
+        if self._estimation is None:
+            unused["estimate"] = "the scene does not ask for it"
+        if self.keeper is None:
+            unused["state"] = "nothing is remembered"
+        if topics.MEASURED in unused and not self.scene.uses_ring_temperatures:
+            unused["residual"] = "nothing is measured that could be compared"
+        if self.scene.thresholds.pocket_force_warning is None and self.scene.thresholds.pocket_force_error is None:
+            unused["pocket_force"] = "not judged: it has no threshold"
+        return unused | {"vibration": "not listened to: the scene does not ask for it, or the run has simulated time"}
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
         """Write a diagnostics report to the recorders."""
@@ -396,6 +436,32 @@ class Model:
         """Return the events of the kind of run that hold at ``now`` [s]."""
         raise NotImplementedError
 
+    def _flow_numbers(self, now: float) -> dict[str, float]:
+        """Return the numbers behind the flow of messages (see `bearing_sim.inputs.gate.InputGate.numbers`)."""
+        return self.gate.numbers(now)
+
+    def _explained(self, flow: Sequence[Event], now: float, waited: float) -> list[Event]:
+        """Return what is wrong with the flow of messages with the likely causes, and which channels have had no good message at all.
+
+        Parameters
+        ----------
+        flow : events of the gate.
+        now : [s].
+        waited : for how long messages could have come [s].
+        """
+        explained = []
+        for channel in CHANNELS:
+            sources, own = self._sources.get(channel), [event for event in flow if event.subject == channel]
+            unheard = sources.events(channel, now) if sources is not None else []
+            if not own and not unheard and (channel in REQUIRED or sources is not None and sources.publishers):
+                absent = self.gate.absent(channel, now, waited, self._inputs_expected_within)
+                own = [] if absent is None else [absent]
+            if sources is not None and not unheard:
+                known = self.gate.accepted[channel] > 0, self.gate.is_refusing(channel)
+                own = [sources.explained(event, *known) if event.kind in ("input.stale", "input.absent") else event for event in own]
+            explained += unheard + own
+        return explained
+
     def _values(self) -> dict[str, object]:
         """Return the diagnostics values of the kind of run."""
         return {}
@@ -418,7 +484,7 @@ class Model:
         events = [*self.sinks.events(now), *kept, *judged, *self._further_events(now), *conflicts]
         coverage = self.gate.coverage
         if coverage.is_overloaded:
-            events.append(unknown_inputs(now, coverage.unknown_until(now), now, coverage.verdict))
+            events.append(Event(now, Level.WARN, "input.unknown", "", "inputs were refused because they were too large", coverage.verdict))
         return self.health.events(self._review_time(now), events, self.solver)
 
     def _note(self, event: Event) -> None:
@@ -466,7 +532,8 @@ class LiveModel(Model):
     receiver : reads the receiver's clock [ns since the epoch] (see `bearing_sim.runtime.pacing.WallClock`).
     threads : shared with the solvers of other bearings; a thread of its own where absent.
     keeper : of the bearing's state, which all time of the run counts for; None where nothing is remembered.
-    response : see `Model`.
+    response, inputs_expected_within : see `Model`.
+    stamp_tolerance : how far stamps may be from the receiver's clock before that is reported [s]; messages act as they arrive all the same.
 
     Attributes
     ----------
@@ -489,6 +556,8 @@ class LiveModel(Model):
         threads: SolverThreads | None = None,
         keeper: StateKeeper | None = None,
         response: ResponseModel | None = None,
+        inputs_expected_within: float = 10.0,
+        stamp_tolerance: float = 2.0,
     ):
         self._governor, self._fallen = governor, None
         self._sample_rate, self.schedule = sample_rate, tick_schedule(sample_rate, publish_rate)
@@ -497,7 +566,8 @@ class LiveModel(Model):
         began = clock()
         solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, governor, self._advanced, threads, begin, used)
         held = simulation.inputs._replace(**dict.fromkeys(RING_TEMPERATURES, math.nan))  # measured in this run or not at all
-        super().__init__(scene, InputGate(scene.accepted_inputs, held, heat_law=scene.heat.law), solver, start_ns, keeper, response)
+        gate = InputGate(scene.accepted_inputs, held, heat_law=scene.heat.law, stamp_tolerance=stamp_tolerance)
+        super().__init__(scene, gate, solver, start_ns, keeper, response, inputs_expected_within)
         self._starts_ns = [start_ns]  # by the clock now, and before it was set
         self._sample_decimator, self._publish_decimator, self._due = Decimator(sample_rate), Decimator(publish_rate), due
         self._wall_clock = WallClock(start_ns, clock, receiver)
@@ -543,7 +613,9 @@ class LiveModel(Model):
         self.tick(now_ns)
         now = self.run_time(now_ns)
         speed = self.gate.held.shaft_speed if self.gate.accepted["shaft_speed"] else math.nan
-        events = [self._meter.refuse(block, now)] if isinstance(block, str) else self._meter.take(block, now, speed)
+        newest = self.solver.newest
+        possible = max(filter(math.isfinite, (self._slip_band, math.nan if newest is None else float(newest["cage_slip"]))), default=0.0)
+        events = [self._meter.refuse(block, now)] if isinstance(block, str) else self._meter.take(block, now, speed, possible)
         for event in events:
             self._note(event)
 
@@ -640,7 +712,13 @@ class LiveModel(Model):
         return left_out if self._meter is None else left_out | self._meter.values
 
     def _remarks(self) -> dict[str, str]:
-        return {} if self._meter is None else {"vibration": self._meter.remark}
+        return {} if self._meter is None else {"vibration": "its blocks are analysed"}
+
+    def _idle_subjects(self) -> dict[str, str]:
+        unused = super()._idle_subjects() | {"clock": "the run follows the clock of the machine"}
+        if self._meter is not None:
+            del unused["vibration"]
+        return unused
 
     def close(self, timeout: float = 2.0) -> bool:
         """End the run (see `Model.close`)."""
@@ -649,9 +727,9 @@ class LiveModel(Model):
         return super().close(timeout)
 
     def _further_events(self, now: float) -> list[Event]:
-        flow = self.gate.check(now)
+        flow = self._explained(self.gate.check(now), now, now)
         if self._output_count.is_raised:
-            reason = f"{self._output_count.recent} of {self._output_count.recently_due} outputs were left out in the last five seconds"
+            reason = "in each of the last five seconds outputs were left out"
             flow = [*flow, Event(now, Level.WARN, "pace.outputs", "", reason, "use more processes or cores, a lower level or a lower publish_rate")]
         if self._governor is None or self._governor.is_at_wanted:
             return flow

@@ -53,15 +53,22 @@ class Step(Enum):
 class SimClock:
     """Readings of /clock: whether it is there, stands still or jumps, and which of its readings is settled.
 
+    Parameters
+    ----------
+    tolerance : a reading less than this before the latest one [s] is none: it came late, or two programs publish the clock.
+
     Attributes
     ----------
     now : int or None
         The newest reading [ns since the epoch]; None before the first.
     before : int or None
         The one before it.
+    ignored : int
+        Readings that were none, because they were a little earlier.
     """
 
-    def __init__(self):
+    def __init__(self, tolerance: float = 0.1):
+        self._tolerance_ns, self.ignored, self._newest_ignored = round(tolerance * 1e9), 0, -1
         self.now: int | None = None
         self.before: int | None = None
         self._step = 0
@@ -73,6 +80,10 @@ class SimClock:
     def read(self, clock: int, wall: float) -> Step | None:
         """Take a reading [ns since the epoch] at a wall time [s]; None if the clock stands still."""
         if clock == self.now:
+            return None
+        if self.now is not None and 0 < self.now - clock < self._tolerance_ns:
+            if clock != self._newest_ignored:
+                self.ignored, self._newest_ignored, self._changed_at = self.ignored + 1, clock, wall
             return None
         self.before, self.now, self._changed_at = self.now, clock, wall
         if self.before is not None and clock < self.before:
@@ -118,7 +129,8 @@ class SimTimeModel(Model):
     jump_back : ``"reset"`` or ``"error"``.
     wall : wall clock [s], monotonic; outputs do not depend on it.
     keeper : of the bearing's state, which times that it does not contain yet count for; None where nothing is remembered.
-    response : see `bearing_sim.runtime.live.Model`.
+    response, inputs_expected_within : see `bearing_sim.runtime.live.Model`; within this wall time.
+    clock_tolerance : see `SimClock`.
 
     Attributes
     ----------
@@ -136,12 +148,15 @@ class SimTimeModel(Model):
         wall: Callable[[], float] = time.monotonic,
         keeper: StateKeeper | None = None,
         response: ResponseModel | None = None,
+        inputs_expected_within: float = 10.0,
+        clock_tolerance: float = 0.1,
     ):
         self._rate, self._publish_rate = sample_rate, publish_rate
         self._jump_back, self._wall, self._wall_start = jump_back, wall, wall()
         self._first_inputs = simulation.inputs
         self._oil_temperature = scene.lubricant.temperature  # without messages of it
-        self._clock, self._jump_filter = SimClock(), ClockJumpFilter()
+        self._clock, self._jump_filter = SimClock(clock_tolerance), ClockJumpFilter()
+        self._expecting_since: float | None = None  # a first message [s of wall time]
         self._epoch: int | None = None  # of the gate's times
         self._held_until: int | None = None  # while a jump back is an error
         self._newest: dict[str, int] = {}
@@ -153,7 +168,7 @@ class SimTimeModel(Model):
         self._published: list[Published] = []
         begin = warm_start(keeper, lambda: self.solver.start_ns or 0) if keeper is not None else None
         solver = SimTimeSolver(simulation, self._new_profile(scene), clock=wall, begin=begin)
-        super().__init__(scene, self._new_gate(scene), solver, 0, keeper, response)
+        super().__init__(scene, self._new_gate(scene), solver, 0, keeper, response, inputs_expected_within)
         self._comparison = Comparison(self.residual)
         self.solver.start()
 
@@ -161,6 +176,8 @@ class SimTimeModel(Model):
         """Take a reading of /clock [ns since the epoch]; 0 means that there is none."""
         if now_ns > 0:
             step = self._clock.read(now_ns, self._wall())
+            if self._expecting_since is None:
+                self._expecting_since = self._wall()
             if self._epoch is None:
                 self._epoch = now_ns
             if step is Step.FIRST and not self._started:
@@ -262,7 +279,7 @@ class SimTimeModel(Model):
             values["behind the clock [s]"] = (clock - reached) * 1e-9
         caught_up = clock is not None and self._clock.settled(self._wall()) == clock and self.solver.is_idle
         values |= {CAUGHT_UP: caught_up, "waits for": ", ".join(self.solver.awaited()) or "nothing", "messages waiting": self.solver.waiting}
-        return values | {"late inputs": self._late, "gaps": self._gaps}
+        return values | {"late inputs": self._late, "gaps": self._gaps, "clock: readings a little earlier than the latest": self._clock.ignored}
 
     def _further_events(self, now: float) -> list[Event]:
         events, solver, clock = self._clock_events(now), self.solver, self._clock
@@ -274,11 +291,8 @@ class SimTimeModel(Model):
             reason = f"waiting for the first {' and '.join(solver.awaited()) or 'instant'}; nothing is computed yet"
             events.append(Event(now, Level.OK, "run.waiting", "", reason))
         elif solver.busy_for > _BEHIND and clock.now is not None:
-            reason = f"the model is {(clock.now - reached) * 1e-9:.3g} s behind the clock and catches up; nothing is lost"
-            if not math.isnan(pace := solver.pace.solver_factor):
-                reason += f" (the solver alone reaches {pace:.3g} of real time)"
-            events.append(Event(now, Level.WARN, "run.behind", "", reason))
-        return events + self._flow_events()
+            events.append(Event(now, Level.WARN, "run.behind", "", "the model is behind the clock and catches up; nothing is lost"))
+        return events + self._flow_events(now)
 
     def _clock_events(self, now: float) -> list[Event]:
         clock, wall = self._clock, self._wall()
@@ -286,20 +300,26 @@ class SimTimeModel(Model):
             reason = "no /clock: use_sim_time is set, and nothing is computed before its first message; publish it, or set use_sim_time to false"
             return [Event(0.0, Level.WARN, "clock.absent", "", reason)]
         if self._held_until is not None:
-            reason = f"the clock jumped back to {clock.now * 1e-9:.3f} s and clock_jump_back is error"
+            reason = "the clock jumped back and clock_jump_back is error"
             action = f"the last good state is held until the clock has passed {self._held_until * 1e-9:.3f} s again, or until ~/reset"
             return [Event(now, Level.ERROR, "clock.jumped_back", "", reason, action)]
         if clock.stands_still(wall):
-            return [Event(now, Level.OK, "clock.stands_still", "", f"paused: the clock stands still at {clock.now * 1e-9:.3f} s")]
+            return [Event(now, Level.OK, "clock.stands_still", "", "paused: the clock stands still")]
         return []
 
-    def _flow_events(self) -> list[Event]:
-        """Return what is wrong with the flow of messages; nothing can be said while a jump of the clock is held as an error."""
-        overdue = self._clock.overdue(self._wall())
-        if overdue < 0 or self._epoch is None or self._held_until is not None:
+    def _flow_events(self, now: float) -> list[Event]:
+        """Return what is wrong with the flow of messages; nothing can be said while the clock stands, or a jump of it is held as an error."""
+        wall = self._wall()
+        overdue = self._clock.overdue(wall)
+        if self._held_until is not None:
             return []
-        events = self.gate.check((overdue - self._epoch) * 1e-9)
-        return [event._replace(action="the model waits where it is") if event.subject in REQUIRED else event for event in events]
+        events = [] if overdue < 0 or self._epoch is None else self.gate.check((overdue - self._epoch) * 1e-9)
+        events = [event._replace(action="the model waits where it is") if event.subject in REQUIRED else event for event in events]
+        is_waiting = self._expecting_since is not None and not self._clock.stands_still(wall)
+        return self._explained(events, now, wall - self._expecting_since if is_waiting else 0.0)
+
+    def _flow_numbers(self, now: float) -> dict[str, float]:
+        return {} if self._clock.now is None or self._epoch is None else self.gate.numbers((self._clock.now - self._epoch) * 1e-9)
 
     def _new_gate(self, scene: Scene) -> InputGate:
         return InputGate(scene.accepted_inputs, self._first_inputs, heat_law=scene.heat.law, waits_for=REQUIRED)
@@ -351,6 +371,7 @@ class SimTimeModel(Model):
 
     def _start_again(self) -> None:
         """Leave the profile and begin another one at the clock, with the messages that were set aside."""
+        self._expecting_since = self._wall()
         early = self._jump_filter.jump(self._clock.now, self._newest)
         refused, self.gate = self.gate.refused, self._new_gate(self.scene)
         self.gate.refused = refused

@@ -271,6 +271,7 @@ class WallTimeSolver(Solver):
     ):
         super().__init__(simulation, pacer, clock, threads, begin)
         self._governor, self._advanced = governor, advanced
+        self._could_begin: float | None = None  # when the next tick is due, or the last one has ended, whichever is later
         self._life_used, self._life_at_reset = life_used, None
         self._schedule = self._wanted = schedule
         self._ticks = 0  # since the last sample that sinks keep
@@ -340,6 +341,8 @@ class WallTimeSolver(Solver):
             wall = self._tick_instant(wall)
             self._pacer.anchor(wall, end)
             self._shift = self._run_time(wall) - end
+        if self._could_begin is None:
+            self._could_begin = wall + delay
         return self._tick, delay
 
     def _begin(self) -> None:
@@ -368,6 +371,7 @@ class WallTimeSolver(Solver):
             self._use_governor(self._governors.popleft())
         tick, samples, _ = self._schedule
         began = self._clock()
+        could_begin, self._could_begin = self._could_begin or began, None
         try:
             block = self._simulation.advance(tick, self._latest, samples)
         except IntegrationError as error:
@@ -388,7 +392,8 @@ class WallTimeSolver(Solver):
         if self._advanced is not None:
             self._advanced(now)
         if self._governor is not None:
-            change = self._governor.consider(tick / self._pacer.rate, ended - began)
+            common = self._threads.common_pace if self._threads.are_shared else None
+            change = self._governor.consider(tick / self._pacer.rate, ended - began, began - could_begin, common, ended)
             if change is not None:
                 self._simulation = change.simulation
                 self._put(Event(now, Level.WARN if change.down else Level.OK, "governor.change", change.setting, change.text))
@@ -443,6 +448,7 @@ class WallTimeSolver(Solver):
         return (wall - self._origin) * self._pacer.rate
 
     def _anchor(self) -> None:
+        self._could_begin = None
         wall, time_ = self._tick_instant(self._clock()), self._simulation.time
         self._pacer.anchor(wall, time_)
         self.anchors += 1

@@ -9,6 +9,7 @@ Further threads, up to the number of cores, help while steps are late.
 
 import heapq
 import itertools
+import math
 import threading
 import time
 from collections.abc import Callable
@@ -21,6 +22,8 @@ THREAD_NAME = "bearing-solver"
 """Name of the solver threads in top -H and /proc; Linux keeps 15 letters."""
 
 _LATE = 0.005  # [s] after which another thread helps
+_FORGOTTEN = 1.0  # [s] after which the pace of one that takes no steps counts no longer
+_BETWEEN_TURNS = 0.25  # [s] the memory of a governor
 _LOOK = 0.02  # [s] from one look of a helping thread at what is late to the next
 
 Step = Callable[[], None]
@@ -36,6 +39,36 @@ class Stepped(Protocol):
 
     def take_step(self, step: Step) -> None:
         """Run a step; must not raise."""
+
+
+class CommonPace:
+    """How those that share threads keep up together: each alone may be fast enough while all of them are too slow.
+
+    Times are [s], monotonic.
+    """
+
+    def __init__(self):
+        self._shares: dict[object, tuple[float, float]] = {}  # of each: when it was noted, and the share
+        self._next_turn = -math.inf
+
+    def note(self, member: object, share: float, now: float) -> None:
+        """Note the share of real time that a member recently needed to be done with its steps, waiting for the others included."""
+        self._shares[member] = now, share
+
+    def forget(self, member: object) -> None:
+        """Drop what was noted of a member, which now computes something else."""
+        self._shares.pop(member, None)
+
+    def slowest(self, now: float) -> float:
+        """Return the largest share that was noted within the last second; 0 if there is none."""
+        return max((share for noted, share in list(self._shares.values()) if noted > now - _FORGOTTEN), default=0.0)
+
+    def takes_turn(self, now: float) -> bool:
+        """Return whether a member may change what it computes now: one after the other, so that the effect of each is seen before the next."""
+        if now < self._next_turn:
+            return False
+        self._next_turn = now + _BETWEEN_TURNS
+        return True
 
 
 class _Turn(NamedTuple):
@@ -61,10 +94,13 @@ class SolverThreads:
     ----------
     changed : threading.Condition
         Guards what `Stepped.next_step` reads; notified by `wake`.
+    common_pace : CommonPace
+        Of all that take steps.
     """
 
     def __init__(self, most: int | None = None):
         self.changed = threading.Condition()
+        self.common_pace = CommonPace()
         self._most = most or cores()
         self._idle = threading.Condition(self.changed)  # helping threads wait here
         self._costs: dict[Stepped, float] = {}  # of its last step [s], for everything that takes steps

@@ -2,8 +2,8 @@
 """Physical quantities of scene files: text with a unit in, SI numbers out; and the records that hold them.
 
 The only module that knows units.  Inside the package every number is SI; here ``7.0 mm`` becomes
-``0.007``, and a value outside its declared bounds raises one clear message.  The unit library (pint)
-is imported at first use, because importing it takes a quarter of a second, which ``--help`` does not need.
+``0.007``, and a value outside its declared bounds raises one clear message.  The usual units stand in a table; the unit library (pint)
+is imported for the first other one, because it takes half a second of a core to read its definitions.
 
 Units of equal dimension may be of different kinds, such as 1/min and rad/s, or N m and J.  A text of another kind is converted where
 it can mean one thing only, and refused elsewhere; it is never read as a number of the wanted unit.
@@ -70,6 +70,10 @@ def to_si(value: object, unit: str) -> float:
     if _EXCESSIVE_POWER.search(written_unit):  # pint would compute 9**9**9**9
         raise ValueError(f"{value!r} has powers of powers in its unit; expected {expected(unit)}")
     written_unit = _MEANT.get(unit, {}).get("".join(written_unit.casefold().split()), written_unit)
+    if written_unit in (factors := _USUAL.get(unit, {})):
+        return number * factors[written_unit]
+    if (written_unit, unit) == ("degC", "K"):
+        return number + _ZERO_CELSIUS
     import pint
 
     registry = unit_registry()
@@ -107,6 +111,34 @@ _TURNS = {
 }
 # By the unit that is expected; to pint a mil is an angle.
 _MEANT = {SPEED: _TURNS, "m": dict.fromkeys(("mil", "mils"), "thou")}
+_ZERO_CELSIUS = 273.15  # [K]
+# SI over the usual units of each kind, to the last digit those of pint; kinds with an offset, and whatever else people write, are read by pint.
+_USUAL = {
+    "": {"%": 0.01},
+    "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6},
+    "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
+    SPEED: {SPEED: 1.0, "rpm": 2.0 * math.pi / 60.0, "revolution/s": 2.0 * math.pi},
+    "N": {"N": 1.0, "kN": 1e3},
+    "N/m": {"N/m": 1.0},
+    "N*m": {"N*m": 1.0},
+    "K": {"K": 1.0},
+    "delta_degC": {"K": 1.0},
+    "kg": {"kg": 1.0, "g": 1e-3},
+    "kg*m": {"kg*m": 1.0, "g*mm": 1e-6},
+    "kg/m^3": {"kg/m^3": 1.0},
+    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9},
+    "1/Pa": {"1/Pa": 1.0, "1/GPa": 1e-9},
+    "Pa*s": {"Pa*s": 1.0, "mPa*s": 1e-3},
+    "m^2/s": {"m^2/s": 1.0, "mm^2/s": 1e-6},
+    "m^3/s": {"m^3/s": 1.0, "l/min": 1.666666666666667e-05, "ml/h": 2.7777777777777783e-10},
+    "m/s": {"m/s": 1.0, "mm/s": 1e-3},
+    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0},
+    "h": {"h": 1.0},
+    "Hz": {"Hz": 1.0},
+    "1/K": {"1/K": 1.0},
+    "W/(m*K)": {"W/(m*K)": 1.0},
+    "J/(kg*K)": {"J/(kg*K)": 1.0},
+}
 _ANGLES = ("radian", "degree", "turn", "revolution", "cycle", "arcminute", "arcsecond", "grade", "revolutions_per_minute", "revolutions_per_second")
 _SPELLINGS = (
     "N",
@@ -247,7 +279,11 @@ class Quantity:
     def show(self, number: float) -> str:
         """Return ``number`` (SI) as text in the display unit."""
         unit = self.shown_in or self.unit
-        if math.isfinite(number) and unit != self.unit:
+        if math.isfinite(number) and unit != self.unit and unit in (factors := _USUAL.get(self.unit, {})):
+            number /= factors[unit]
+        elif math.isfinite(number) and (self.unit, unit) == ("K", "degC"):
+            number -= _ZERO_CELSIUS
+        elif math.isfinite(number) and unit != self.unit:
             registry = unit_registry()
             number = registry.Quantity(number, registry.Unit(self.unit or "dimensionless")).to(unit).magnitude
         return f"{number:.6g} {unit}".rstrip()

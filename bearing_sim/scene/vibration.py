@@ -17,6 +17,10 @@ class VibrationInput:
     rate: quantity("Hz", "sampling rate of blocks that do not say theirs; 0: they must", 0.0, 1e7) = 0.0
     tolerance: quantity("", "within which the measured shaft speed is right: the shaft's own lines are searched there", 1e-4, 0.2, "%") = 0.01
 
+    largest_slip: quantity(
+        "", "of the cage that is possible at the loads of the run, beside the band of the model: no other lines are looked for", 0.0, 0.95, "%"
+    ) = 0.1
+
     @property
     def is_asked(self) -> bool:
         """Whether the scene asks for the cage speed out of vibration."""

@@ -251,10 +251,10 @@ class StateKeeper:
         """Return what is wrong with the state at ``now`` [s], for as long as it is wrong."""
         events, unsaved = [], 0.0 if self._unsaved_since is None else self._clock() - self._unsaved_since
         if self._error:
-            reason = f"{self.path} cannot be written: {self._error}; {unsaved:.0f} s would be lost now"
+            reason = f"{self.path} cannot be written: {self._error}"
             events.append(Event(now, Level.ERROR, "state.not_written", "", reason, "the model continues, and writing is tried again"))
         elif unsaved > _LATE:
-            reason = f"{self.path} was not written for {unsaved:.0f} s, which a kill would lose: the disk or the machine is too slow"
+            reason = f"{self.path} was not written for more than {_LATE:g} s, which a kill would lose: the disk or the machine is too slow"
             events.append(Event(now, Level.WARN, "state.late", "", reason))
         if self._history_error:
             events.append(Event(now, Level.WARN, "state.history", "", self._history_error, "days stay in the state until they can be moved"))

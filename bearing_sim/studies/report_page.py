@@ -7,13 +7,14 @@ A page has the scene and its bearing, tables, pictures, warnings, where the resu
 import io
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.files.tally import Tally
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.characteristic_frequencies import frequencies_text, mean_frequencies
 from bearing_sim.model.plausibility import left_out, plausibility
@@ -51,12 +52,13 @@ class _Part(NamedTuple):
     sections: dict[str, str]
 
 
-def page_of(source: Path) -> str:
+def page_of(source: Path, tell: Callable[[Tally, Path], None] = lambda tally, path: None) -> str:
     """Return the HTML page of a result.
 
     Parameters
     ----------
     source : a table (Parquet, or CSV beside it), a recording (MCAP file or bag's folder), or a folder of such files or of a study.
+    tell : called with what was used of each recording, and its path.
 
     Raises
     ------
@@ -71,7 +73,7 @@ def page_of(source: Path) -> str:
         )
     if (source / STUDY_FILE).is_file():
         return study_page(source)
-    return document(*_part(source)) if _is_result(source) else _folder_page(source)
+    return document(*_part(source, tell)) if _is_result(source) else _folder_page(source, tell)
 
 
 def _is_result(source: Path) -> bool:
@@ -96,12 +98,12 @@ def _is_of_design(path: Path) -> bool:
     return any(path.stem.endswith(suffix) and path.with_name(path.name.replace(suffix, "")).is_file() for suffix in ("_borders", "_checks"))
 
 
-def _folder_page(folder: Path) -> str:
+def _folder_page(folder: Path, tell: Callable[[Tally, Path], None]) -> str:
     """Return the page of all results in a folder, one after the other; files without results are listed with the reason."""
     parts, skipped = [], []
     for path in _results_in(folder):
         try:
-            parts.append(_part(path))
+            parts.append(_part(path, tell))
         except NoResults as error:
             skipped.append(f"not shown: {error}")
     if not parts:
@@ -115,11 +117,14 @@ def _folder_page(folder: Path) -> str:
     return document(f"{len(parts)} results in {folder.name}", warnings(skipped), sections)
 
 
-def _part(path: Path) -> _Part:
+def _part(path: Path, tell: Callable[[Tally, Path], None]) -> _Part:
     """Return the part of a page on one result."""
     if path.is_dir() or path.suffix in _RECORDINGS:
         try:
-            return _recording_part(Recording(path))
+            recording = Recording(path, allow_partial=True)
+            part = _recording_part(recording)
+            tell(recording.tally, path)
+            return part
         except RecordingError as error:
             raise NoResults(str(error)) from None
     if path.suffix not in _TABLES:
@@ -279,10 +284,12 @@ def _recording_part(recording: Recording) -> _Part:
         (events if isinstance(item, Event) else blocks).append(item)
     block = joined([_thinned(each, recording.samples) for each in blocks])
     course = course_of(blocks, scene, recording.path.name, recording.samples, (*DEFAULT_PANELS, "roller_load"))
-    told = [f"the recording ends early: {recording.unfinished}"] if recording.unfinished else []
+    told = [] if recording.tally.is_whole else [f"the recording is used in part only: {recording.tally.text}"]
     grouped = _grouped([event for event in events if event.level > Level.OK])
     told += [f"{text} ({'at' if count == 1 else f'{count} times, first at'} {first:.6g} s)" for text, first, count in grouped]
-    settled = block[block["time"] >= recording.last_time - _LAST * recording.duration]
+    last = float(blocks[-1]["time"][-1])  # that could be read
+    duration = last - recording.first_time
+    settled = block[block["time"] >= last - _LAST * duration]
     about = {
         "scene": scene.name,
         "level": scene.level,
@@ -298,13 +305,13 @@ def _recording_part(recording: Recording) -> _Part:
     none, at_rest = f"none: {stands_text(scene.thresholds.slip_from_speed)}", f"none: {stands_text(scene.thresholds.slip_from_speed)} there"
     summary = {
         "recording": ", ".join(file.name for file in recording.files),
-        "simulated": f"{recording.duration:.6g} s, {recording.samples} samples",
+        "simulated": f"{duration:.6g} s, {recording.tally.counts}",
         "level": scene.level,
         "cage slip while turning": none if math.isnan(slip["mean"]) else f"mean {100 * slip['mean']:.2f} %, largest {100 * slip['maximum']:.2f} %",
         "cage slip at the end": f"{100 * np.nanmean(at_end['cage_slip']):.2f} %" if np.isfinite(at_end["cage_slip"]).any() else at_rest,
         "characteristic frequencies at the end": frequencies_text(mean_frequencies(at_end)) if len(at_end) else at_rest,
         "life used": f"{100 * used:.4g} %",
-        f"life under these conditions ({studied.life_name(scene)})": f"{recording.duration / 3600 / used:.4g} h" if used > 0.0 else "not used",
+        f"life under these conditions ({studied.life_name(scene)})": f"{duration / 3600 / used:.4g} h" if used > 0.0 else "not used",
         "events": ", ".join(f"{count} x {kind}" for kind, count in Counter(event.kind for event in events).most_common()) or "none",
     }
     columns = Column("time", "s", "since the start"), Column("level", "", "severity"), Column("kind", "", "identifier"), Column("text", "", "what")

@@ -25,6 +25,7 @@ from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.scene.uncertainty import Range, messages, quantities, ranges_of, ring_ranges, shown, value_at, with_values, without_dimensions
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
 from bearing_sim.sweep.ring_resonance import ring_resonance
+from bearing_sim.sweep.states import states
 from bearing_sim.sweep.table import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 from bearing_sim.sweep.thermal import equilibrium_temperatures
@@ -428,6 +429,31 @@ def _with_kept_rating(scene: Scene, values: dict[str, float], estimated: dict[st
     before = roller.count * roller.diameter * (1.0 - roller.diameter / pitch)
     after = values.get(count, roller.count) * width * (1.0 - width / (inner + width))
     return {**values, length: values[length] * before / after}
+
+
+def largest_slip(scene: Scene, inputs: Inputs, draws: int = 8, seed: int = 1) -> float:
+    """Return the largest slip of the cage in any state of a bearing, its own and those of draws of its uncertain fields, by level steady.
+
+    Parameters
+    ----------
+    scene : of any level.
+    inputs : conditions.
+    draws : number of them, a power of two.
+    seed : of the draws.
+
+    Raises
+    ------
+    IntegrationError
+        No state was found.
+    """
+    scene = scene.at_level("steady")
+    ranges = varied_ranges(scene)
+    points = design([distribution(one, value_at(scene, one.field)) for one in ranges], draws, seed).points[:draws] if ranges else ()
+    scenes = [scene, *(varied(scene, dict(zip([one.field for one in ranges], point))) for point in points)]
+    found = [state.cage_slip for each in scenes for state in states(each, inputs, skid_load=False).found]
+    if not found:
+        raise IntegrationError("no state of the bearing was found under these conditions")
+    return max(found)
 
 
 def settled(scene: Scene, conditions: np.ndarray | None = None) -> np.ndarray:

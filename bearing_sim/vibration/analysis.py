@@ -3,7 +3,10 @@
 
 The limit of the method is part of its answer.  The lines of both raceways add up to Z times the shaft's, whatever the slip, and slip is the
 difference of the ratio found from the one that the geometry has without slip: a roller of another size of the same designation moves that by 3 %,
-0.03 mm of clearance by 0.04 %.  Without measured diameters slip below 2 % is therefore not claimed; the ratio of cage to shaft is.
+0.03 mm of clearance by 0.04 %.  Without measured diameters slip below 3 % is therefore not claimed; the ratio of cage to shaft is.
+
+Lines are a claim only if nothing else is known that makes them: no slower train whose harmonics they are, no exactly periodic train of a gear, of
+the mains or of another machine, no other part of the bearing.
 """
 
 import math
@@ -12,19 +15,35 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.vibration.comb import Fit, Range, orders_of, promise, search, spectra
+from bearing_sim.vibration.comb import (
+    Fit,
+    Prepared,
+    Range,
+    Spectra,
+    first_line,
+    free_train,
+    orders_of,
+    prepared,
+    promise,
+    search,
+    spectra,
+    train_below,
+)
 from bearing_sim.vibration.order_tracking import Shaft, constant_shaft, find_shaft, recorded_shaft, shaft_signal_range, wide_range
-from bearing_sim.vibration.phase import Rate, follow, mean_rate
+from bearing_sim.vibration.phase import Rate, Track, follow, mean_rate, smoothed
+from bearing_sim.vibration.regularity import UNKNOWN, Regularity, regularity
 from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, candidate_bands, narrow_bands, repetition
 
 CERTAIN = math.log(1e4)
 """[nat] by which noise must be excluded: a false alarm in 10,000 records."""
-CLAIMED_SLIP = 0.02
-"""Slip below which nothing is said about it without measured diameters: another roller size of the same designation moves it by 3 %."""
+LARGEST_SLIP = 0.1
+"""Slip of the cage up to which lines are looked for where nothing says what is possible (assumption: a loaded bearing has less)."""
 
-_NEGATIVE_SLIP, _LARGEST_SLIP = -0.06, 0.6  # range that is searched: a ratio too high by another roller size, and skidding
-_NEGATIVE_SLIP_OF_ANY = -0.01  # where the size is unknown, and a range of sizes is searched anyway
-_GROSS_SLIP = 0.25  # from which on a raceway's line may be a roller's
+_ANOTHER_SIZE = 0.03  # by which a roller of another size of the same designation moves the ratio
+_NEGATIVE_SLIP = 0.002  # beside that, by clearance and contact angles
+_CLEAR_OF_ROLLER = 30.0  # [nat] of a raceway's line from which on the sidebands of a roller's would be seen beside it
+_SIDEBAND = 0.2  # of its height, that they have at least: the load zone gives 0.5 to 0.7
+_LOUDEST = 500.0  # [nat]
 _SIZES = (0.12, 0.3)  # roller diameter over pitch diameter where the geometry is unknown (assumption, wider than the catalogue's 0.12 to 0.25)
 _SPIN_TOLERANCE = 0.06
 _PER_TURN_OVER_ORDER = 2.6
@@ -32,6 +51,11 @@ _FEWEST_TURNS = 20.0
 _QUARTERS = 4
 _NARROW = 2  # bands of the width of a resonance, the most promising ones, that are searched for all combs
 _ENDS = 0.05  # fraction of the record that fades in, and out
+_MOST_TRAINS = 6  # of something else, whose lines are left out one after another
+_AS_LIKELY = 10.0  # [nat] within which another part is not excluded
+_FOREIGN_PRIOR = 0.1  # that a machine nearby has a train of irregular impacts, such as another bearing (assumption: 0.02 to 0.5)
+_TRAIN_ORDERS = (0.2, 20.0)  # of such trains, equally likely at any logarithm (assumption)
+_MAINS = (50.0, 60.0)  # [Hz]
 _FEWEST_LINES = {"outer_ring": 2, "inner_ring": 2, "roller": 2, "cage": 3}  # that must be clear: near the cage's other machines have lines, too
 
 
@@ -44,12 +68,15 @@ class Geometry(NamedTuple):
     size : roller diameter over pitch diameter; NaN if unknown.
     is_measured : whether the diameters were measured on this bearing.
     name : for messages.
+    least_slip, largest_slip : of the cage that are possible at the load and the speed of the record; no others are looked for.
     """
 
     rollers: int
     size: float = math.nan
     is_measured: bool = False
     name: str = ""
+    least_slip: float = 0.0
+    largest_slip: float = LARGEST_SLIP
 
     @property
     def ideal_ratio(self) -> float:
@@ -59,11 +86,13 @@ class Geometry(NamedTuple):
     @property
     def range(self) -> Range:
         """What is searched for lines of this bearing."""
-        small, large = (self.size, self.size) if math.isfinite(self.size) else _SIZES
-        negative = _NEGATIVE_SLIP if math.isfinite(self.size) else _NEGATIVE_SLIP_OF_ANY
-        low, high = 0.5 * (1.0 - large) * (1.0 - _LARGEST_SLIP), min(0.5 * (1.0 - small) * (1.0 - negative), 0.4999)
+        is_known = math.isfinite(self.size)
+        small, large = (self.size, self.size) if is_known else _SIZES
+        play = _NEGATIVE_SLIP + (0.0 if self.is_measured or not is_known else _ANOTHER_SIZE)
+        low, high = 0.5 * (1.0 - large) * (1.0 - self.largest_slip - play), 0.5 * (1.0 - small) * (1.0 - self.least_slip + play)
         passes = [(1.0 - size**2) / size for size in (large, small)]
-        return Range(low, high, self.rollers, (1.0 - 2.0 * _SPIN_TOLERANCE) * passes[0], (1.0 + _SPIN_TOLERANCE) * passes[1])
+        high = min(high, 0.4999)
+        return Range(min(low, high), high, self.rollers, (1.0 - 2.0 * _SPIN_TOLERANCE) * passes[0], (1.0 + _SPIN_TOLERANCE) * passes[1])
 
 
 class Part(NamedTuple):
@@ -92,16 +121,21 @@ class Analysis(NamedTuple):
 
     Attributes
     ----------
-    found : whether there are lines of the bearing; if not, everything about the cage is NaN.
+    found : whether there are lines where this bearing may have them; if not, everything about the cage is NaN.
+    is_claim : whether they are the bearing's: nothing else is known that makes them.
+    alternatives : what they cannot be told apart from, in words; none of a claim.
     shows : what shows: ``outer_ring``, ``inner_ring``, ``roller``, ``cage``; empty if there is no line.
     false_alarm : upper bound of the probability that noise alone looks like this.
+    doubt : upper bound of the probability that it is anything else: noise, an exact train, another part, or an irregular train of another machine
+        that is in the range of this bearing by chance; 1 where something cannot be told apart.
+    jitter : standard deviation of the instants of impacts over their period; NaN where it cannot be told.
     shaft : frequency, its standard error and where it comes from.
     line, line_error : frequency of the fundamental line over the shaft's, and its standard error.
     ratio, ratio_error : cage over shaft speed, and its standard error.
     cage_speed, cage_speed_error : [rad/s].
     passes : meetings of a spot on a roller with the raceways in a turn; NaN for others.
     slip, slip_error : of the cage against the geometry; NaN where the geometry is unknown.
-    claims_slip : whether the slip is more than what an unknown geometry can feign.
+    claims_slip : whether the lines are claimed, the shaft's speed is measured, and the slip is more than what an unknown geometry can feign.
     parts : the same by quarters of the record.
     band : in which the lines are.
     lines : orders of the lines that are clear by themselves.
@@ -109,8 +143,12 @@ class Analysis(NamedTuple):
     """
 
     found: bool
+    is_claim: bool
+    alternatives: Sequence[str]
     shows: str
     false_alarm: float
+    doubt: float
+    jitter: float
     shaft: Shaft
     line: float
     line_error: float
@@ -180,6 +218,7 @@ def analyse(
     bands = [band] if band is not None else candidate_bands(whitened, narrowest)
     envelopes = [whitened.envelope(each) for each in bands]
     shaft = _shaft_of(vibration, raw, envelopes, low, high, tolerance, follows_lines)
+    range_ = _widened(range_, shaft)
     per_turn = _PER_TURN_OVER_ORDER * (3.0 * inner + 3.0)
     by_angle = [(each, *_by_angle(shaft, *envelope, per_turn)) for each, envelope in zip(bands, envelopes)]
     looks = len(bands)
@@ -188,26 +227,165 @@ def analyse(
         looks += len(others)
         tried = [(each, *_by_angle(shaft, *whitened.envelope(each), per_turn)) for each in others]
         by_angle += sorted(tried, key=lambda each: -promise(*each[1:], range_))[:_NARROW]
-    best: tuple[Fit, Band, np.ndarray, float] | None = None
-    for each, signal, per_turn_here in by_angle:
-        for fit in search(signal, per_turn_here, range_, looks):
-            if len(fit.clear_lines) >= _FEWEST_LINES[fit.family.name] and (best is None or fit.false_alarm > best[0].false_alarm):
-                best = fit, each, signal, per_turn_here
-    if best is None:
-        return _nothing(shaft, None)
-    fit, chosen, signal, per_turn_here = best
-    if fit.false_alarm < CERTAIN:
-        return _nothing(shaft, fit)
-    rate = _rate_of(fit, signal, per_turn_here)
-    if fit.family.name in ("outer_ring", "inner_ring") and not _shows_its_first(fit):
-        return _nothing(shaft, fit, "lines at a harmonic only, without the first one: they may be those of anything else")
-    if _may_be_a_roller(fit, range_):
-        why = "the lines are those of a raceway whose cage slips grossly, or those of a roller's turns: they cannot be told apart"
+    places = [_Place(each, signal, per_turn_here, prepared(signal, per_turn_here, range_)) for each, signal, per_turn_here in by_angle]
+    trains: list[float] = []
+    while True:
+        best = _best(places, looks, trains)
+        why = _of_a_train(trains[0], shaft) if trains else ""
+        if best is None or best.fit.false_alarm < CERTAIN:
+            return _nothing(shaft, best.fit if best else None, why or _foreign_train(places, looks, shaft))
+        fit, place = best.fit, best.place
+        rate = _rate_of(fit, place.signal, place.per_turn)
+        fit_there = fit._replace(ratio=fit.ratio + (rate.value if rate else 0.0))
+        train = train_below(fit, place.prepared.of(fit)) or train_below(fit_there, place.prepared.finest)
+        if train is None or len(trains) == _MOST_TRAINS:
+            break
+        trains.append(train)
+    if train is not None:
         return _nothing(shaft, fit, why)
-    if rate is None or abs(rate.value) > 3.0 * fit.resolution or _is_hidden(fit, range_, len(signal) / per_turn_here):
-        return _nothing(shaft, fit)
-    course = tuple(_course(fit._replace(ratio=fit.ratio + rate.value), shaft, signal, per_turn_here, parts))
-    return _completed(fit, rate, shaft, geometry, chosen, course)
+    if fit.family.name in ("outer_ring", "inner_ring") and not _shows_its_first(fit):
+        return _nothing(shaft, fit, why or "lines at a harmonic only, without the first one: they may be those of anything else")
+    if rate is None or abs(rate.value) > 3.0 * fit.resolution or _is_hidden(fit, range_, len(place.signal) / place.per_turn):
+        return _nothing(shaft, fit, why)
+    impacts = _regularity_of(fit_there, place, vibration, shaft)
+    if impacts.is_sparse:
+        return _nothing(shaft, fit, why or "few periods of the lines hold an impact: they are those of something slower")
+    alternatives = _alternatives(fit, best.fits, impacts, place, shaft, range_)
+    if trains and alternatives:
+        return _nothing(shaft, fit, f"{why}; what is left beside it cannot be told apart from {'; or from '.join(alternatives)}")
+    course = tuple(_course(fit_there, shaft, place.signal, place.per_turn, parts))
+    doubt = _doubt(fit, best.fits, impacts, range_) if not alternatives else 1.0
+    return _completed(fit, rate, shaft, geometry, place.band, course, impacts, alternatives, doubt)
+
+
+class _Place(NamedTuple):
+    """A band with its envelope by the shaft's angle, and the periodograms of it."""
+
+    band: Band
+    signal: np.ndarray
+    per_turn: float
+    prepared: Prepared
+
+
+class _Candidate(NamedTuple):
+    """The clearest comb of all bands, the place in which it is, and the best combs of other parts there."""
+
+    fit: Fit
+    place: _Place
+    fits: Sequence[Fit]
+
+
+def _widened(range_: Range, shaft: Shaft) -> Range:
+    """Return a range with the error of the shaft's speed in it, by which all orders are wrong."""
+    relative = 2.0 * shaft.standard_error / shaft.frequency
+    return range_._replace(low=range_.low * (1.0 - relative), high=min(range_.high * (1.0 + relative), 0.4999))
+
+
+def _best(places: Sequence[_Place], looks: int, trains: Sequence[float]) -> _Candidate | None:
+    """Return the clearest comb beside trains of something else."""
+    best: _Candidate | None = None
+    for place in places:
+        fits = [fit for fit in search(place.prepared.without(trains), looks) if len(fit.clear_lines) >= _FEWEST_LINES[fit.family.name]]
+        fits = [fit for fit in fits if not (fit.family.name == "roller" and _is_multiple(fit))]
+        if not fits:
+            continue
+        first = fits[0]
+        if first.family.name == "cage":  # a damaged roller has these lines, too, once in a turn of the cage
+            rollers = [fit for fit in fits if fit.family.name == "roller" and fit.false_alarm >= CERTAIN]
+            first = next((fit for fit in rollers if abs(fit.ratio - first.ratio) < 2.0 * fit.resolution), first)
+        if best is None or first.false_alarm > best.fit.false_alarm:
+            best = _Candidate(first, place, fits)
+    return best
+
+
+def _is_multiple(fit: Fit) -> bool:
+    """Return whether the lines of a roller are at multiples of the cage's: those of any train that is as slow as the cage are, too."""
+    parts = fit.passes / fit.ratio
+    return abs(parts - round(parts)) * fit.ratio < 2.0 * fit.resolution
+
+
+def _of_a_train(order: float, shaft: Shaft) -> str:
+    return (
+        f"a train of impacts at {order:.5g} times the shaft's frequency, {order * shaft.frequency:.5g} Hz, and its harmonics, with no relation to"
+        " this bearing"
+    )
+
+
+def _foreign_train(places: Sequence[_Place], looks: int, shaft: Shaft) -> str:
+    """Return what the clearest train of impacts is that is not the bearing's, in words; empty if none is clear."""
+    fits = [fit for place in places if (fit := free_train(place.prepared, looks)) is not None and len(fit.clear_lines) >= 2]
+    best = max(fits, key=lambda fit: fit.false_alarm, default=None)
+    return "" if best is None or best.false_alarm < CERTAIN else _of_a_train(best.ratio, shaft)
+
+
+def _regularity_of(fit: Fit, place: _Place, vibration: Vibration, shaft: Shaft) -> Regularity:
+    """Return how exactly periodic the impacts of a comb are; ``fit`` with the ratio as it was measured."""
+    line = first_line(fit)
+    if fit.family.name == "cage":
+        numbers = np.arange(1.0, 5.0)
+    else:
+        numbers = np.arange(1.0, 1.0 + len(fit.family.centres))
+    orders = numbers * line
+    found = spectra(place.signal, place.per_turn, 1, place.per_turn / 2.0)
+    inside = (orders < 0.48 * place.per_turn) & (np.abs(orders - np.rint(orders)) > 6.0 * place.per_turn / len(place.signal))
+    averaged = spectra(place.signal, place.per_turn, fit.averages, place.per_turn / 2.0)
+    if found is None or averaged is None or not inside.any():
+        return UNKNOWN
+    clear = inside & (averaged.at(orders) > 3.0)
+    inside = clear if clear.any() else inside
+    turns = len(place.signal) / place.per_turn
+    segments = int(np.clip(max(turns / 8.0, 2.0 * fit.averages), 8, 64))
+    track: Track = follow(place.signal, place.per_turn, orders[inside], numbers[inside], found.noise_at(orders[inside]), segments)
+    course = np.interp(angles := np.linspace(0.0, turns, 64 * segments), track.places, smoothed(track).phases)
+    phases = line * angles + course
+    if np.any(np.diff(phases) <= 0.0):
+        return UNKNOWN
+    places = np.interp(np.arange(math.ceil(phases[0]), math.floor(phases[-1])), phases, angles)
+    hertz = line * shaft.frequency
+    spectrum = Spectrum(vibration.samples, vibration.rate, _ENDS).without_lines(hertz, 4.0 / vibration.duration)
+    return regularity(spectrum, place.band, shaft, places, hertz)
+
+
+def _alternatives(fit: Fit, fits: Sequence[Fit], impacts: Regularity, place: _Place, shaft: Shaft, range_: Range) -> tuple[str, ...]:
+    """Return what else has the lines of a fit, in words."""
+    found, line = [], first_line(fit)
+    hertz = line * shaft.frequency
+    resolution = place.prepared.of(fit).resolution
+    if not impacts.is_irregular:
+        mains = next(
+            (each for each in _MAINS if abs(hertz / each - round(hertz / each)) * each < max(resolution * shaft.frequency, 0.002 * hertz)), None
+        )
+        source = f", such as the mains of {mains:g} Hz" if mains and hertz > 0.9 * mains else ""
+        is_seen = math.isfinite(impacts.jitter)
+        how = "its impacts are exactly periodic, as far as is seen" if is_seen else "noise hides whether its impacts are exactly periodic"
+        found.append(f"a train of impacts of another machine or of a gear at {hertz:.6g} Hz{source}: {how}")
+    others = [each for each in fits if each.family.name != fit.family.name and each.false_alarm > max(fit.false_alarm - _AS_LIKELY, CERTAIN)]
+    found += [f"the lines of {_A_PART[each.family.name]}" for each in others]
+    if fit.family.name == "cage" and not any(each.family.name == "roller" for each in others):
+        found.append("a roller that differs, once in a turn of the cage")
+    if fit.family.name == "roller" and not _is_modulated_by_cage(fit):
+        found.append("a train of impacts of another machine: the cage does not modulate it as it does those of a roller")
+    if _may_be_a_roller(fit, place.prepared.of(fit), range_) and not any(each.family.name == "roller" for each in others):
+        found.append("the lines of a roller")
+    return tuple(found)
+
+
+_A_PART = {"outer_ring": "the outer ring", "inner_ring": "the inner ring", "roller": "a roller", "cage": "the cage"}
+
+
+def _is_modulated_by_cage(fit: Fit) -> bool:
+    """Return whether the first line of a roller has clear sidebands on both sides: it passes through the load zone once in a turn of the cage."""
+    return all(any(abs(order - fit.passes - side * fit.ratio) < 1e-6 for order in fit.clear_lines) for side in (-1.0, 1.0))
+
+
+def _doubt(fit: Fit, fits: Sequence[Fit], impacts: Regularity, range_: Range) -> float:
+    """Return an upper bound of the probability that something else made the lines of a fit."""
+    noise = math.exp(-min(fit.false_alarm, 700.0))
+    parts = sum(math.exp(max(each.false_alarm - fit.false_alarm, -700.0)) for each in fits if each.family.name != fit.family.name)
+    constant, by_c, by_b = fit.family.centres[0]
+    ends = [abs(constant + by_c * ratio + by_b * passes) for ratio, passes in ((range_.low, range_.passes_low), (range_.high, range_.passes_high))]
+    share = abs(math.log(ends[1] / ends[0])) / math.log(_TRAIN_ORDERS[1] / _TRAIN_ORDERS[0])
+    return min(1.0, noise + parts + impacts.chance + _FOREIGN_PRIOR * share)
 
 
 def _by_angle(shaft: Shaft, envelope: np.ndarray, rate: float, per_turn: float) -> tuple[np.ndarray, float]:
@@ -250,9 +428,14 @@ def _shaft_of(vibration, raw: Spectrum, envelopes, low: float, high: float, tole
         highest = shaft_signal_range(high)
         signals = [raw.low_passed(min(highest, raw.highest))]
         signals += [_low_passed(envelope, rate, highest) for envelope, rate in envelopes[:2]]
-        found = find_shaft(signals, about, tolerance, raw.low_passed(min(wide_range(high), raw.highest)))
-        if found is not None:
-            return found
+        wide = raw.low_passed(min(wide_range(high), raw.highest))
+        found, by_vibration = (find_shaft(some, about, tolerance, wide) for some in (signals, signals[:1]))
+        if found is None or by_vibration is None:
+            return found or by_vibration or about
+        # An envelope has the lines of every train of impacts, and those of a train may be nearer to the expected speed than the shaft's.
+        apart = abs(found.frequency - by_vibration.frequency)
+        if apart < max(3.0 * math.hypot(found.standard_error, by_vibration.standard_error), 1.0 / vibration.duration):
+            return min(found, by_vibration, key=lambda each: each.standard_error)
     return about
 
 
@@ -268,6 +451,8 @@ def _rate_of(fit: Fit, signal: np.ndarray, per_turn: float) -> Rate | None:
     found = spectra(signal, per_turn, 1, per_turn / 2.0)
     inside = (orders > 0.2) & (orders < 0.48 * per_turn) & (np.abs(orders - np.rint(orders)) > 6.0 * per_turn / len(signal))
     averaged = spectra(signal, per_turn, fit.averages, per_turn / 2.0)
+    if found is None or averaged is None:
+        return None
     inside &= averaged.at(orders) > 3.0
     orders, multipliers = orders[inside], multipliers[inside]
     if not len(orders):
@@ -298,14 +483,21 @@ def _shows_its_first(fit: Fit) -> bool:
     return any(abs(order - first) < 1e-6 for order in fit.clear_lines)
 
 
-def _may_be_a_roller(fit: Fit, range_: Range) -> bool:
-    """Return whether the lines of a raceway with gross slip may be at once or twice the turns of a roller with little slip."""
-    usual = range_.low / (1.0 - _LARGEST_SLIP) * (1.0 - _GROSS_SLIP)
-    if fit.family.name not in ("outer_ring", "inner_ring") or fit.ratio > usual:
+def _may_be_a_roller(fit: Fit, found: Spectra, range_: Range) -> bool:
+    """Return whether the first line of a raceway may be that of a roller, or a sideband of it.
+
+    A roller passes through the load zone once in a turn of the cage, so that its line has sidebands there that are nearly as high; a raceway's has
+    not.  It may also be at half the frequency, where a roller meets one raceway only.
+    """
+    line = first_line(fit)
+    if fit.family.name not in ("outer_ring", "inner_ring") or not any(
+        part * range_.passes_low - range_.high <= line <= part * range_.passes_high + range_.high for part in (0.5, 1.0)
+    ):
         return False
-    constant, by_c, _ = fit.family.centres[0]
-    line = constant + by_c * fit.ratio
-    return any(part * range_.passes_low <= line <= part * range_.passes_high for part in (0.5, 1.0))
+    ratios = np.arange(range_.low, range_.high + found.step, found.step)
+    height = min(float(found.at(np.array([line]))[0]), _LOUDEST)
+    beside = max(float(found.at(line + ratios).max()), float(found.at(line - ratios).max()))
+    return height < _CLEAR_OF_ROLLER or beside > _SIDEBAND * height
 
 
 def _rate_of_roller(fit: Fit, signal: np.ndarray, per_turn: float) -> Rate | None:
@@ -347,7 +539,17 @@ def _of_shaft(fit: Fit) -> float:
     return constant / by_c if by_c else 1.0
 
 
-def _completed(fit: Fit, rate: Rate, shaft: Shaft, geometry: Geometry, band: Band, course: Sequence[Part]) -> Analysis:
+def _completed(
+    fit: Fit,
+    rate: Rate,
+    shaft: Shaft,
+    geometry: Geometry,
+    band: Band,
+    course: Sequence[Part],
+    impacts: Regularity,
+    alternatives: Sequence[str],
+    doubt: float,
+) -> Analysis:
     """Return the result with the errors of the shaft in it."""
     ratio, relative = fit.ratio + rate.value, shaft.standard_error / shaft.frequency
     constant, by_c, by_b = fit.family.centres[0]
@@ -361,12 +563,15 @@ def _completed(fit: Fit, rate: Rate, shaft: Shaft, geometry: Geometry, band: Ban
     cage_error = shaft_speed * math.hypot(rate.standard_error, _of_shaft(fit) * relative)
     slip = 1.0 - ratio / geometry.ideal_ratio
     slip_error = ratio_error / geometry.ideal_ratio
-    claimed = geometry.is_measured and math.isfinite(slip) or abs(slip) > CLAIMED_SLIP + 2.0 * slip_error
-    reason = "" if claimed else _why_not_claimed(slip)
+    reason = _why_slip_is_not_claimed(slip, slip_error, geometry, shaft, alternatives)
     return Analysis(
         True,
+        not alternatives,
+        alternatives,
         fit.family.name,
         math.exp(-min(fit.false_alarm, 700.0)),
+        doubt,
+        impacts.jitter,
         shaft,
         line,
         line_error,
@@ -377,7 +582,7 @@ def _completed(fit: Fit, rate: Rate, shaft: Shaft, geometry: Geometry, band: Ban
         fit.passes,
         slip,
         slip_error,
-        bool(claimed),
+        not reason,
         course,
         band,
         fit.clear_lines,
@@ -385,13 +590,23 @@ def _completed(fit: Fit, rate: Rate, shaft: Shaft, geometry: Geometry, band: Ban
     )
 
 
-def _why_not_claimed(slip: float) -> str:
+def _why_slip_is_not_claimed(slip: float, slip_error: float, geometry: Geometry, shaft: Shaft, alternatives: Sequence[str]) -> str:
+    """Return in words why slip is not claimed; empty if it is."""
+    if alternatives:
+        return f"slip is not claimed: the lines cannot be told apart from {'; or from '.join(alternatives)}"
     if math.isnan(slip):
         return "slip is not claimed: the diameters are unknown"
-    return (
-        f"slip is not claimed: {100.0 * slip:.2f} % against the drawing is less than what a roller of another size of the same designation does (3 %)"
-        " ; measure the diameters"
-    ).replace(" ;", ";")
+    if shaft.source == "given":
+        return "slip is not claimed: no line of the shaft and no recorded speed says how fast the shaft turned; record it, and use --speed-channel"
+    if slip < -3.0 * slip_error - _NEGATIVE_SLIP:
+        above = f"the ratio is {-100.0 * slip:.2f} % above that without slip by the drawing, which no cage reaches"
+        return f"slip is not claimed: {above}; measure the diameters"
+    if not geometry.is_measured and slip <= _ANOTHER_SIZE + 2.0 * slip_error:
+        return (
+            f"slip is not claimed: {100.0 * slip:.2f} % against the drawing is no more than what a roller of another size of the same designation"
+            " does (3 %); measure the diameters"
+        )
+    return ""
 
 
 def _nothing(shaft: Shaft, fit: Fit | None, doubt: str = "") -> Analysis:
@@ -406,4 +621,5 @@ def _nothing(shaft: Shaft, fit: Fit | None, doubt: str = "") -> Analysis:
         why = f"noise alone gives a comb as clear as the best in one of {1.0 / chance:,.0f} records"
     else:
         why = "the lines do not keep together over the record, or may be the harmonics of a line that coincides with one of the shaft's"
-    return Analysis(False, "", chance, shaft, nan, nan, nan, nan, nan, nan, nan, nan, nan, False, (), None, (), f"no line found: {why}")
+    reason = f"no line of this bearing: {why}"
+    return Analysis(False, False, (), "", chance, 1.0, nan, shaft, nan, nan, nan, nan, nan, nan, nan, nan, nan, False, (), None, (), reason)

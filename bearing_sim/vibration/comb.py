@@ -29,6 +29,12 @@ _MOST_CANDIDATES = 400_000
 _CLEAR = 7.0  # [nat] of a line by itself, a probability of 1e-3 in noise
 _LARGEST = 600.0  # [nat] of averages; beyond it the incomplete gamma function underflows
 _EXCLUDED = 3.0  # half width of what is left out at whole orders, in bins
+_EXPLAINED = 1.0  # half width of what a train of something else explains at its multiples, in widths of a line
+_APART = 5.0  # widths of a line between the lines of such a train, at least, so that others are seen between them
+_LOWEST_TRAIN = 0.2  # order of the slowest train of something else that is looked for
+_LIKE_THE_HIGHER = 0.2  # of the surprise of a line that each lower one of a train of impacts has at least
+_TRAIN = 5.0  # [nat] of each of them, at least
+_HARMONICS_OF_TRAINS = (1, 2, 3, 4)
 
 
 class Family(NamedTuple):
@@ -93,6 +99,15 @@ class Spectra(NamedTuple):
     def noise_at(self, orders: np.ndarray) -> np.ndarray:
         """Return the density of the noise at orders."""
         return self.density[np.minimum(np.rint(np.abs(orders) / self.step).astype(np.int64), len(self.density) - 1)]
+
+    def without(self, fundamentals: Sequence[float]) -> "Spectra":
+        """Return this without the lines at all multiples of some orders, where they are far enough apart to leave others between them."""
+        surprise = self.surprise
+        for order in fundamentals:
+            if order > _APART * self.resolution:
+                places = np.arange(len(surprise)) * (self.step / order)
+                surprise = np.where(np.abs(places - np.rint(places)) * order < _EXPLAINED * self.resolution, 0.0, surprise)
+        return self._replace(surprise=surprise)
 
 
 def spectra(signal: np.ndarray, per_turn: float, averages: int, highest: float, excludes_shaft: bool = True) -> Spectra | None:
@@ -198,35 +213,111 @@ class Range(NamedTuple):
     passes_high: float
 
 
-def search(signal: np.ndarray, per_turn: float, range_: Range, looks: int = 1) -> list[Fit]:
-    """Return the best fit of each family in a signal, the least probable in noise first.
+class Prepared(NamedTuple):
+    """The averaged periodograms of one signal, in which combs are searched.
+
+    Attributes
+    ----------
+    spectra : (number of averages, periodogram), of those whose resolution is fine enough.
+    range : what is searched.
+    """
+
+    spectra: Sequence[tuple[int, Spectra]]
+    range: Range
+
+    def without(self, fundamentals: Sequence[float]) -> "Prepared":
+        """Return this without the lines at all multiples of some orders."""
+        return self._replace(spectra=[(count, each.without(fundamentals)) for count, each in self.spectra]) if fundamentals else self
+
+    @property
+    def finest(self) -> Spectra:
+        """The periodogram of the whole record."""
+        return self.spectra[0][1]
+
+    def of(self, fit: "Fit") -> Spectra:
+        """Return the periodogram in which a comb was found."""
+        return next(each for count, each in self.spectra if count == fit.averages)
+
+
+def prepared(signal: np.ndarray, per_turn: float, range_: Range, averages: Sequence[int] = _AVERAGES) -> Prepared:
+    """Return the periodograms of a signal in which `search` looks.
 
     Parameters
     ----------
     signal : envelope at equal steps of the shaft's angle.
     per_turn : samples in a turn.
     range_ : what is searched.
-    looks : how many such signals of one record are searched, which counts in the probability of a false alarm.
+    averages : numbers of parts that are averaged.
     """
     highest = min(per_turn / 2.0, _HARMONICS * range_.rollers * (1.0 - range_.low) + 3.0)
-    prepared = [(count, found) for count in _AVERAGES if (found := spectra(signal, per_turn, count, highest)) is not None]
+    return Prepared([(count, found) for count in averages if (found := spectra(signal, per_turn, count, highest)) is not None], range_)
+
+
+def search(where: Prepared, looks: int = 1) -> list[Fit]:
+    """Return the best fit of each family in a signal, the least probable in noise first.
+
+    Parameters
+    ----------
+    where : the signal's periodograms.
+    looks : how many such signals of one record are searched, which counts in the probability of a false alarm.
+    """
     fits = []
-    for family in families(range_.rollers):
-        tried = [_search_family(family, found, count, range_) for count, found in prepared if family.name != "roller" or count >= 4]
+    for family in families(where.range.rollers):
+        tried = [_search_family(family, found, count, where.range) for count, found in where.spectra if family.name != "roller" or count >= 4]
         tried = [fit for fit in tried if fit is not None]
         if tried:
             best = max(tried, key=lambda fit: fit.false_alarm)
-            fits.append(best._replace(false_alarm=best.false_alarm - math.log(looks * len(families(2)) * len(prepared))))
+            fits.append(best._replace(false_alarm=best.false_alarm - math.log(looks * len(families(2)) * len(where.spectra))))
     return sorted(fits, key=lambda fit: -fit.false_alarm)
 
 
 def promise(signal: np.ndarray, per_turn: float, range_: Range) -> float:
     """Return how clear the best comb of a raceway or of the cage is in a signal [nat], from few spectra: a quick look before `search`."""
-    highest = min(per_turn / 2.0, _HARMONICS * range_.rollers * (1.0 - range_.low) + 3.0)
-    prepared = [(count, found) for count in _QUICK_AVERAGES if (found := spectra(signal, per_turn, count, highest)) is not None]
+    where = prepared(signal, per_turn, range_, _QUICK_AVERAGES)
     quick = [family for family in families(range_.rollers) if family.name != "roller"]
-    fits = [_search_family(family, found, count, range_) for family in quick for count, found in prepared]
+    fits = [_search_family(family, found, count, range_) for family in quick for count, found in where.spectra]
     return max((fit.false_alarm for fit in fits if fit is not None), default=-math.inf)
+
+
+def free_train(where: Prepared, looks: int = 1) -> Fit | None:
+    """Return the clearest comb of a train of impacts of any frequency, whatever makes it; its ``ratio`` is the order of its first line."""
+    family = Family("train", tuple((0.0, float(k), 0.0) for k in _HARMONICS_OF_TRAINS), ())
+    range_ = where.range._replace(low=_LOWEST_TRAIN, high=float(where.range.rollers))
+    fits = [fit for count, found in where.spectra if (fit := _search_family(family, found, count, range_)) is not None]
+    if not fits:
+        return None
+    best = max(fits, key=lambda fit: fit.false_alarm)
+    return best._replace(false_alarm=best.false_alarm - math.log(looks * len(where.spectra)))
+
+
+def train_below(fit: Fit, found: Spectra) -> float | None:
+    """Return the order of the train of impacts whose harmonics the lines of a fit are; None if they are the first ones of their own.
+
+    The lower lines of such a train are at least about as high as a higher one is.  All of them must be clear, and two at least: beside lines of other
+    machines some are by chance.  Lines at those of the shaft are no evidence, nor are sidebands.
+
+    Parameters
+    ----------
+    fit : of a family of the bearing.
+    found : a periodogram of the signal in which it was found.
+    """
+    first = first_line(fit)
+    own = orders_of(fit.family, fit.ratio, fit.passes)[0]
+    least = max(_TRAIN, _LIKE_THE_HIGHER * min(float(found.at(np.array([first]))[0]), _LARGEST))
+    for parts in range(int(first / max(_LOWEST_TRAIN, 2.0 * found.resolution)), 1, -1):
+        numbers = np.arange(1, 2 * parts + 2)
+        orders = numbers * (first / parts)
+        is_seen = (numbers % parts != 0) & (np.abs(orders - np.rint(orders)) > _EXCLUDED * 0.5 * found.resolution)
+        is_seen &= np.min(np.abs(orders[:, None] - own), axis=1) > found.resolution
+        seen = orders[is_seen][: max(2, int(is_seen[: parts - 1].sum()))]
+        if len(seen) >= 2 and np.all(found.at(seen) >= least):
+            return first / parts
+    return None
+
+
+def first_line(fit: Fit) -> float:
+    """Return the order of the first centre line of a fit."""
+    return float(orders_of(fit.family, fit.ratio, fit.passes)[0][0])
 
 
 def _search_family(family: Family, found: Spectra, count: int, range_: Range) -> Fit | None:

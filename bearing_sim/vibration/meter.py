@@ -31,6 +31,7 @@ _LATE = 0.5  # [s] by which blocks may be later than their samples last, beside 
 _UNEVEN = 0.1  # by which the time in which a window arrives may differ from what its rate says
 _SEQUENCES = 2**32  # after as many blocks their numbers begin again
 _ENDS_WITHIN = 2.0  # [s]
+_MOST_SLIP = 0.95  # that is looked for, whatever the model says
 
 
 class CageSpeedMeter:
@@ -46,12 +47,13 @@ class CageSpeedMeter:
 
     def __init__(self, scene: Scene, analysed: Callable[[Window], Outcome] | None = None):
         self._settings, roller = scene.vibration, scene.bearing.roller
-        self._geometry = Geometry(roller.count, roller.diameter / scene.bearing.pitch_diameter, name=scene.bearing.name)
+        size, slip = roller.diameter / scene.bearing.pitch_diameter, scene.vibration.largest_slip
+        self._geometry = Geometry(roller.count, size, name=scene.bearing.name, largest_slip=slip)
         self._process = None if analysed is not None else _Process()
         self._analysed = self._process.analysed if self._process is not None else analysed
         self._waiting: queue.Queue[Window | None] = queue.Queue(1)
         self._outcomes: queue.Queue[Outcome | str] = queue.Queue()
-        self._counts = {"blocks": 0, "blocks refused": 0, "blocks lost": 0, "windows": 0, "windows left out": 0, "windows without a line": 0}
+        self._counts = {"blocks": 0, "blocks refused": 0, "blocks lost": 0, "windows": 0, "windows left out": 0, "windows without a claim": 0}
         self._last = "no window is complete yet"
         self._sequence: int | None = None
         self._thread: threading.Thread | None = None
@@ -60,15 +62,16 @@ class CageSpeedMeter:
     def _begin(self) -> None:
         self._samples: list[np.ndarray] = []
         self._speeds: list[float] = []
-        self._count, self._rate = 0, math.nan
+        self._count, self._rate, self._slip = 0, math.nan, 0.0
         self._first = self._newest = math.nan  # arrivals of the first and the newest block [s]
 
-    def take(self, block: Block, now: float, shaft_speed: float) -> list[Event]:
+    def take(self, block: Block, now: float, shaft_speed: float, slip: float = 0.0) -> list[Event]:
         """Take a block that arrives at run time ``now`` [s]; return what is wrong with it or with those before.
 
         Parameters
         ----------
         shaft_speed : measured now [rad/s]; NaN before the first measurement.
+        slip : of the cage that the model holds possible now, the upper end of its band; lines are looked for up to this and the scene's.
         """
         rate = block.rate if math.isfinite(block.rate) else self._settings.rate
         reason = self._reason_to_refuse(block, rate, shaft_speed)
@@ -83,6 +86,7 @@ class CageSpeedMeter:
             self._first, self._rate = now, rate
         self._samples.append(block.samples)
         self._speeds.append(shaft_speed)
+        self._slip = max(self._slip, slip)
         self._count, self._newest = self._count + len(block.samples), now
         if self._count >= self._settings.window * rate:
             events += self._complete(now)
@@ -138,7 +142,8 @@ class CageSpeedMeter:
         lasted, arrived = (self._count - lengths[0]) / self._rate, self._newest - self._first
         samples = np.concatenate(self._samples)
         speeds = np.interp(np.arange(self._count), np.cumsum(lengths) - lengths / 2.0, self._speeds)
-        window = Window(samples, self._rate, speeds, self._settings.tolerance, self._geometry)
+        geometry = self._geometry._replace(largest_slip=min(max(self._geometry.largest_slip, self._slip), _MOST_SLIP))
+        window = Window(samples, self._rate, speeds, self._settings.tolerance, geometry)
         told = self._rate
         self._begin()
         if abs(arrived - lasted) > _LATE + _UNEVEN * lasted:
@@ -173,8 +178,8 @@ class CageSpeedMeter:
             self._counts["windows"] += 1
             if isinstance(outcome, str):
                 self._last = outcome
-            elif not outcome.found:
-                self._counts["windows without a line"] += 1
+            elif not outcome.is_claim:
+                self._counts["windows without a claim"] += 1
                 self._last = outcome.reason
             else:
                 self._last = f"{outcome.shows.replace('_', ' ')} shows: cage over shaft {outcome.ratio:.6f} +- {outcome.ratio_error:.6f}"

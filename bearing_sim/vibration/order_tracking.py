@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.fft
 import scipy.interpolate
+import scipy.ndimage
 
 from bearing_sim.vibration.comb import Spectra, spectra
 from bearing_sim.vibration.phase import follow, mean_rate, smoothed
@@ -37,6 +38,8 @@ _AMBIGUOUS = 0.55  # of what the clearest speed counts
 _ANOTHER_ROTOR = 33.0  # [nat] that three clear lines count, wherever the clearest are
 _LESS_CLEAR = 0.9  # of its lines' surprise that a followed phase must leave, where another machine's line was near
 _MOST_FOLLOWED = (64, 16, 8)  # segments in which a phase is followed
+_SKIRT_WIDTH = 0.03  # orders about a line, within which what is lower by this factor is taken for its skirt
+_SKIRT = 1e-3
 _NEAR = 5  # steps of a spectrum around a line
 _LOUD = 200.0  # [nat] of a line beyond which it does not count for that
 _CLEAR_LINE = 10.0  # [nat] of a line that is followed
@@ -136,6 +139,9 @@ def find_shaft(signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance:
         if other[0] > chosen[0] and other[1] > chosen[1]:
             chosen = other
     score, _, clear, shaft = chosen
+    surprise = _surprise_of_lines(by_angle, shaft)
+    if surprise[0][0] < _CLEAR_LINE and (surprise.max(axis=0) >= _CLEAR_LINE).sum() < 2:
+        return None  # one line alone, and not that of an unbalance, may be that of any train of impacts near one of its harmonics
     if clear < _CLEAR + math.log(max(turns * 2.0 * tolerance * 8.0, 1.0)):
         return None
     if is_ambiguous and score < _CLEARER * float(_counted(_surprise_of_lines(by_angle, steady)).sum()):
@@ -184,7 +190,10 @@ class _Lines(NamedTuple):
         return total
 
 
-def _lines(signal: np.ndarray, rate: float, begins: np.ndarray, seconds: float, counted: Callable[[np.ndarray], np.ndarray]) -> _Lines:
+def _lines(
+    signal: np.ndarray, rate: float, begins: np.ndarray, seconds: float, counted: Callable[[np.ndarray], np.ndarray], skirts: float = 0.0
+) -> _Lines:
+    """Return the lines of segments of a signal; beside a loud one, within ``skirts`` [Hz], none counts that is lower by `_SKIRT`."""
     length = int(seconds * rate)
     window = np.hanning(length)
     count = scipy.fft.next_fast_len(4 * length, real=True)
@@ -194,7 +203,9 @@ def _lines(signal: np.ndarray, rate: float, begins: np.ndarray, seconds: float, 
         power = np.abs(scipy.fft.rfft((part - part.mean()) * window, count)) ** 2
         floors = np.array([np.median(each) for each in np.array_split(power, max(1, len(power) // 256))])
         floor = np.interp(np.arange(len(power)), (np.arange(len(floors)) + 0.5) * len(power) / len(floors), floors) / math.log(2.0)
-        rows.append(power / np.maximum(floor, 1e-300))
+        relative = power / np.maximum(floor, 1e-300)
+        beside = scipy.ndimage.maximum_filter1d(relative, 2 * int(skirts * count / rate) + 1)
+        rows.append(np.where(relative < _SKIRT * beside, 0.0, relative))
     return _Lines(counted(np.array(rows)), rate / count)
 
 
@@ -228,7 +239,8 @@ def _surprise_of_lines(signals, shaft: Shaft) -> np.ndarray:
 def _steady(signals, duration: float, low: float, high: float) -> tuple[Shaft, bool]:
     """Return a shaft of constant speed, and whether another speed is nearly as clear."""
     frequencies = np.linspace(low, high, int((high - low) * 10.0 * duration) + 2)
-    score = sum(_lines(signal, rate, np.zeros(1), duration, _counted).comb(frequencies)[0] for signal, rate in signals)
+    skirts = _SKIRT_WIDTH if len(signals) == 1 else 0.0  # an envelope has no lines as loud as those of the vibration
+    score = sum(_lines(signal, rate, np.zeros(1), duration, _counted, skirts).comb(frequencies)[0] for signal, rate in signals)
     loudness = sum(_lines(signal, rate, np.zeros(1), duration, np.log1p).comb(frequencies)[0] for signal, rate in signals)
     at = int(np.argmax(score + 1e-3 * loudness))  # the middle of lines that count in full beside it, too
     elsewhere = score[np.abs(frequencies - frequencies[at]) > 4.0 / duration]

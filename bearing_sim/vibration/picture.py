@@ -32,7 +32,7 @@ def draw(path: Path, vibration: Vibration, geometry: Geometry, found: Analysis) 
     axes.set_ylabel("amplitude of the envelope, relative")
     axes.set_xlim(0.0, orders[shown][-1])
     axes.set_ylim(bottom=0.0)
-    title = f"cage over shaft {found.ratio:.5f} +- {found.ratio_error:.5f}" if found.found else "no line found"
+    title = f"cage over shaft {found.ratio:.5f} +- {found.ratio_error:.5f}" if found.found else "no line of this bearing"
     axes.set_title(f"{vibration.name}: {title}", parse_math=False)
     if found.lines:
         axes.legend(loc="upper right")

@@ -12,6 +12,7 @@ import re
 import struct
 import zipfile
 import zlib
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -22,6 +23,7 @@ import numpy as np
 from bearing_sim.extras import what_is_missing
 from bearing_sim.files.limits import TABLE_LINE, VIBRATION_FILE, VIBRATION_PARTS, VIBRATION_SAMPLES, VIBRATION_TEXT, FileError, LimitError, printable
 from bearing_sim.files.reading import encoding_by_mark, open_regular
+from bearing_sim.files.tally import Tally
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.scene.quantity import to_si
@@ -100,6 +102,7 @@ class Channels(NamedTuple):
     rate : of the samples [Hz], if the format has one.
     start : time of the first sample [s since the epoch], if the format has one.
     unusable : arrays that do not hold real numbers, by name.
+    tally : what of a bag was read; None of other formats, which are read whole or not at all.
     """
 
     arrays: Mapping[str, np.ndarray]
@@ -107,6 +110,7 @@ class Channels(NamedTuple):
     rate: float | None = None
     start: float = 0.0
     unusable: Mapping[str, Unusable] = MappingProxyType({})
+    tally: Tally | None = None
 
 
 def read_vibration(
@@ -154,7 +158,7 @@ def read_vibration(
         speeds = speeds * _factor(speed_unit)
     rate = rate if rate is not None else _rate(path, found, time_channel, len(samples))
     unit = _UNIT.search(name)
-    return Vibration(samples, rate, unit[1] if unit else "", found.start, f"{path.name}, {printable(name)}", speeds)
+    return Vibration(samples, rate, unit[1] if unit else "", found.start, f"{path.name}, {printable(name)}", speeds, found.tally)
 
 
 def _factor(unit: str) -> float:
@@ -709,6 +713,7 @@ def _bag(path: Path, wanted: tuple[str, ...]) -> Channels:
     """Return the channels of a recording: those that are named, or all topics of arrays of numbers."""
     bag, topics = BagReader(path), {}
     named = {name: _topic_and_field(name) for name in wanted}
+    unreadable: Counter[str] = Counter()
     pieces: dict[str, list[Block]] = {}
     times: dict[str, list[int]] = {}
     total = 0
@@ -723,6 +728,7 @@ def _bag(path: Path, wanted: tuple[str, ...]) -> Channels:
             except Exception as error:  # decoders raise exceptions of any kind on damaged data
                 if named:
                     raise VibrationError(f"{path}, {name}: a message cannot be used: {printable(str(error))}") from None
+                unreadable[name] += 1
                 continue
             total += len(block.samples)
             VIBRATION_SAMPLES.check(total, str(path))
@@ -731,18 +737,33 @@ def _bag(path: Path, wanted: tuple[str, ...]) -> Channels:
     missing = [name for name in wanted if name not in pieces]
     if missing:
         raise VibrationError(f"{path}: no messages on {missing[0]}{did_you_mean(missing[0], list(topics))}; there are {_listed(topics)}")
-    arrays = {name: np.concatenate([block.samples for block in blocks]) for name, blocks in pieces.items()}
-    if not arrays:
+    if not pieces:
         raise VibrationError(f"{path}: no topic of std_msgs/msg/Float64MultiArray; name one with --channel /topic.field; there are {_listed(topics)}")
-    name = wanted[0] if wanted else max(arrays, key=lambda each: len(arrays[each]))
+    name = wanted[0] if wanted else max(pieces, key=lambda each: sum(len(block.samples) for block in pieces[each]))
+    begin, end = _longest_stretch(pieces[name])
+    tally = Tally(used=end - begin, there=end - begin, unread=bag.tally.unread, remedies=bag.tally.remedies, notes=bag.tally.notes)
+    for reason, count in ((f"behind a gap of {name}", len(pieces[name]) - tally.used), (f"not readable on {name}", unreadable[name])):
+        if count:
+            tally.refuse(reason, count)
+    if len(wanted) == 1 or not wanted:  # channels that go together keep all of theirs
+        pieces[name], times[name] = pieces[name][begin:end], times[name][begin:end]
+    elif tally.used < tally.there:
+        raise VibrationError(f"{path}, {name}: blocks are missing ({tally.counts}); expected a record without gaps where a speed goes with it")
     stamps, blocks = times[name], pieces[name]
+    arrays = {each: np.concatenate([block.samples for block in found]) for each, found in pieces.items()}
     rates = {block.rate for block in blocks if math.isfinite(block.rate)}
     if len(rates) > 1:
         raise VibrationError(f"{path}, {name}: blocks of {' and '.join(f'{rate:g} Hz' for rate in sorted(rates)[:4])}; expected one rate")
     rate = next(iter(rates), None)
     if rate is None and len(stamps) > 1 and stamps[-1] > stamps[0]:
         rate = sum(len(block.samples) for block in blocks[1:]) / ((stamps[-1] - stamps[0]) * 1e-9)
-    return Channels(arrays, {}, rate, stamps[0] * 1e-9)
+    return Channels(arrays, {}, rate, stamps[0] * 1e-9, tally=tally)
+
+
+def _longest_stretch(blocks: list[Block]) -> tuple[int, int]:
+    """Return the indices of the first block and behind the last one of the longest part in which no block is missing by its number."""
+    ends = [0, *(k for k in range(1, len(blocks)) if None not in (a := blocks[k - 1].sequence, b := blocks[k].sequence) and b != a + 1), len(blocks)]
+    return max(zip(ends, ends[1:]), key=lambda part: part[1] - part[0])
 
 
 def _topic_and_field(name: str) -> tuple[str, str]:

@@ -11,6 +11,8 @@ import numpy as np
 import scipy.fft
 import scipy.ndimage
 
+from bearing_sim.files.tally import Tally
+
 FEWEST_SAMPLES = 1024
 _LEAST = 1e-100  # difference of samples, in any unit
 _FLOOR_BLOCK = 256  # bins over which the floor of a spectrum is a median
@@ -56,6 +58,7 @@ class Vibration:
     start : time of the first sample [s], on whatever clock the record has.
     name : of the channel, for messages.
     shaft_speed : shape (n,) [rad/s] at every sample, where a speed was recorded beside the vibration; None where not.
+    tally : what of a recording was read; None of other files, which are read whole or not at all.
 
     Raises
     ------
@@ -69,6 +72,7 @@ class Vibration:
     start: float = 0.0
     name: str = "vibration"
     shaft_speed: np.ndarray | None = None
+    tally: Tally | None = None
 
     def __post_init__(self):
         count, unusable = len(self.samples), np.flatnonzero(~np.isfinite(self.samples))
@@ -97,7 +101,7 @@ class Vibration:
     def part(self, begin: int, end: int) -> "Vibration":
         """Return the samples from ``begin`` to before ``end`` as a record."""
         speed = None if self.shaft_speed is None else self.shaft_speed[begin:end]
-        return Vibration(self.samples[begin:end], self.rate, self.unit, self.start + begin / self.rate, self.name, speed)
+        return Vibration(self.samples[begin:end], self.rate, self.unit, self.start + begin / self.rate, self.name, speed, self.tally)
 
 
 class Spectrum:
@@ -121,8 +125,13 @@ class Spectrum:
         self.highest = rate / 2.0
         self.rate = rate
 
-    def without_lines(self) -> "Spectrum":
-        """Return this spectrum with its level evened out, and discrete lines cut out.
+    def without_lines(self, spared: float = 0.0, reach: float = 0.0) -> "Spectrum":
+        """Return this spectrum with its level evened out, and discrete lines cut out but for those near all multiples of a frequency.
+
+        Parameters
+        ----------
+        spared : the frequency [Hz]; 0 if no line is spared.
+        reach : within which of its multiples lines are spared [Hz].
 
         Rotors, gears and the mains make lines that are sharper than those of a bearing: its rollers jitter and its cage wanders, which spreads its
         lines at the high frequencies where they are looked for (Borghesani, Pennacchi, Randall, Sawalhi and Ricci, Mechanical Systems and Signal
@@ -138,8 +147,11 @@ class Spectrum:
         is_line = scipy.ndimage.binary_dilation(sharp > _LINE * np.maximum(_floor(sharp), nearby), iterations=_SKIRT)
         peaks = [where.start + int(np.argmax(magnitude[where])) for (where,) in scipy.ndimage.find_objects(scipy.ndimage.label(is_line)[0])]
         reaches = np.searchsorted(-self._skirt, -floor[peaks] / np.maximum(magnitude[peaks], 1e-300)) if peaks else ()
-        for peak, reach in zip(peaks, reaches):
-            is_line[max(0, peak - reach) : peak + reach + 1] = True
+        for peak, skirt in zip(peaks, reaches):
+            is_line[max(0, peak - skirt) : peak + skirt + 1] = True
+        if spared > 0.0:
+            places = np.arange(len(magnitude)) * (self._step / spared)
+            is_line &= np.abs(places - np.rint(places)) * spared > reach
         gain = np.where(is_line, 0.0, 1.0) / floor
         found = object.__new__(Spectrum)
         found._count, found._step, found.highest, found.rate = self._count, self._step, self.highest, self.rate
@@ -156,15 +168,18 @@ class Spectrum:
         lines[:kept] = self._lines[:kept]
         return scipy.fft.irfft(lines, count) * (count / self._count), count * self._step
 
-    def in_band(self, band: Band) -> tuple[np.ndarray, float]:
-        """Return the complex envelope of a band, and its rate [Hz]; its magnitude is the envelope of the signal in the band."""
+    def in_band(self, band: Band, oversampled: int = 1) -> tuple[np.ndarray, float]:
+        """Return the complex envelope of a band, and its rate [Hz]; its magnitude is the envelope of the signal in the band.
+
+        Its frequencies are those of the signal less the lower end of the band; ``oversampled`` is its rate over that which holds them.
+        """
         low, high = int(band.low / self._step), min(int(band.high / self._step), len(self._lines) - 1)
         lines = self._lines[max(low, 1) : high]
         edge = max(1, int(_TAPER * len(lines)))
         taper = 0.5 - 0.5 * np.cos(np.pi * (np.arange(edge) + 0.5) / edge)
         weights = np.ones(len(lines))
         weights[:edge], weights[-edge:] = taper, taper[::-1]
-        count = scipy.fft.next_fast_len(len(lines))
+        count = scipy.fft.next_fast_len(oversampled * len(lines))
         spread = np.zeros(count, complex)
         spread[: len(lines)] = lines * weights
         return scipy.fft.ifft(spread) * (2.0 * count / self._count), count * self._step

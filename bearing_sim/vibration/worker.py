@@ -40,7 +40,8 @@ class Outcome(NamedTuple):
 
     Attributes
     ----------
-    found : whether there are lines of the bearing; otherwise all numbers are NaN.
+    is_claim : whether the lines are those of the bearing and of nothing else.
+    found : whether there are lines that may be the bearing's; otherwise all numbers are NaN.
     shows : which part shows, as in `bearing_sim.vibration.analysis.Analysis`.
     reason : why there is no line, or why the window cannot be used.
     ratio, ratio_error : cage over shaft speed, and its standard error.
@@ -48,6 +49,7 @@ class Outcome(NamedTuple):
     shaft_speed : mean of the measured one over the window [rad/s], with its sign.
     """
 
+    is_claim: bool
     found: bool
     shows: str
     reason: str
@@ -65,8 +67,10 @@ def outcome_of(window: Window) -> Outcome:
         record = Vibration(window.samples, window.rate, name="vibration", shaft_speed=window.shaft_speed)
         found = analyse(record, window.geometry, tolerance=window.tolerance, parts=1)
     except VibrationError as error:
-        return Outcome(False, "", str(error), nan, nan, nan, nan, mean)
-    return Outcome(found.found, found.shows, found.reason, found.ratio, found.ratio_error, found.cage_speed, found.cage_speed_error, mean)
+        return Outcome(False, False, "", str(error), nan, nan, nan, nan, mean)
+    return Outcome(
+        found.is_claim, found.found, found.shows, found.reason, found.ratio, found.ratio_error, found.cage_speed, found.cage_speed_error, mean
+    )
 
 
 def main() -> None:

@@ -18,6 +18,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from bearing_sim.files.limits import VIEW_EVENTS, VIEW_LINES, VIEW_NUMBERS, LimitError, printable
+from bearing_sim.files.tally import Tally
 from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import POINT_CLOUD
 from bearing_sim.messages.diagnostics import WHOLE, events_of
@@ -68,6 +69,7 @@ class BagSeries(NamedTuple):
     start_ns : time 0 [ns since the epoch].
     duration : of the recording [s].
     clouds : point clouds by topic.
+    tally : the messages that were there, those that could not be read and why, and where a file ended early.
     """
 
     series: dict[tuple[str, str, str], tuple[np.ndarray, np.ndarray]]
@@ -76,6 +78,7 @@ class BagSeries(NamedTuple):
     start_ns: int
     duration: float
     clouds: Mapping[str, CloudCourse] = MappingProxyType({})
+    tally: Tally = Tally()
 
 
 class Line(NamedTuple):
@@ -119,7 +122,7 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
         if isinstance(found, BagTopic):
             present.add(found.name)
             continue
-        (topic, ros_type, decode), log_ns, data = found
+        (topic, ros_type, decode, _), log_ns, data = found
         taken.note_time(log_ns)
         if ros_type in _PICTURES:
             unread[topic] = f"{topic}: nothing to plot in {ros_type}"
@@ -145,8 +148,8 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
             unread[topic] = f"{topic}: {ros_type} cannot be read ({printable(str(error))})"
     rows, times = taken.rows, (taken.first, taken.last)
     _require_named(path, present, named, missing, {role for role, _, _ in rows})
-    if bag.unfinished:
-        unread[""] = bag.unfinished
+    if not bag.tally.is_whole:
+        unread[""] = bag.tally.text
     unread |= taken.left_out
     clouds = {topic: course for topic, course in clouds.items() if course.clouds}
     if not rows and not clouds:
@@ -160,7 +163,7 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
     origin = sorted((event._replace(time=(event.time - start_ns) * 1e-9) for event in taken.events), key=lambda event: event.time)
     model = ["slip, loads, life, powers and pictures of the bearing: they need a model (`bearing-sim replay`)"]
     series = {key: _sorted(values, start_ns) for key, values in rows.items()}
-    return BagSeries(series, origin, [*unread.values(), *absent, *model], start_ns, duration, clouds)
+    return BagSeries(series, origin, [*unread.values(), *absent, *model], start_ns, duration, clouds, bag.tally)
 
 
 class _Taken:

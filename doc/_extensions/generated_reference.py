@@ -347,13 +347,21 @@ EVENTS = {
     "calibration.contradicted": ("WARN", "most measurements of the cage lie outside of what the ranges of the scene allow"),
     "clock.absent": ("WARN", "`use_sim_time` is set and no `/clock` has arrived"),
     "clock.jumped": ("WARN", "the wall clock was set; run and recording continue evenly"),
-    "clock.jumped_back": ("WARN, ERROR", "`/clock` jumped back: the run restarts, or the last state is held (`clock_jump_back`)"),
+    "clock.jumped_back": (
+        "WARN, ERROR",
+        "`/clock` jumped back by `clock_tolerance` or more: the run restarts, or the last state is held (`clock_jump_back`)",
+    ),
     "clock.leapt_ahead": ("WARN", "`/clock` jumped ahead; gaps between messages are not simulated"),
     "clock.passed": ("OK", "`/clock` has passed the time before its jump back; the model continues"),
     "clock.stands_still": ("OK", "`/clock` does not advance: paused"),
     "governor.change": ("OK, WARN", "the governor changed the level of fidelity, or the measured setting, which is the subject"),
     "estimate.absent": ("WARN", "the scene asks for bands or a calibration, and there is no response of the bearing that they could come from"),
     "governor.level": ("WARN", "the model computes below the level or the setting of the scene, because the machine is too slow"),
+    "input.absent": (
+        "WARN",
+        "no good message of speed or load within `inputs_expected_within` of the start, or of another channel that somebody publishes; with the "
+        "topic, whether it has publishers, and what to do",
+    ),
     "input.frame": ("ERROR", "message refused: it is in another frame than `frame_id`"),
     "input.gap": ("WARN", "a gap in the inputs of a log; it is not simulated"),
     "input.late": ("WARN", "message refused: it is older than what was already computed"),
@@ -364,6 +372,7 @@ EVENTS = {
     "input.not_finite": ("ERROR", "message refused: a value is not finite"),
     "input.not_stamped": ("ERROR", "message refused: it has no stamp, and no clock can stand in"),
     "input.publishers": ("WARN, ERROR", "several publishers of one input; ERROR if their values disagree"),
+    "input.qos": ("WARN", "a publisher cannot be heard, because its quality of service does not fit"),
     "input.rate": (
         "WARN",
         "messages arrive below `input_limits.minimum_rate` or above `maximum_rate`; those of a log, at a third or three times its own rate",
@@ -375,11 +384,16 @@ EVENTS = {
         "last value is used, for the temperature of a ring that of the model",
     ),
     "input.standard_error": ("ERROR", "message refused: the standard error of a measured cage speed or clearance is zero, negative or infinite"),
+    "input.stamp_offset": (
+        "WARN",
+        "stamps are more than `stamp_tolerance` ahead of or behind the node's clock (not with `use_sim_time`); the messages are used as they arrive",
+    ),
     "input.stamp_not_finite": ("ERROR", "message refused: its stamp is not finite"),
     "input.time_backwards": ("ERROR", "message refused: its stamp lies before the last one"),
     "input.time_repeated": ("WARN", "message refused: its stamp repeats the last one"),
     "input.too_large": ("ERROR", "message refused: above the limit in `input_limits`"),
     "input.too_small": ("ERROR", "message refused: below the limit in `input_limits`"),
+    "input.type": ("WARN", "the topic has a publisher of another type, which cannot be heard; with both types"),
     "input.unknown": (
         "WARN",
         "inputs were refused for some of the time; if they were too large, the life is an upper and the damage a lower bound",
@@ -404,7 +418,7 @@ EVENTS = {
     "run.reset": ("OK", "state and damage have returned to the start of the scene"),
     "run.start": ("OK", "the run starts"),
     "run.waiting": ("OK", "waiting for the first inputs"),
-    "run.warming_up": ("OK", "the model is being compiled; inputs that arrive now are not used"),
+    "run.warming_up": ("WARN", "not monitored yet: the model is being compiled; inputs that arrive now are not used"),
     "run.unconfigured": ("OK", "the node waits to be configured"),
     "run.inactive": ("OK", "the node waits to be activated"),
     "run.finalized": ("OK", "the node is shut down"),
@@ -534,10 +548,12 @@ def _commands(command, name: str, depth: int) -> Iterator[str]:
 
 
 def command_line() -> str:
-    """Return every command of ``bearing-sim``, and ``bearing_player``, with usage and options."""
+    """Return the exit codes, and every command of ``bearing-sim``, and ``bearing_player``, with usage and options."""
     from bearing_sim.cli.main import main
+    from bearing_sim.cli.reporting import EXIT_CODES
 
-    parts = list(_commands(main, "bearing-sim", 2))
+    parts = ["## Exit codes", table(["code", "meaning"], [[str(code), meaning] for code, meaning in EXIT_CODES.items()])]
+    parts += list(_commands(main, "bearing-sim", 2))
     try:
         from bearing_sim.ros.player import command
     except ImportError:  # a machine without ROS 2
