@@ -59,7 +59,6 @@ CASES = {
     "study resonances": Case(("study", "resonances", "deng2017_table1", "--points", "2"), 30),
     "study support": Case(("study", "support", "deng2017_table1", "--points", "2"), 30),
     "study situations": Case(("study", "situations", "--only", "skid", "--no-pictures"), 60),
-    "study vibration": Case(("study", "vibration", "--runs", "1", "--healthy", "0"), 90),
     "study friction": Case(("study", "friction"), 8),
     "study scenes": Case(("study", "scenes", "--count", "1"), 60),
     "study clearance": Case(("study", "clearance", SCENE, "--speed", "1000rpm:3000rpm:2", "--load", "5kN:5kN:1"), 3),

@@ -14,11 +14,11 @@ pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_
 from rclpy.qos import qos_profile_sensor_data  # noqa: E402
 from ros_bench import GOOD, Client, NodeProcess, fresh_domain  # noqa: E402
 from rosbags.highlevel import AnyReader  # noqa: E402
+from synthetic_vibration import Machine, record  # noqa: E402
 
 from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
 from bearing_sim.scene.loader import load_scene  # noqa: E402
-from bearing_sim.vibration.synthetic import Machine, record  # noqa: E402
 
 pytestmark = pytest.mark.timeout(300)
 RATE, WINDOW, BLOCKS = 51_200.0, 0.5, 2

@@ -12,6 +12,7 @@ import pytest
 import scipy.io
 from click.testing import CliRunner
 from measured_data import measured_file
+from synthetic_vibration import Machine, record
 
 from bearing_sim.cli.main import main
 from bearing_sim.scene.loader import load_bearing
@@ -23,7 +24,6 @@ from bearing_sim.studies.validation.data_sets import DATA_SETS
 from bearing_sim.studies.validation.page import NOT_VALIDATED, html_page, markdown_page
 from bearing_sim.studies.validation.recorded_lines import RECORDINGS, recorded_checks
 from bearing_sim.studies.validation.suite import TESTED, SuiteError, suite_results
-from bearing_sim.vibration.synthetic import Machine, record
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "doc" / "validation.md"

@@ -1,13 +1,16 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The cage speed out of vibration: against synthetic records whose truth is known, recorded ones, and closed forms; every format of files.
 
-The errors over speeds, noise and ramps, and false lines in thousands of records, are computed by ``bearing-sim study vibration``.
+The errors over speeds, noise and ramps, and false lines in thousands of records, are computed by
+``benchmarks/vibration_study.py`` and ``benchmarks/vibration_claims.py``.
 """
 
 import dataclasses
 import math
 import re
+import sys
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pyarrow
@@ -18,19 +21,18 @@ import scipy.io.wavfile
 import scipy.signal
 import scipy.sparse
 from click.testing import CliRunner
+from synthetic_vibration import Machine, _turns, record
 
 from bearing_sim.cli.main import main
 from bearing_sim.files.limits import VARIABLE, FileError
 from bearing_sim.recording.writer import McapFile
-from bearing_sim.studies.vibration import Condition, errors_in
 from bearing_sim.vibration.analysis import Geometry, analyse
 from bearing_sim.vibration.comb import families, orders_of, spectra
 from bearing_sim.vibration.order_tracking import constant_shaft, find_shaft, recorded_shaft
 from bearing_sim.vibration.phase import Track, follow, mean_rate, smoothed
 from bearing_sim.vibration.reading import read_vibration
-from bearing_sim.vibration.regularity import EXACT, _judged
+from bearing_sim.vibration.regularity import _judged
 from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, repetition
-from bearing_sim.vibration.synthetic import Machine, _turns, record
 
 ROLLERS, SIZE, RATE = 13, 0.19, 25_600.0
 SPEED = 3000.0 * math.pi / 30.0
@@ -172,12 +174,12 @@ def test_an_exactly_periodic_train_where_a_ring_has_its_line_is_no_claim_and_its
     assert not analyse(exact_train(order), MEASURED, SPEED).is_claim
 
 
-@pytest.mark.parametrize("jitter", [0.003, 0.01])
+@pytest.mark.parametrize("jitter", [0.01, 0.02])
 def test_a_train_that_scatters_as_that_of_rollers_does_is_claimed_with_its_slip(jitter):
     found = analyse(exact_train(ROLLERS * RATIO * 0.97, jitter), MEASURED, SPEED)
     assert found.is_claim and found.shows == "outer_ring" and found.alternatives == () and found.doubt < 0.02
     assert found.claims_slip and abs(found.slip - 0.03) < 3.0 * found.slip_error < 0.006
-    assert 0.5 * min(jitter, 0.005) < found.jitter < 1.5 * jitter
+    assert 0.4 * jitter < found.jitter < 1.5 * jitter, "large scatter is told from below: the carrier turns several times"
 
 
 def test_slip_is_claimed_only_where_the_speed_of_the_shaft_is_measured():
@@ -212,12 +214,12 @@ def test_a_ring_is_found_beside_a_train_of_something_else():
 
 def test_the_scatter_of_impacts_follows_from_their_carrier_whatever_their_strengths():
     rng, period, frequency, count = np.random.default_rng(2), 0.01, 2.0 * math.pi * 3000.0, 2000
-    for scatter in (0.0, 0.001, 0.002):
+    for scatter in (0.0, 0.001, 0.002, 0.005):
         strengths = 1.0 + 0.8 * np.cos(np.arange(count) / 3.0)
         amplitudes = strengths * np.exp(-1j * frequency * scatter * period * rng.normal(size=count))
         noise = 0.3 * (rng.normal(size=count) + 1j * rng.normal(size=count))
-        found = _judged(amplitudes + noise, 0.18, frequency, period, False)
-        assert abs(found.jitter - scatter) < 0.0003 and found.is_irregular == (scatter > EXACT)
+        found = _judged(amplitudes + noise, 0.18, frequency, period, False, True)
+        assert abs(found.jitter - scatter) < 0.0005 and found.is_irregular == (scatter > 0.002), "the last is certain, others may be feigned"
 
 
 def test_the_rate_of_a_phase_has_an_error_that_holds_for_noise_and_for_random_walks():
@@ -314,6 +316,9 @@ def test_what_fills_many_bins_of_a_spectrum_is_no_discrete_line_and_is_kept():
 @pytest.mark.long
 @pytest.mark.parametrize(("shows", "speed", "noise"), [("outer_ring", 30_000.0, -10.0), ("outer_ring", 3000.0, -20.0), ("inner_ring", 3000.0, 0.0)])
 def test_a_ring_under_noise_at_high_speed_and_beside_lines_of_other_machines_is_found_within_its_error(shows, speed, noise):
+    sys.path.insert(0, str(Path(__file__).with_name("benchmarks")))
+    from vibration_study import Condition, errors_in
+
     row = errors_in(Condition(shows, speed, 0.0, noise), 1, 11)
     assert row.found == row.right == row.within == 1 and row.stated < 0.003
 

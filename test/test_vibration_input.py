@@ -8,11 +8,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from synthetic_vibration import Machine, record
 
 from bearing_sim.scene.loader import SceneError, scene_from_mapping
 from bearing_sim.vibration.meter import CageSpeedMeter
 from bearing_sim.vibration.reading import Block, block_of
-from bearing_sim.vibration.synthetic import Machine, record
 from bearing_sim.vibration.worker import Outcome
 
 RATE, LENGTH, SPEED = 1000.0, 100, 300.0

@@ -34,7 +34,6 @@ _STUDIES = {
     "situations": Entry("study:situations", "Pictures of six situations, from start to fault, in rerun."),
     "clearance": Entry("study:clearance", "Running clearance over speed and load, thermal runaway, and what is lost at which speed."),
     "slices": Entry("study:slices", "Convergence of level spatial with the number of slices, its quadrature, and the cost of both."),
-    "vibration": Entry("vibration:study", "Errors of the cage speed out of synthetic vibration, and false lines."),
     "friction": Entry("study:friction", "Frictional moment and thermal reference speed against makers' models."),
     "scenes": Entry("study:scenes", "Whether random scenes of catalogue bearings settle, level by level."),
     "findings": Entry("study:findings", "Published findings about slip, and whether the model finds the same."),

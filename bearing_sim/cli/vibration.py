@@ -16,7 +16,6 @@ from bearing_sim.cli.reporting import (
     print_json,
     print_rows,
     print_table,
-    progress_bar,
     quantity_of,
     tell_use,
     write_csv,
@@ -316,64 +315,3 @@ def _print(name, record, geometry, found) -> None:
             for part in found.parts
         ]
         print_rows("in parts of the record", columns, texts)
-
-
-@click.command("vibration", cls=WritingCommand)
-@click.option("--runs", default=10, show_default=True, type=click.IntRange(1, 10_000), help="Records with a damaged bearing in each condition.")
-@click.option("--healthy", default=1000, show_default=True, type=click.IntRange(0, 1_000_000), help="Records without one, of noise and of machines.")
-@click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Of everything random.")
-@csv_option("Write the table of errors.")
-@json_option
-def study(runs, healthy, seed, table, as_json):
-    """Find known cage speeds in synthetic vibration, and count lines that are seen where there are none.
-
-    What shows, shaft speed, its change over the record and the noise vary; rollers have play, two machines stand nearby, and slip is up to 10 %.
-    A steady speed is known to 1 %, a changing one to 0.3 %.
-    """
-    from bearing_sim.studies.vibration import HEALTHY, conditions, errors_in, false_lines
-
-    cases = conditions()
-    counted = iter(range(1, len(cases) * runs + len(HEALTHY) * healthy + 1))
-    with progress_bar("records", len(cases) * runs + len(HEALTHY) * healthy) as show, as_file_error():
-        found = [errors_in(case, runs, seed, lambda: show(next(counted))) for case in cases]
-        false = {kind: list(false_lines(kind, healthy, seed, lambda: show(next(counted)))) for kind in HEALTHY}
-        rows = [_error_row(row) for row in found]
-        if table is not None:
-            write_csv(table, rows)
-    counts = {kind: len(lines) for kind, lines in false.items()}
-    if as_json:
-        print_json({"runs": runs, "seed": seed, "errors": rows, "healthy": healthy, "false_lines": counts})
-        return
-    columns = ("shows", "rpm", "ramp, %", "dB", "found", "right", "bias, 1e-4", "error, 1e-4", "stated, 1e-4", "within 2, %")
-    texts = [
-        (
-            row["shows"],
-            f"{row['shaft_speed_rpm']:.0f}",
-            f"{row['ramp_percent']:.0f}",
-            f"{row['signal_to_noise_db']:.0f}",
-            f"{row['found']}/{row['runs']}",
-            str(row["right"]),
-            *(f"{1e4 * row[name]:.3g}" if row["right"] else "" for name in ("bias", "error", "stated_error")),
-            f"{100 * row['within_two_stated']:.0f}" if row["right"] else "",
-        )
-        for row in rows
-    ]
-    print_rows("cage over shaft speed out of synthetic vibration, relative errors", columns, texts, words=("shows",))
-    for kind, count in counts.items():
-        click.echo(f"false lines, {kind}: {count} in {healthy} records")
-
-
-def _error_row(row) -> dict:
-    return {
-        "shows": row.condition.shows,
-        "shaft_speed_rpm": row.condition.speed,
-        "ramp_percent": 100.0 * row.condition.ramp,
-        "signal_to_noise_db": row.condition.signal_to_noise,
-        "runs": row.runs,
-        "found": row.found,
-        "right": row.right,
-        "bias": row.bias,
-        "error": row.error,
-        "stated_error": row.stated,
-        "within_two_stated": row.within,
-    }

@@ -56,6 +56,7 @@ _AS_LIKELY = 10.0  # [nat] within which another part is not excluded
 _FOREIGN_PRIOR = 0.1  # that a machine nearby has a train of irregular impacts, such as another bearing (assumption: 0.02 to 0.5)
 _TRAIN_ORDERS = (0.2, 20.0)  # of such trains, equally likely at any logarithm (assumption)
 _MAINS = (50.0, 60.0)  # [Hz]
+_SEEN = 0.001  # scatter of impacts over their period from which on it is said to be there, though not for certain
 _FEWEST_LINES = {"outer_ring": 2, "inner_ring": 2, "roller": 2, "cage": 3}  # that must be clear: near the cage's other machines have lines, too
 
 
@@ -247,6 +248,9 @@ def analyse(
         return _nothing(shaft, fit, why or "lines at a harmonic only, without the first one: they may be those of anything else")
     if rate is None or abs(rate.value) > 3.0 * fit.resolution or _is_hidden(fit, range_, len(place.signal) / place.per_turn):
         return _nothing(shaft, fit, why)
+    beyond = max(range_.low - fit_there.ratio, fit_there.ratio - range_.high)
+    if beyond > 3.0 * math.hypot(rate.standard_error, _relative_to_shaft(fit) * shaft.standard_error / shaft.frequency):
+        return _nothing(shaft, fit, why or _of_a_train(first_line(fit_there), shaft))
     impacts = _regularity_of(fit_there, place, vibration, shaft)
     if impacts.is_sparse:
         return _nothing(shaft, fit, why or "few periods of the lines hold an impact: they are those of something slower")
@@ -343,7 +347,7 @@ def _regularity_of(fit: Fit, place: _Place, vibration: Vibration, shaft: Shaft) 
     places = np.interp(np.arange(math.ceil(phases[0]), math.floor(phases[-1])), phases, angles)
     hertz = line * shaft.frequency
     spectrum = Spectrum(vibration.samples, vibration.rate, _ENDS).without_lines(hertz, 4.0 / vibration.duration)
-    return regularity(spectrum, place.band, shaft, places, hertz)
+    return regularity(spectrum, place.band, shaft, places, hertz, fit.family.name != "outer_ring")
 
 
 def _alternatives(fit: Fit, fits: Sequence[Fit], impacts: Regularity, place: _Place, shaft: Shaft, range_: Range) -> tuple[str, ...]:
@@ -356,8 +360,10 @@ def _alternatives(fit: Fit, fits: Sequence[Fit], impacts: Regularity, place: _Pl
             (each for each in _MAINS if abs(hertz / each - round(hertz / each)) * each < max(resolution * shaft.frequency, 0.002 * hertz)), None
         )
         source = f", such as the mains of {mains:g} Hz" if mains and hertz > 0.9 * mains else ""
-        is_seen = math.isfinite(impacts.jitter)
-        how = "its impacts are exactly periodic, as far as is seen" if is_seen else "noise hides whether its impacts are exactly periodic"
+        how = "noise hides whether its impacts are exactly periodic"
+        if math.isfinite(impacts.jitter):
+            is_small = impacts.jitter < _SEEN
+            how = "its impacts are exactly periodic, as far as is seen" if is_small else "something else may feign that its impacts scatter"
         found.append(f"a train of impacts of another machine or of a gear at {hertz:.6g} Hz{source}: {how}")
     others = [each for each in fits if each.family.name != fit.family.name and each.false_alarm > max(fit.false_alarm - _AS_LIKELY, CERTAIN)]
     found += [f"the lines of {_A_PART[each.family.name]}" for each in others]
@@ -533,6 +539,15 @@ def _course(fit: Fit, shaft: Shaft, signal: np.ndarray, per_turn: float, parts: 
         yield Part(float(begin), float(end), float(speed), ratio, by_angle, ratio * speed, speed * by_time)
 
 
+def _relative_to_shaft(fit: Fit) -> float:
+    """Return the error of the ratio by that of the shaft's speed, over the relative one.
+
+    A line is measured in Hz: where the shaft's own frequency is not known well, its order and the ratio are not either.
+    """
+    by_c = fit.family.centres[0][1]
+    return first_line(fit) / by_c if by_c else fit.ratio
+
+
 def _of_shaft(fit: Fit) -> float:
     """Return how much the cage speed that follows from a line depends on the shaft's: an outer line gives it whatever the shaft does."""
     constant, by_c, _ = fit.family.centres[0]
@@ -555,9 +570,7 @@ def _completed(
     constant, by_c, by_b = fit.family.centres[0]
     spin = 0.0 if math.isnan(fit.passes) else fit.passes
     line = constant + by_c * ratio + by_b * spin
-    # A line is measured in Hz: where the shaft's own frequency is not known well, its order and the ratio are not either.
-    of_shaft = line / by_c * relative if by_c else ratio * relative
-    ratio_error = math.hypot(rate.standard_error, of_shaft)
+    ratio_error = math.hypot(rate.standard_error, _relative_to_shaft(fit._replace(ratio=ratio)) * relative)
     line_error = math.hypot(by_c * rate.standard_error, line * relative) if by_c else math.nan
     shaft_speed = 2.0 * math.pi * shaft.frequency
     cage_error = shaft_speed * math.hypot(rate.standard_error, _of_shaft(fit) * relative)

@@ -37,8 +37,10 @@ _PHASES = 48  # of the period, at which the mean power is looked at
 _BLOCKS = 8  # by which errors are estimated (jackknife)
 _FEWEST = 32  # impacts
 _SHARP = 0.2  # standard error of the first ratio up to which it is used
-_INCOHERENT = 0.25  # of the second ratio, below which strengths that vary do not explain it; a spot in a rotating load zone leaves 0.37
-_ERRORS = 3.0
+_OTHERWISE = 0.6  # of either ratio, that an exact train has at least: other trains and the followed phase take a part (0.4 at the least, measured)
+_ALONE = 0.25  # of the first ratio, below which it decides alone
+_INCOHERENT, _MODULATED = 0.25, 0.06  # of the second ratio, below which strengths that vary do not explain it, at random and in a load zone
+_ERRORS, _AGREED = 3.0, 1.0  # standard errors by which one ratio must be below, and the other as well
 _MOST = 0.8  # of the periods; a spot in a rotating load zone is loaded in half of them
 _LOUD, _QUIET = 1.5, 1.2  # power at the impacts over that between them, of the mean and of that quantile, of a train with few impacts
 _CLEAR = 10.0  # power about the impacts over that between them, from which on noise hardly counts
@@ -65,7 +67,7 @@ class Regularity(NamedTuple):
 UNKNOWN = Regularity(math.nan, False, 1.0)
 
 
-def regularity(spectrum: Spectrum, band: Band, shaft: Shaft, places: np.ndarray, line: float) -> Regularity:
+def regularity(spectrum: Spectrum, band: Band, shaft: Shaft, places: np.ndarray, line: float, is_modulated: bool) -> Regularity:
     """Return how exactly periodic a train is.
 
     Parameters
@@ -75,6 +77,7 @@ def regularity(spectrum: Spectrum, band: Band, shaft: Shaft, places: np.ndarray,
     shaft : by which ``places`` are angles.
     places : at which the train has the same phase once a period [turn of the shaft], increasing, shape (n,).
     line : mean frequency of the train [Hz].
+    is_modulated : whether its strengths vary by nature, as in a rotating load zone.
     """
     signal, rate = spectrum.in_band(band, _OVERSAMPLED)
     times = np.interp(places[:_MOST_IMPACTS], shaft.turns - shaft.turns[0], shaft.times)
@@ -97,12 +100,12 @@ def regularity(spectrum: Spectrum, band: Band, shaft: Shaft, places: np.ndarray,
     noise, stands_out = float(np.mean(power_between)), float(np.mean(np.abs(rows) ** 2) / np.mean(np.abs(between) ** 2))
     advance = np.angle(np.sum(shapes[0][:-1].conj() * shapes[0][1:])) * rate / _OVERSAMPLED
     frequency = 2.0 * math.pi * band.low + (advance if advance >= 0.0 else advance + 2.0 * math.pi * rate / _OVERSAMPLED)
-    found = _judged(amplitudes, noise, frequency, period, stands_out > _CLEAR)
+    conditions = noise, frequency, period, stands_out > _CLEAR, is_modulated
+    found = _judged(amplitudes, *conditions)
     if found.is_irregular:
-        whole = _as_of_whole_samples(amplitudes, frequency / spectrum.rate, float(times[-1] - times[0]) / (len(times) - 1) * spectrum.rate)
-        again = _judged(whole, noise, frequency, period, stands_out > _CLEAR)
-        if not again.is_irregular:
-            return again
+        samples = float(times[-1] - times[0]) / (len(times) - 1) * spectrum.rate
+        rounded = _judged(_as_of_whole_samples(amplitudes, frequency / spectrum.rate, samples), *conditions)
+        found = found if rounded.is_irregular else rounded
     return found
 
 
@@ -146,7 +149,7 @@ def _begin(signal: np.ndarray, rate: float, times: np.ndarray, period: float) ->
     return float(phases[int(np.argmax(held))])
 
 
-def _judged(amplitudes: np.ndarray, noise: float, frequency: float, period: float, is_clear: bool) -> Regularity:
+def _judged(amplitudes: np.ndarray, noise: float, frequency: float, period: float, is_clear: bool, is_modulated: bool) -> Regularity:
     """Return the regularity by the complex amplitudes of the impacts.
 
     Parameters
@@ -156,22 +159,25 @@ def _judged(amplitudes: np.ndarray, noise: float, frequency: float, period: floa
     frequency : of the carrier [rad/s].
     period : of the train [s].
     is_clear : whether the impacts stand out of everything else by themselves, however few of them are strong.
+    is_modulated : as of `regularity`.
     """
     power, floor = np.abs(amplitudes) ** 2, (EXACT * period) ** 2
     if np.mean(power) <= noise or not is_clear and np.mean(power**2) > _SPARSE * np.mean(power) ** 2:
         return UNKNOWN
     by_fourth, error_of_fourth = _jackknifed(amplitudes, noise, _fourth_order)
     by_second, error_of_second = _jackknifed(amplitudes, noise, _by_phase if is_clear else _second_order)
-    surprises = (
-        (math.exp(-4.0 * frequency**2 * floor) - by_fourth) / error_of_fourth if error_of_fourth <= _SHARP else 0.0,
-        ((1.0 if is_clear else _INCOHERENT) * math.exp(-(frequency**2) * floor) - by_second) / error_of_second,
-    )
-    jitter = math.nan
+    strengths = _OTHERWISE if is_clear else _MODULATED if is_modulated else _INCOHERENT
+    surprises = [(strengths * math.exp(-(frequency**2) * floor) - by_second) / error_of_second]
+    jitter, alone = math.nan, -math.inf
     if error_of_fourth <= _SHARP:
         jitter = math.sqrt(-math.log(min(max(by_fourth, 1e-3), 1.0))) / (2.0 * frequency * period)
+        exact = math.exp(-4.0 * frequency**2 * floor)
+        surprises.append((_OTHERWISE * exact - by_fourth) / error_of_fourth)
+        alone = (_ALONE * exact - by_fourth) / error_of_fourth
     elif is_clear:
         jitter = math.sqrt(-math.log(min(max(by_second, 1e-3), 1.0))) / (frequency * period)
-    return Regularity(jitter, max(surprises) > _ERRORS, 2.0 * _tail(max(surprises)))
+    agreed = max(surprises) if min(surprises) > _AGREED else -math.inf
+    return Regularity(jitter, max(agreed, alone) > _ERRORS, _tail(max(agreed, alone)))
 
 
 def _tail(surprise: float) -> float:

@@ -37,11 +37,11 @@ from click.testing import CliRunner
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from output_cases import CASES, file_name, outputs  # noqa: E402
+from synthetic_vibration import Machine, record  # noqa: E402
 
 from bearing_sim.cli.main import main  # noqa: E402
 from bearing_sim.cli.outputs import OutputFolder, OutputJournal, OutputWithJournal  # noqa: E402
 from bearing_sim.cli.reporting import print_rows  # noqa: E402
-from bearing_sim.vibration.synthetic import Machine, record  # noqa: E402
 
 _COMMAND = [sys.executable, "-m", "bearing_sim.cli"]
 _OLD = random.Random(19).randbytes(20_000)

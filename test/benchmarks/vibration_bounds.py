@@ -3,7 +3,7 @@
 
     python test/benchmarks/vibration_bounds.py --speed 30000 --noise -20
 
-For each record of a row of ``bearing-sim study vibration --runs 3 --seed 11`` it prints the logarithm of how improbable the envelope's lines at
+For each record of a row of ``vibration_study.py --runs 3 --seed 11`` it prints the logarithm of how improbable the envelope's lines at
 their true places are in noise, the best of three bands about the resonance, of five resolutions and of one to three harmonics without and with
 sidebands [nat]; how high the loudest line of the vibration itself stands over the noise within 20 Hz [dB]; and what was found without knowing
 anything.  A search has to exclude all candidates, bands and resolutions besides, which costs about 14 nat, and one false alarm in 10,000
@@ -14,12 +14,11 @@ import argparse
 import math
 
 import numpy as np
+from vibration_study import KINDS, Condition, Synthetic, _run
 
-from bearing_sim.studies.vibration import KINDS, Condition, _run
 from bearing_sim.vibration.comb import _log_gamma_tail, families, orders_of, spectra
 from bearing_sim.vibration.order_tracking import constant_shaft
 from bearing_sim.vibration.signal import Band, Spectrum
-from bearing_sim.vibration.synthetic import Synthetic
 
 ROLLERS, SIZE = 13, 0.19
 SPIN = (1.0 - SIZE**2) / SIZE
