@@ -631,7 +631,8 @@ def _nothing(shaft: Shaft, fit: Fit | None, doubt: str = "") -> Analysis:
     elif fit is None:
         why = "no comb has enough lines that are clear by themselves"
     elif fit.false_alarm < CERTAIN:
-        why = f"noise alone gives a comb as clear as the best in one of {1.0 / chance:,.0f} records"
+        often = f"in one of {1.0 / chance:,.0f} records" if chance < 0.5 else "in most records"
+        why = f"noise alone gives a comb as clear as the best {often}"
     else:
         why = "the lines do not keep together over the record, or may be the harmonics of a line that coincides with one of the shaft's"
     reason = f"no line of this bearing: {why}"
