@@ -29,7 +29,7 @@ AGAIN = 10.0  # [s] after which a window is sent again, in case that it was lost
 def test_blocks_of_vibration_become_a_measured_cage_speed_with_its_error_and_noise_becomes_none(tmp_path):
     bearing = load_scene("deng2017_table1").bearing
     size = bearing.roller.diameter / bearing.pitch_diameter
-    machine = Machine("outer_ring", bearing.roller.count, size, 0.03, GOOD.shaft_speed, interfering=0)
+    machine = Machine("outer_ring", bearing.roller.count, size, 0.03, GOOD.shaft_speed, interfering=0, pocket_play=0.03, signal_to_noise=10.0)
     synthetic = record(machine, RATE, WINDOW, np.random.default_rng(3))
     noise = np.random.default_rng(4).normal(size=int(RATE * WINDOW))
     domain = fresh_domain()

@@ -606,7 +606,7 @@ def _completed(
 def _why_slip_is_not_claimed(slip: float, slip_error: float, geometry: Geometry, shaft: Shaft, alternatives: Sequence[str]) -> str:
     """Return in words why slip is not claimed; empty if it is."""
     if alternatives:
-        return f"slip is not claimed: the lines cannot be told apart from {'; or from '.join(alternatives)}"
+        return f"no claim: the lines cannot be told apart from {'; or from '.join(alternatives)}"
     if math.isnan(slip):
         return "slip is not claimed: the diameters are unknown"
     if shaft.source == "given":
