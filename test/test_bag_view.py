@@ -12,6 +12,7 @@ from rerun_files import column
 from synthetic_run import synthetic_block
 
 from bearing_sim.cli import view
+from bearing_sim.files.tally import Tally
 from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import message_type, typestore
 from bearing_sim.messages.diagnostics import report
@@ -128,7 +129,7 @@ def test_a_long_bag_is_thinned_out(tmp_path):
     times = 1e-3 * np.arange(300_000)
     values = np.sin(times)
     values[123_456] = 99.0
-    write_bag_view(tmp_path / "run.rrd", "long", BagSeries({("", "/a", "-"): (times, values)}, [], [], START, 300.0))
+    write_bag_view(tmp_path / "run.rrd", "long", BagSeries({("", "/a", "-"): (times, values)}, [], [], START, 300.0, Tally()))
     assert len(column(tmp_path / "run.rrd", "/bag/a")[0]) < 10_000
     ranges = [
         chunk.to_record_batch().column("Scalars:scalars").to_pylist()

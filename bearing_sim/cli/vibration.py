@@ -23,12 +23,7 @@ from bearing_sim.cli.reporting import (
 
 _LARGEST_PARTS = 100_000
 _MARGIN = 1.5  # times the largest slip of the model and of draws of its uncertain fields (assumption: draws are few)
-_SHOWN = {
-    "outer_ring": "the outer ring",
-    "inner_ring": "the inner ring",
-    "roller": "a roller",
-    "cage": "the cage, or a roller at each turn of the cage",
-}
+_CAGE = "the cage, or a roller at each turn of the cage"
 _SOURCES = {"lines": "by its own lines", "recorded": "as recorded", "given": "as given; it has no clear lines of its own"}
 
 
@@ -275,6 +270,8 @@ def _report(found, record, geometry) -> dict:
 
 
 def _print(name, record, geometry, found) -> None:
+    from bearing_sim.vibration.analysis import PARTS
+
     shaft = found.shaft
     turns = f"{60.0 * shaft.frequency:.6g} rpm +- {60.0 * shaft.standard_error:.2g}, {_SOURCES[shaft.source]}"
     rows = [("record", f"{record.duration:.4g} s at {record.rate:g} Hz: {record.name}"), ("bearing", geometry.name), ("shaft", turns)]
@@ -283,7 +280,7 @@ def _print(name, record, geometry, found) -> None:
         print_table(f"{name}: no line of this bearing", [*rows, ("result", found.reason.removeprefix("no line of this bearing: "))])
         return
     rows += [
-        ("shows" if found.is_claim else "may show", _SHOWN[found.shows]),
+        ("shows" if found.is_claim else "may show", _CAGE if found.shows == "cage" else PARTS[found.shows]),
         *(("cannot be told from", text) for text in found.alternatives),
         ("line", f"{found.line:.5f} of the shaft's frequency" + (f" +- {found.line_error:.5f}" if math.isfinite(found.line_error) else "")),
         ("cage over shaft", f"{found.ratio:.6f} +- {found.ratio_error:.6f}"),

@@ -39,6 +39,9 @@ CERTAIN = math.log(1e4)
 LARGEST_SLIP = 0.1
 """Slip of the cage up to which lines are looked for where nothing says what is possible (assumption: a loaded bearing has less)."""
 
+PARTS = {"outer_ring": "the outer ring", "inner_ring": "the inner ring", "roller": "a roller", "cage": "the cage"}
+"""What may show, in words."""
+
 _ANOTHER_SIZE = 0.03  # by which a roller of another size of the same designation moves the ratio
 _NEGATIVE_SLIP = 0.002  # beside that, by clearance and contact angles
 _CLEAR_OF_ROLLER = 30.0  # [nat] of a raceway's line from which on the sidebands of a roller's would be seen beside it
@@ -69,14 +72,13 @@ class Geometry(NamedTuple):
     size : roller diameter over pitch diameter; NaN if unknown.
     is_measured : whether the diameters were measured on this bearing.
     name : for messages.
-    least_slip, largest_slip : of the cage that are possible at the load and the speed of the record; no others are looked for.
+    largest_slip : of the cage that is possible at the load and the speed of the record; no larger one is looked for.
     """
 
     rollers: int
     size: float = math.nan
     is_measured: bool = False
     name: str = ""
-    least_slip: float = 0.0
     largest_slip: float = LARGEST_SLIP
 
     @property
@@ -90,7 +92,7 @@ class Geometry(NamedTuple):
         is_known = math.isfinite(self.size)
         small, large = (self.size, self.size) if is_known else _SIZES
         play = _NEGATIVE_SLIP + (0.0 if self.is_measured or not is_known else _ANOTHER_SIZE)
-        low, high = 0.5 * (1.0 - large) * (1.0 - self.largest_slip - play), 0.5 * (1.0 - small) * (1.0 - self.least_slip + play)
+        low, high = 0.5 * (1.0 - large) * (1.0 - self.largest_slip - play), 0.5 * (1.0 - small) * (1.0 + play)
         passes = [(1.0 - size**2) / size for size in (large, small)]
         high = min(high, 0.4999)
         return Range(min(low, high), high, self.rollers, (1.0 - 2.0 * _SPIN_TOLERANCE) * passes[0], (1.0 + _SPIN_TOLERANCE) * passes[1])
@@ -203,7 +205,8 @@ def analyse(
         )
         return _nothing(about, None, why)
     raw = Spectrum(vibration.samples, vibration.rate)
-    whitened = Spectrum(vibration.samples, vibration.rate, _ENDS).without_lines()
+    faded = Spectrum(vibration.samples, vibration.rate, _ENDS)
+    whitened = faded.without_lines()
     range_ = geometry.range
     inner = range_.rollers * (1.0 - range_.low)  # order of the highest fundamental line
     if 2.5 * high * range_.rollers * 0.5 > vibration.rate / 2.0:
@@ -249,14 +252,14 @@ def analyse(
     if rate is None or abs(rate.value) > 3.0 * fit.resolution or _is_hidden(fit, range_, len(place.signal) / place.per_turn):
         return _nothing(shaft, fit, why)
     beyond = max(range_.low - fit_there.ratio, fit_there.ratio - range_.high)
-    if beyond > 3.0 * math.hypot(rate.standard_error, _relative_to_shaft(fit) * shaft.standard_error / shaft.frequency):
+    if beyond > 3.0 * _ratio_error(fit_there, rate, shaft):
         return _nothing(shaft, fit, why or _of_a_train(first_line(fit_there), shaft))
-    impacts = _regularity_of(fit_there, place, vibration, shaft)
+    impacts = _regularity_of(fit_there, place, faded, vibration.duration, shaft)
     if impacts.is_sparse:
         return _nothing(shaft, fit, why or "few periods of the lines hold an impact: they are those of something slower")
     alternatives = _alternatives(fit, best.fits, impacts, place, shaft, range_)
     if trains and alternatives:
-        return _nothing(shaft, fit, f"{why}; what is left beside it cannot be told apart from {'; or from '.join(alternatives)}")
+        return _nothing(shaft, fit, f"{why}; what is left beside it {_not_told_apart(alternatives)}")
     course = tuple(_course(fit_there, shaft, place.signal, place.per_turn, parts))
     doubt = _doubt(fit, best.fits, impacts, range_) if not alternatives else 1.0
     return _completed(fit, rate, shaft, geometry, place.band, course, impacts, alternatives, doubt)
@@ -322,32 +325,35 @@ def _foreign_train(places: Sequence[_Place], looks: int, shaft: Shaft) -> str:
     return "" if best is None or best.false_alarm < CERTAIN else _of_a_train(best.ratio, shaft)
 
 
-def _regularity_of(fit: Fit, place: _Place, vibration: Vibration, shaft: Shaft) -> Regularity:
-    """Return how exactly periodic the impacts of a comb are; ``fit`` with the ratio as it was measured."""
+def _regularity_of(fit: Fit, place: _Place, faded: Spectrum, duration: float, shaft: Shaft) -> Regularity:
+    """Return how exactly periodic the impacts of a comb are.
+
+    Parameters
+    ----------
+    fit : with the ratio as it was measured.
+    place : where it was found.
+    faded : spectrum of the record, which fades in and out.
+    duration : of the record [s].
+    shaft : by whose angle the signal of ``place`` is.
+    """
     line = first_line(fit)
-    if fit.family.name == "cage":
-        numbers = np.arange(1.0, 5.0)
-    else:
-        numbers = np.arange(1.0, 1.0 + len(fit.family.centres))
+    numbers = np.arange(1.0, 1.0 + len(fit.family.centres))
     orders = numbers * line
-    found = spectra(place.signal, place.per_turn, 1, place.per_turn / 2.0)
     inside = (orders < 0.48 * place.per_turn) & (np.abs(orders - np.rint(orders)) > 6.0 * place.per_turn / len(place.signal))
-    averaged = spectra(place.signal, place.per_turn, fit.averages, place.per_turn / 2.0)
-    if found is None or averaged is None or not inside.any():
+    if not inside.any():
         return UNKNOWN
-    clear = inside & (averaged.at(orders) > 3.0)
+    clear = inside & (place.prepared.of(fit).at(orders) > 3.0)
     inside = clear if clear.any() else inside
     turns = len(place.signal) / place.per_turn
     segments = int(np.clip(max(turns / 8.0, 2.0 * fit.averages), 8, 64))
-    track: Track = follow(place.signal, place.per_turn, orders[inside], numbers[inside], found.noise_at(orders[inside]), segments)
+    track: Track = follow(place.signal, place.per_turn, orders[inside], numbers[inside], place.prepared.finest.noise_at(orders[inside]), segments)
     course = np.interp(angles := np.linspace(0.0, turns, 64 * segments), track.places, smoothed(track).phases)
     phases = line * angles + course
     if np.any(np.diff(phases) <= 0.0):
         return UNKNOWN
     places = np.interp(np.arange(math.ceil(phases[0]), math.floor(phases[-1])), phases, angles)
     hertz = line * shaft.frequency
-    spectrum = Spectrum(vibration.samples, vibration.rate, _ENDS).without_lines(hertz, 4.0 / vibration.duration)
-    return regularity(spectrum, place.band, shaft, places, hertz, fit.family.name != "outer_ring")
+    return regularity(faded.without_lines(hertz, 4.0 / duration), place.band, shaft, places, hertz, fit.family.name != "outer_ring")
 
 
 def _alternatives(fit: Fit, fits: Sequence[Fit], impacts: Regularity, place: _Place, shaft: Shaft, range_: Range) -> tuple[str, ...]:
@@ -366,7 +372,7 @@ def _alternatives(fit: Fit, fits: Sequence[Fit], impacts: Regularity, place: _Pl
             how = "its impacts are exactly periodic, as far as is seen" if is_small else "something else may feign that its impacts scatter"
         found.append(f"a train of impacts of another machine or of a gear at {hertz:.6g} Hz{source}: {how}")
     others = [each for each in fits if each.family.name != fit.family.name and each.false_alarm > max(fit.false_alarm - _AS_LIKELY, CERTAIN)]
-    found += [f"the lines of {_A_PART[each.family.name]}" for each in others]
+    found += [f"the lines of {PARTS[each.family.name]}" for each in others]
     if fit.family.name == "cage" and not any(each.family.name == "roller" for each in others):
         found.append("a roller that differs, once in a turn of the cage")
     if fit.family.name == "roller" and not _is_modulated_by_cage(fit):
@@ -376,7 +382,8 @@ def _alternatives(fit: Fit, fits: Sequence[Fit], impacts: Regularity, place: _Pl
     return tuple(found)
 
 
-_A_PART = {"outer_ring": "the outer ring", "inner_ring": "the inner ring", "roller": "a roller", "cage": "the cage"}
+def _not_told_apart(alternatives: Sequence[str]) -> str:
+    return f"cannot be told apart from {'; or from '.join(alternatives)}"
 
 
 def _is_modulated_by_cage(fit: Fit) -> bool:
@@ -539,13 +546,14 @@ def _course(fit: Fit, shaft: Shaft, signal: np.ndarray, per_turn: float, parts: 
         yield Part(float(begin), float(end), float(speed), ratio, by_angle, ratio * speed, speed * by_time)
 
 
-def _relative_to_shaft(fit: Fit) -> float:
-    """Return the error of the ratio by that of the shaft's speed, over the relative one.
+def _ratio_error(fit: Fit, rate: Rate, shaft: Shaft) -> float:
+    """Return the standard error of a ratio with that of the shaft's speed in it.
 
     A line is measured in Hz: where the shaft's own frequency is not known well, its order and the ratio are not either.
     """
     by_c = fit.family.centres[0][1]
-    return first_line(fit) / by_c if by_c else fit.ratio
+    by_shaft = first_line(fit) / by_c if by_c else fit.ratio
+    return math.hypot(rate.standard_error, by_shaft * shaft.standard_error / shaft.frequency)
 
 
 def _of_shaft(fit: Fit) -> float:
@@ -570,7 +578,7 @@ def _completed(
     constant, by_c, by_b = fit.family.centres[0]
     spin = 0.0 if math.isnan(fit.passes) else fit.passes
     line = constant + by_c * ratio + by_b * spin
-    ratio_error = math.hypot(rate.standard_error, _relative_to_shaft(fit._replace(ratio=ratio)) * relative)
+    ratio_error = _ratio_error(fit._replace(ratio=ratio), rate, shaft)
     line_error = math.hypot(by_c * rate.standard_error, line * relative) if by_c else math.nan
     shaft_speed = 2.0 * math.pi * shaft.frequency
     cage_error = shaft_speed * math.hypot(rate.standard_error, _of_shaft(fit) * relative)
@@ -606,7 +614,7 @@ def _completed(
 def _why_slip_is_not_claimed(slip: float, slip_error: float, geometry: Geometry, shaft: Shaft, alternatives: Sequence[str]) -> str:
     """Return in words why slip is not claimed; empty if it is."""
     if alternatives:
-        return f"no claim: the lines cannot be told apart from {'; or from '.join(alternatives)}"
+        return f"no claim: the lines {_not_told_apart(alternatives)}"
     if math.isnan(slip):
         return "slip is not claimed: the diameters are unknown"
     if shaft.source == "given":

@@ -26,6 +26,7 @@ EXACT = 0.0003
 """Standard deviation of the instants of impacts over their period up to which a train is called exactly periodic (assumption: teeth are met within
 some micrometres of their place, 1e-4 of the circumference; rollers have at least 0.2 % of their pitch)."""
 
+# Where no source is named, the numbers below are assumptions, set on the records 0 to 1999 of test/benchmarks/vibration_claims.py.
 _DRIFTS = np.linspace(-3.0, 3.0, 121)  # [sample] over the record, and
 _PARTS_OF_SAMPLE = np.arange(12) / 12.0  # of a train whose instants may be at whole samples
 _LAGS = 8  # neighbours that are compared
@@ -37,7 +38,7 @@ _PHASES = 48  # of the period, at which the mean power is looked at
 _BLOCKS = 8  # by which errors are estimated (jackknife)
 _FEWEST = 32  # impacts
 _SHARP = 0.2  # standard error of the first ratio up to which it is used
-_OTHERWISE = 0.6  # of either ratio, that an exact train has at least: other trains and the followed phase take a part (0.4 at the least, measured)
+_OTHERWISE = 0.6  # of either ratio, below which other trains and the followed phase, which take a part of it, seldom bring an exact train
 _ALONE = 0.25  # of the first ratio, below which it decides alone
 _INCOHERENT, _MODULATED = 0.25, 0.06  # of the second ratio, below which strengths that vary do not explain it, at random and in a load zone
 _ERRORS, _AGREED = 3.0, 1.0  # standard errors by which one ratio must be below, and the other as well

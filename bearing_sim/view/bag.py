@@ -68,8 +68,8 @@ class BagSeries(NamedTuple):
     left_out : lines of text that name the topics that are not shown, with the reason.
     start_ns : time 0 [ns since the epoch].
     duration : of the recording [s].
-    clouds : point clouds by topic.
     tally : the messages that were there, those that could not be read and why, and where a file ended early.
+    clouds : point clouds by topic.
     """
 
     series: dict[tuple[str, str, str], tuple[np.ndarray, np.ndarray]]
@@ -77,8 +77,8 @@ class BagSeries(NamedTuple):
     left_out: list[str]
     start_ns: int
     duration: float
+    tally: Tally
     clouds: Mapping[str, CloudCourse] = MappingProxyType({})
-    tally: Tally = Tally()
 
 
 class Line(NamedTuple):
@@ -163,7 +163,7 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
     origin = sorted((event._replace(time=(event.time - start_ns) * 1e-9) for event in taken.events), key=lambda event: event.time)
     model = ["slip, loads, life, powers and pictures of the bearing: they need a model (`bearing-sim replay`)"]
     series = {key: _sorted(values, start_ns) for key, values in rows.items()}
-    return BagSeries(series, origin, [*unread.values(), *absent, *model], start_ns, duration, clouds, bag.tally)
+    return BagSeries(series, origin, [*unread.values(), *absent, *model], start_ns, duration, bag.tally, clouds)
 
 
 class _Taken:
