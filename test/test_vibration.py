@@ -174,6 +174,19 @@ def test_an_exactly_periodic_train_where_a_ring_has_its_line_is_no_claim_and_its
     assert not analyse(exact_train(order), MEASURED, SPEED).is_claim
 
 
+@pytest.mark.parametrize(("jitter", "is_claim"), [(0.0, False), (0.005, True)])
+def test_of_two_trains_at_the_line_of_a_ring_only_the_one_that_scatters_is_a_claim(jitter, is_claim):
+    rng, rate, shaft = np.random.default_rng(1), 51_200.0, 25.0
+    samples, line = 0.2 * rng.normal(size=int(4.0 * rate)), 13 * 0.4026 * shaft
+    shape = 3.0 * np.exp(-np.arange(400) / 60.0) * np.sin(2.0 * math.pi * 6000.0 * np.arange(400) / rate)
+    numbers = np.arange(1, int(3.95 * line))
+    for place in ((numbers + jitter * rng.normal(size=len(numbers))) / line * rate).astype(int):
+        samples[place : place + 400] += shape
+    found = analyse(Vibration(samples, rate), Geometry(13, 0.1923), 2.0 * math.pi * shaft)
+    assert found.found and found.shows == "outer_ring" and found.is_claim == is_claim, found.reason
+    assert is_claim or "exactly periodic" in found.alternatives[0] and named_frequency(found.alternatives[0]) == pytest.approx(line, rel=1e-3)
+
+
 @pytest.mark.parametrize("jitter", [0.01, 0.02])
 def test_a_train_that_scatters_as_that_of_rollers_does_is_claimed_with_its_slip(jitter):
     found = analyse(exact_train(ROLLERS * RATIO * 0.97, jitter), MEASURED, SPEED)
