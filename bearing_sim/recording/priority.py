@@ -40,6 +40,11 @@ def use_low_priority(niceness: int) -> None:
             Path("/proc/self/autogroup").write_text(str(niceness))
 
 
+def give_idle_time(pid: int) -> None:
+    """Run all present and future threads of another process of this user in idle time only, from now on."""
+    _schedule_threads("SCHED_IDLE", pid=pid)
+
+
 def lower_thread_priority(beginning: str) -> None:
     """Let the threads of this process with names that begin with ``beginning`` pre-empt nobody."""
     _schedule_threads("SCHED_BATCH", beginning)
@@ -60,12 +65,15 @@ def _started_by_this_file(policy: str, command: Sequence[str | os.PathLike]) -> 
     return [sys.executable, "-I", "-S", __file__, policy, *map(os.fspath, command)]
 
 
-def _schedule_threads(policy: str, beginning: str = "") -> bool:
-    """Set the policy of the threads with names that begin with ``beginning``; threads that they start inherit it.  Return whether it was allowed."""
+def _schedule_threads(policy: str, beginning: str = "", pid: int | None = None) -> bool:
+    """Set the policy of the threads with names that begin with ``beginning``; threads that they start inherit it.  Return whether it was allowed.
+
+    Without ``pid`` of this process.
+    """
     try:
-        threads = list(Path("/proc/self/task").iterdir())
+        threads = list(Path(f"/proc/{pid or 'self'}/task").iterdir())
     except OSError:
-        threads = [] if beginning else [Path("0")]  # 0 is the running thread
+        threads = [] if beginning or pid is not None else [Path("0")]  # 0 is the running thread
     try:
         for thread in threads:
             with suppress(FileNotFoundError, ProcessLookupError):  # it may end meanwhile

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from bearing_sim.recording.priority import in_idle_time
+from bearing_sim.recording.priority import give_idle_time
 from bearing_sim.view.plots import TIMELINE
 from bearing_sim.view.viewer import HOST, free_port, stream_url
 
@@ -22,7 +22,7 @@ HOW_TO_GET_VULKAN = (
     "`apt-get install -y --no-install-recommends mesa-vulkan-drivers`, on Fedora `dnf install mesa-vulkan-drivers`, on Arch `pacman -S vulkan-swrast`"
 )
 _HARMLESS_NOTICES = ("oftware rasterizer", "NameHasOwner")  # notices about the machine, not about what is shown
-_READY_WITHIN = 240.0  # [s] for the recording to be loaded, in idle time on a busy machine
+_READY_WITHIN = 240.0  # [s] for the recording to be loaded, on a busy machine
 
 
 class ViewerFailed(RuntimeError):
@@ -36,7 +36,8 @@ class HeadlessViewer:
     ----------
     recording : path of an .rrd file, or the URL of a running server.
     size : width and height of the picture [px].
-    in_idle_time : True runs the viewer in idle time, so that it takes no processor time from a solver on the same machine.
+    in_idle_time : True runs the viewer in idle time once it is ready, so that it takes no processor time from a solver on the same machine; a
+        viewer that starts in idle time on a busy machine might never get ready.
 
     Raises
     ------
@@ -58,7 +59,7 @@ class HeadlessViewer:
         self._messages = tempfile.TemporaryFile()
         command = [program, *options, "--window-size", f"{self._size[0]}x{self._size[1]}", self._recording]
         self._process = subprocess.Popen(
-            in_idle_time(command) if self._in_idle_time else command,
+            command,
             env=environment,
             stdout=subprocess.DEVNULL,
             stderr=self._messages,
@@ -68,6 +69,8 @@ class HeadlessViewer:
         except BaseException:
             self.__exit__()
             raise
+        if self._in_idle_time:
+            give_idle_time(self.pid)
         return self
 
     def __exit__(self, *_) -> None:
