@@ -1,29 +1,16 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A plain NumPy model of level ``planar``, for comparison: one file, no code shared with the package, written from the equations.
+"""A plain NumPy model of level ``planar``, for comparison: no code shared with the package, written from the equations; films in `reference_films`.
 
 Everything is a Cartesian vector in the radial plane, rollers too: places and velocities in y and z, shape (2, Z).  Each force is
 written down once, at the body and the point where it acts; there is no derivative by hand.  Functions of complex numbers are
 kept analytic (branches look at real parts, nothing takes an absolute value), so that a complex step differentiates them.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import numpy as np
-
-
-def larger(x, y):
-    """The number with the larger real part."""
-    return np.where(np.real(x) >= np.real(y), x, y)
-
-
-def magnitude(x):
-    return np.where(np.real(x) >= 0, x, -x)
-
-
-def power_of_positive(x, exponent):
-    """x^exponent, and 0 where x is not positive."""
-    return np.where(np.real(x) > 0, np.where(np.real(x) > 0, x, 1.0) ** exponent, 0.0)
+from reference_films import Films, Oil, couette_factor, hydrodynamic_resistance, larger, magnitude, power_of_positive
 
 
 def dot(a, b):
@@ -63,7 +50,10 @@ class State:
 
 @dataclass
 class Reference:
-    """Bearing of Deng 2017, Table 1 (SI), 45,000 rpm, MIL-L-7808 at 120 degC, with the defaults of the package for what it leaves open."""
+    """Bearing of Deng 2017, Table 1 (SI), 45,000 rpm, MIL-L-7808 at 120 degC, with the defaults of the package for what it leaves open.
+
+    ``films`` are fields of `reference_films.Films`.
+    """
 
     low_radius: float = 34.8625e-3
     d_value: float = 0.098e-3
@@ -93,6 +83,18 @@ class Reference:
     pocket_radial_clearance: float = 0.1e-3
     rolling_resistance: bool = False
     growth: float = 0.0  # of the inner raceway's radius while running [m]
+    temperature: float = 393.15
+    mixture_fraction: float = 0.03
+    bore: float = 50.027e-3  # boundary diameters
+    outer_diameter: float = 73.4e-3
+    cage_width: float = 12e-3
+    cage_outside: float = 33.35e-3
+    cage_inside: float = 29.6e-3
+    land_width: float = 2.5e-3  # of each of two
+    land_radius: float = 33.5e-3  # of lands on the outer ring
+    land_vortices: bool = False
+    rubbing_in_pockets: float | None = None  # coefficient of friction there; None: that of pocket_friction and asperities
+    films: dict = field(default_factory=dict)
 
     def __post_init__(self):
         self.pitch_radius = self.inner_radius + self.roller_radius
@@ -104,16 +106,30 @@ class Reference:
         eta = 2 * (1 - 0.3**2) / 2.06e5  # 1/MPa
         self.stiffness = (self.length * 1e3) ** (8 / 9) / (1.36 * eta**0.9) ** (10 / 9) * 1000 ** (10 / 9)
         self.modulus = 2 / (2 * (1 - 0.3**2) / 2.06e11)
-        self.temperature = 393.15
-        self.viscosity = 9.997e-4 * (np.exp(np.exp(22.216 - 3.7048 * np.log(393.15))) - 0.87)
-        self.pressure_viscosity = 7.5808e-10 + 1.0742e-6 / (393.15 - 215.56)
-        warmer, colder = (np.log(9.997e-4 * (np.exp(np.exp(22.216 - 3.7048 * np.log(t))) - 0.87)) for t in (393.25, 393.05))
-        self.thinning = (colder - warmer) / 0.2
-        self.density = 0.03 * (914 + (870 - 914) * (393.15 - 367) / (422 - 367))
-        self.outside, self.inside, self.width, self.land_width = 33.35e-3, 29.6e-3, 12e-3, 2.5e-3  # two lands
-        self.guide_radius = {"outer_ring": 33.5e-3, "inner_ring": 29.6e-3 - self.guide_clearance, "roller": np.nan}[self.guidance]
+        self.oil = Oil(self.temperature)
+        self.viscosity = self.oil.viscosity
+        self.density = self.mixture_fraction * self.oil.density
+        self.outside, self.inside, self.width = self.cage_outside, self.cage_inside, self.cage_width
+        on_ring = {"outer_ring": self.land_radius, "inner_ring": self.inside - self.guide_clearance, "roller": np.nan}
+        self.guide_radius = on_ring[self.guidance]
         self.outside_width = self.width - (2 * self.land_width if self.guidance == "outer_ring" else 0.0)
         self.inside_width = self.width - (2 * self.land_width if self.guidance == "inner_ring" else 0.0)
+        self.film = Films(
+            shaft_speed=self.shaft_speed,
+            load=np.hypot(*self.load),
+            oil=self.oil,
+            rollers=self.rollers,
+            roller_radius=self.roller_radius,
+            length=self.length,
+            inner_radius=self.inner_radius,
+            low_radius=self.low_radius,
+            bore=self.bore,
+            outside=self.outer_diameter,
+            pocket_clearance=self.pocket_clearance,
+            **self.films,
+        )
+        if self.rubbing_in_pockets is None:
+            self.rubbing_in_pockets = self.film.mixed(self.pocket_friction)
 
     def contour(self, azimuth):
         """R_e and its slope by azimuth."""
@@ -141,7 +157,7 @@ class Reference:
 
     def traction(self, load, rolling, sliding, curvature_radius):
         """The force mu Q, odd in the sliding speed (Deng 2017, ref. 17); load and rolling speed kept off zero, where the powers run away."""
-        rolling = np.sqrt(rolling**2 + 0.05**2)
+        rolled, rolling = rolling, np.sqrt(rolling**2 + 0.05**2)
         w = larger(load, 1e-3) / (self.modulus * curvature_radius**2)
         u = self.viscosity * rolling / (self.modulus * curvature_radius)
         t = 0.0966 * self.temperature / (self.viscosity * rolling**2)
@@ -149,30 +165,16 @@ class Reference:
         b = 5.19e6 * w**-0.373 * u * t**0.687
         c = 6.826e5 * w**-0.170 * u**0.578 * t**0.373
         s = magnitude(sliding) / rolling
-        return load * np.where(np.real(sliding) >= 0, 1, -1) * ((a + b * s) * np.exp(-c * s) - a)
+        force = load * np.where(np.real(sliding) >= 0, 1, -1) * ((a + b * s) * np.exp(-c * s) - a)
+        return self.film.traction(load, rolled, sliding, force)
 
     def resistance(self, load, rolling, curvature_radius, part=1.0, gap=0.0):
-        """Goksem and Hargreaves 1978 with the rigid regime of Biboulet and Houpert 2010 and SKF's replenishment; fades out below a load of 1 N.
-
-        Beside the ``part`` of the roller that bears, a film as thick as that in the middle and the ``gap`` resists as between rigid bodies; together
-        no more than a contact that bears on all of its length.
-        """
-        stiffness = self.modulus * curvature_radius
-        slow = np.sqrt(rolling**2 + 0.05**2)
-        u, g, w = self.viscosity * slow / stiffness, self.pressure_viscosity * self.modulus, larger(load, 1e-3) / (stiffness * self.length)
-        elastic, rigid = 4.318 * (g * u) ** 0.658 * w**0.0126 / g, 1.42 * np.sqrt(2 * u * w)
-        heated = 1 + 0.411483 * (self.viscosity * self.thinning * slow**2 / 0.0966) ** 0.707071
-        gamma, kinematic = self.roller_radius / self.pitch_radius, 1e6 * self.viscosity * 0.03 / self.density
-        turns = slow * 60 / np.pi / (self.pitch_radius * (1 - gamma**2))  # of the shaft a minute
-        starved = np.exp(-3e-8 * kinematic * turns * (73.4 + 50.027) * np.sqrt(5.1 / (2 * (73.4 - 50.027))))
-        law = (elastic**-10 + rigid**-10) ** -0.1
-        shorter = part * ((elastic * part**-0.0126) ** -10 + (rigid * part**-0.5) ** -10) ** -0.1
-        martin = 4.9 * u / w * curvature_radius
-        film = larger(3.06 * u**0.69 * g**0.56 * w**-0.10 * curvature_radius, martin)
-        beside = (1 - part) * 1.42 * np.sqrt(9.8) * u * np.sqrt(curvature_radius / (film + gap)) / law
-        law = law * (1 - larger(1 - (shorter / law + beside), 0.0))
-        force = stiffness * self.length * law * starved / heated * rolling / slow
-        return (1.0 if self.rolling_resistance else 0.0) * force * load / (load + 1.0)
+        """Resistance to rolling of oil, of skew and of hysteresis; the contact bears on a ``part`` of its length, beside which there is a ``gap``."""
+        force = self.film.losses_of_rolling(load, rolling, curvature_radius, self.modulus)
+        if self.rolling_resistance:
+            flooded = hydrodynamic_resistance(load, rolling, curvature_radius, self.oil, self.modulus, self.length, part, gap)
+            force = force + self.film.resistance * flooded
+        return force
 
     def pocket(self, offset, rate, clearance, film_force):
         """Force of a pocket's walls against a roller's offset, its elastic part, and the energy of that."""
@@ -198,8 +200,7 @@ class Reference:
         return force, (2 + (values[segment + 1] - values[segment]) / (points[segment + 1] - points[segment])) * force / speed
 
     def couette(self, speed, radius, gap, length):
-        reynolds = self.density * magnitude(speed) * radius * gap / self.viscosity
-        factor = larger(larger(1.0, 1.3 * (reynolds * np.sqrt(gap / radius) / 41) ** 0.539), 3.0 * (reynolds / 2500) ** 0.856)
+        factor = couette_factor(speed, radius, gap, self.density, self.viscosity)
         return 2 * np.pi * self.viscosity * radius**3 * speed * length / gap * factor
 
     def end_faces(self, omega):
@@ -241,6 +242,8 @@ class Reference:
             film = -on_ring
         else:
             film, friction = self.journal_film(apart, velocity, omega + turning)
+        if self.land_vortices:  # of a concentric land that is full of oil
+            friction = friction * couette_factor(turning - omega, self.guide_radius, self.guide_clearance, self.oil.density, self.viscosity)
         torque = friction * (turning - omega)
         on_ring = -torque - cross(apart, film)
         land.film_heat = -dot(film, velocity) - torque * omega - on_ring * turning
@@ -309,7 +312,7 @@ class Reference:
         f.pocket, f.pocket_elastic, f.pocket_energy = self.pocket(
             dot(f.from_cage, f.pocket_along), f.pocket_rate, self.pocket_clearance, self.pocket_film_force
         )
-        f.pocket_smooth = self.pocket_friction * state.spin / np.sqrt(state.spin**2 + 10.0**2)
+        f.pocket_smooth = self.rubbing_in_pockets * state.spin / np.sqrt(state.spin**2 + 10.0**2)
 
         f.guide = f.guide_elastic = f.guide_energy = f.guide_rate = np.zeros(self.rollers)
         if self.guidance == "roller":

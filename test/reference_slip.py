@@ -1,20 +1,24 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A plain NumPy model of level ``slip``, for comparison: one file, no code shared with the package, written from the equations.
+"""A plain NumPy model of level ``slip``, for comparison: no code shared with the package, written from the equations; films in `reference_films`.
 
 Slow and readable: loads by root finding on one roller at a time and a general equation solver for the ring, traction by the
 published powers, no Jacobian.  Integrated by scipy's Radau.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
+from reference_films import Films, Oil, couette_factor, hydrodynamic_resistance
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, root
 
 
 @dataclass
 class Reference:
-    """Bearing of Deng 2017, Table 1 (SI), 45,000 rpm, MIL-L-7808 at 120 degC, with the defaults of the package for what it leaves open."""
+    """Bearing of Deng 2017, Table 1 (SI), 45,000 rpm, MIL-L-7808 at 120 degC, with the defaults of the package for what it leaves open.
+
+    ``films`` are fields of `reference_films.Films`.
+    """
 
     low_radius: float = 34.8625e-3
     d_value: float = 0.098e-3
@@ -30,18 +34,49 @@ class Reference:
     pocket_clearance: float = 1e-4
     pocket_film_force: float = 67.0
     pocket_film_damping: float = 5.0
+    temperature: float = 393.15
+    bore: float = 50.027e-3  # boundary diameters
+    outer_diameter: float = 73.4e-3
+    cage_mass: float = 0.05
+    cage_width: float = 12e-3
+    cage_outside: float = 33.35e-3
+    cage_inside: float = 29.6e-3
+    land_width: float = 2.5e-3  # of each of two
+    land_radius: float = 33.5e-3
+    guide_clearance: float = 0.15e-3
+    land_vortices: bool = False
+    rolling_resistance: bool = False
+    rubbing_in_pockets: float | None = None  # coefficient of friction there; None: that of pocket_friction and asperities
+    films: dict = field(default_factory=dict)
 
     def __post_init__(self):
         self.pitch_radius = self.inner_radius + self.roller_radius
         self.mass = np.pi * self.roller_radius**2 * self.length * 7850.0
         eta = 2 * (1 - 0.3**2) / 2.06e5  # 1/MPa
-        self.stiffness = (7.0 ** (8 / 9)) / (1.36 * eta**0.9) ** (10 / 9) * 1000 ** (10 / 9)
+        self.stiffness = (self.length * 1e3) ** (8 / 9) / (1.36 * eta**0.9) ** (10 / 9) * 1000 ** (10 / 9)
         self.modulus = 2 / (2 * (1 - 0.3**2) / 2.06e11)
-        self.temperature = 393.15
-        self.viscosity = 9.997e-4 * (np.exp(np.exp(22.216 - 3.7048 * np.log(393.15))) - 0.87)
-        self.density = self.mixture_fraction * (914 + (870 - 914) * (393.15 - 367) / (422 - 367))
+        self.oil = Oil(self.temperature)
+        self.viscosity = self.oil.viscosity
+        self.density = self.mixture_fraction * self.oil.density
         self.pitch_angles = 2 * np.pi * np.arange(self.rollers) / self.rollers
-        self.ring = np.zeros(2)
+        play = self.low_radius - self.inner_radius - 2 * self.roller_radius
+        self.ring = np.array([1.3 * max(play, 0.0), 0.0])
+        self.film = Films(
+            shaft_speed=self.shaft_speed,
+            load=self.load,
+            oil=self.oil,
+            rollers=self.rollers,
+            roller_radius=self.roller_radius,
+            length=self.length,
+            inner_radius=self.inner_radius,
+            low_radius=self.low_radius,
+            bore=self.bore,
+            outside=self.outer_diameter,
+            pocket_clearance=self.pocket_clearance,
+            **self.films,
+        )
+        if self.rubbing_in_pockets is None:
+            self.rubbing_in_pockets = self.film.mixed(self.pocket_friction)
         self.pocket = self.pocket_without_play = np.zeros(self.rollers)  # of the last rate, what pockets take from their rollers [N]
 
     def contour(self, azimuth):
@@ -82,34 +117,39 @@ class Reference:
         inner, outer_penetration = balance(self.ring)
         return inner, inner + centrifugal, contour - self.roller_radius + outer_penetration, slope, azimuth, self.ring
 
-    def traction_coefficient(self, load, rolling, sliding, curvature_radius):
-        """Odd in the sliding speed (Deng 2017, ref. 17, as physics books print it)."""
-        rolling = np.abs(rolling)
-        load = np.maximum(load, 1e-3)
-        w = load / (self.modulus * curvature_radius**2)
+    def traction(self, load, rolling, sliding, curvature_radius):
+        """Force, odd in the sliding speed (Deng 2017, ref. 17, as physics books print it); rolling is kept off zero, where the powers run away."""
+        rolled, rolling = rolling, np.hypot(rolling, 0.05)
+        w = np.maximum(load, 1e-3) / (self.modulus * curvature_radius**2)
         u = self.viscosity * rolling / (self.modulus * curvature_radius)
         t = 0.0966 * self.temperature / (self.viscosity * rolling**2)
         a = -696 * w**-0.163 * u**0.577 * t**0.308
         b = 5.19e6 * w**-0.373 * u * t**0.687
         c = 6.826e5 * w**-0.170 * u**0.578 * t**0.373
         s = np.abs(sliding) / rolling
-        return np.sign(sliding) * ((a + b * s) * np.exp(-c * s) - a)
+        return self.film.traction(load, rolled, sliding, load * np.sign(sliding) * ((a + b * s) * np.exp(-c * s) - a))
+
+    def resistance(self, load, rolling, curvature_radius):
+        force = self.film.losses_of_rolling(load, rolling, curvature_radius, self.modulus)
+        if self.rolling_resistance:
+            force = force + self.film.resistance * hydrodynamic_resistance(load, rolling, curvature_radius, self.oil, self.modulus, self.length)
+        return force
 
     def cage_drag(self, omega):
         """Torque of lands and mixture on the cage body."""
         eta, rho = self.viscosity, self.density
-        guide, clearance, inside, width, land = 33.5e-3, 0.15e-3, 29.6e-3, 12e-3, 5e-3
-        outside = guide - clearance
+        guide, clearance, land = self.land_radius, self.guide_clearance, 2 * self.land_width
+        outside, inside, width = self.cage_outside, self.cage_inside, self.cage_width
 
         def couette(speed, radius, gap, length):
-            reynolds = rho * abs(speed) * radius * gap / eta
-            factor = max(1.0, 1.3 * (reynolds * np.sqrt(gap / radius) / 41) ** 0.539, 3.0 * (reynolds / 2500) ** 0.856)
-            return 2 * np.pi * eta * radius**3 * speed * length / gap * factor
+            return 2 * np.pi * eta * radius**3 * speed * length / gap * couette_factor(speed, radius, gap, rho, eta)
 
         reynolds = rho * omega * outside**2 / eta
         assert reynolds < 2.5e5
         faces = 0.5 * rho * omega**2 * (outside**5 - inside**5) * 3.87 * reynolds**-0.5
         lands = 2 * np.pi * eta * (guide * omega) * guide**2 * land / clearance
+        if self.land_vortices:  # lands are full of oil
+            lands *= couette_factor(omega, guide, clearance, self.oil.density, eta)
         outer_face = couette(omega, outside, self.low_radius - outside, width - land)
         inner_face = couette(self.shaft_speed - omega, inside, inside - self.inner_radius, width)
         return inner_face - lands - outer_face - faces
@@ -149,22 +189,26 @@ class Reference:
         roll_i = ((omega_i - omega) * r_i + (spin + omega) * r_w) / 2
         roll_e = (omega * (radius + r_w) + (spin + omega) * r_w) / 2
 
+        curved_i, curved_e = 1 / (1 / r_w + 1 / r_i), 1 / (1 / r_w - 1 / self.low_radius)
+
         def inner_traction(faster):
-            return inner * self.traction_coefficient(inner, roll_i, slide_i + faster, 1 / (1 / r_w + 1 / r_i))
+            return self.traction(inner, roll_i, slide_i + faster, curved_i)
 
         def outer_traction(faster):
-            return outer * self.traction_coefficient(outer, roll_e, slide_e + faster, 1 / (1 / r_w - 1 / self.low_radius))
+            return self.traction(outer, roll_e, slide_e + faster, curved_e)
 
         traction_i, traction_e = inner_traction(0.0), outer_traction(0.0)
+        resistance_i, resistance_e = self.resistance(inner, roll_i, curved_i), self.resistance(outer, roll_e, curved_e)
         lean = (outer * slope + inner * (ring_y * np.sin(azimuth) - ring_z * np.cos(azimuth))) / radius
         along = traction_i + traction_e - self.churning(omega) + lean - 2 * self.mass * slope * omega**2
-        cage_inertia = 0.05 * self.pitch_radius**2
+        along = along + (1 - 2 * r_w / radius) * resistance_i - (1 + 2 * r_w / radius) * resistance_e
+        cage_inertia = self.cage_mass * self.pitch_radius**2
         acceleration = (radius @ along + self.cage_drag(omega)) / (cage_inertia + self.mass * radius @ radius)
         driven = along - self.mass * radius * acceleration
         pocket = self.pocket_forces(driven, inner_traction, outer_traction, omega)
         self.pocket, self.pocket_without_play = pocket, driven
-        braking = self.pocket_friction * np.abs(pocket) * r_w * spin / np.sqrt(spin**2 + 10.0**2)
-        spin_acceleration = (r_w * (traction_i - traction_e) - braking) / (0.5 * self.mass * r_w**2)
+        braking = self.rubbing_in_pockets * np.abs(pocket) * r_w * spin / np.sqrt(spin**2 + 10.0**2)
+        spin_acceleration = (r_w * (traction_i - traction_e - resistance_i - resistance_e) - braking) / (0.5 * self.mass * r_w**2)
         return np.concatenate([[omega, acceleration], spin_acceleration])
 
     def slip(self, times, rtol=1e-6):

@@ -10,7 +10,8 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import numpy as np
-from reference_planar import Reference, ahead, azimuth_of, cross, dot, larger, magnitude
+from reference_films import larger, magnitude
+from reference_planar import Reference, ahead, azimuth_of, cross, dot
 
 
 @dataclass
@@ -133,7 +134,7 @@ class SpatialReference:
         f.pocket, f.pocket_elastic, f.pocket_energy = p.pocket(
             dot(f.from_cage, f.pocket_along[:, :, None]), f.pocket_rate, p.pocket_clearance, p.pocket_film_force
         )
-        f.pocket_smooth = p.pocket_friction * state.spin / np.sqrt(state.spin**2 + 10.0**2)
+        f.pocket_smooth = p.rubbing_in_pockets * state.spin / np.sqrt(state.spin**2 + 10.0**2)
         guiding = p.guidance == "roller"
         middle = p.low_radius + p.d_value / 2 - r_w
         outwards = dot(f.from_cage, f.pocket_outward[:, :, None]) - middle if guiding else np.zeros((p.rollers, n))

@@ -19,6 +19,7 @@ from bearing_sim.model.params import lubricate, pack
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.physics.traction import traction
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import scene_inputs
@@ -273,7 +274,7 @@ def test_an_eyring_film_is_never_stiffer_than_the_surfaces_creep(viscosity, load
     contacts = np.zeros((2, len(CONTACT), LANES))
     slides = np.geomspace(1e-12, 10.0, LANES)
     contacts[:, CONTACT.load], contacts[:, CONTACT.rolling], contacts[:, CONTACT.sliding] = load, rolling, slides
-    traction(contacts, lubrication.inner, lubrication.outer)
+    traction(contacts, lubrication.inner, lubrication.outer, FULL_FILMS)
     assert (contacts[0, CONTACT.d_sliding] <= 1.001 * stiffest).all()
     assert (contacts[0, CONTACT.force] <= 1.001 * stiffest * slides).all()
     if viscosity == 1.0 and load == 2e4:  # solid: all of the sliding is creep

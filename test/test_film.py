@@ -15,10 +15,10 @@ from bearing_sim.physics.film import (
     DOWSON_TOYODA,
     RollingResistance,
     films,
-    replenishment_rate,
     resist_rolling,
     resistance_constants,
 )
+from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml
 from bearing_sim.scene.lubricant import CustomOil
 
@@ -64,12 +64,12 @@ MINERAL = OilState(temperature=343.15, viscosity=0.0105, density=875.0, pressure
 MODULUS, RADII, LENGTH = 2.26e11, (4.6e-3, 6.5e-3), 11e-3  # of the contacts of a bearing of 50 mm bore
 
 
-def resisting(rolling, load, replenishment=0.0, heated=True):
-    """Rows of the contact of one roller with the inner raceway."""
+def resisting(rolling, load, left=1.0, heated=True):
+    """Rows of the contact of one roller with the inner raceway; ``left`` is what a starved inlet leaves."""
     contacts = np.zeros((2, len(CONTACT), LANES))
     contacts[:, CONTACT.rolling], contacts[:, CONTACT.load] = rolling, load
-    constants = (resistance_constants(MINERAL, MODULUS, radius, LENGTH, replenishment, heated) for radius in RADII)
-    resist_rolling(contacts, RollingResistance(1, *constants), False)
+    constants = (resistance_constants(MINERAL, MODULUS, radius, LENGTH, heated) for radius in RADII)
+    resist_rolling(contacts, RollingResistance(1, 1.0, *constants), FULL_FILMS._replace(resistance=left), False)
     return contacts[0, :, 0]
 
 
@@ -84,8 +84,7 @@ def test_a_loaded_contact_resists_rolling_by_goksem_and_hargreaves():
         cold, rel=3e-3
     )  # a thousandth is the load's fade-out, two the rigid regime's
     assert resisting(u, 1e3)[CONTACT.resistance] == pytest.approx(cold / (1 + 0.411483 * heat**0.707071), rel=3e-3)
-    starved = resisting(u, 1e3, replenishment=7e-3)[CONTACT.resistance]
-    assert starved == pytest.approx(resisting(u, 1e3)[CONTACT.resistance] * math.exp(-7e-3 * u), rel=1e-5)
+    assert resisting(u, 1e3, left=0.4)[CONTACT.resistance] == pytest.approx(0.4 * resisting(u, 1e3)[CONTACT.resistance], rel=1e-12)
     assert resisting(-u, 500.0)[CONTACT.resistance] == -resisting(u, 500.0)[CONTACT.resistance]
     assert resisting(u, 0.0)[CONTACT.resistance] == 0.0 == resisting(0.0, 500.0)[CONTACT.resistance]
 
@@ -109,19 +108,11 @@ def test_the_regimes_of_rolling_resistance_are_those_of_biboulet_and_houpert():
 @pytest.mark.parametrize("load", [2.0, 60.0, 300.0])
 def test_slopes_of_the_rolling_resistance_are_finite_differences(rolling, load):
     step = 1e-4
-    by_speed = resisting(rolling * (1 + step), load, 7e-3) - resisting(rolling * (1 - step), load, 7e-3)
-    by_load = resisting(rolling, load * (1 + step), 7e-3) - resisting(rolling, load * (1 - step), 7e-3)
-    found = resisting(rolling, load, 7e-3)
+    by_speed = resisting(rolling * (1 + step), load, 0.8) - resisting(rolling * (1 - step), load, 0.8)
+    by_load = resisting(rolling, load * (1 + step), 0.8) - resisting(rolling, load * (1 - step), 0.8)
+    found = resisting(rolling, load, 0.8)
     assert found[CONTACT.resistance_d_rolling] == pytest.approx(by_speed[CONTACT.resistance] / (2 * step * rolling), rel=1e-5)
     assert found[CONTACT.resistance_d_load] == pytest.approx(by_load[CONTACT.resistance] / (2 * step * load), rel=1e-5)
-
-
-def test_replenishment_of_a_rolling_contact_is_skfs_factor():
-    # NU 210 at 9000 rpm and 12 mm2/s: exp(-3e-8 x 12 x 9000 x 140 sqrt(5.1/80))
-    pitch, gamma = 70.5e-3, 11 / 70.5
-    u = math.pi / 60 * 9000 * pitch * (1 - gamma**2) / 2
-    rate = replenishment_rate(3e-8, 12e-6, pitch, gamma, 50e-3, 90e-3)
-    assert math.exp(-rate * u) == pytest.approx(math.exp(-3e-8 * 12 * 9000 * 140 * math.sqrt(5.1 / 80)), rel=1e-12)
 
 
 def test_rolling_resistance_makes_the_cage_slip_more():
@@ -215,18 +206,19 @@ def part_resists(rolling, load, part, gap):
     """Rows of an inner contact that bears on a part of its length."""
     contacts = np.zeros((2, len(CONTACT), LANES))
     contacts[:, CONTACT.rolling], contacts[:, CONTACT.load], contacts[:, CONTACT.part], contacts[:, CONTACT.gap] = rolling, load, part, gap
-    resist_rolling(contacts, RollingResistance(1, *(resistance_constants(MINERAL, MODULUS, radius, LENGTH, 7e-3) for radius in RADII)), True)
+    constants = (resistance_constants(MINERAL, MODULUS, radius, LENGTH) for radius in RADII)
+    resist_rolling(contacts, RollingResistance(1, 1.0, *constants), FULL_FILMS._replace(resistance=0.8), True)
     return contacts[0, :, 0]
 
 
 @pytest.mark.parametrize("rolling", [0.3, 3.0, 16.0])
 @pytest.mark.parametrize("load", [2.0, 60.0, 1000.0])
 def test_the_film_beside_the_part_that_bears_resists_between_nothing_and_a_whole_contact(rolling, load):
-    whole = resisting(rolling, load, 7e-3)[CONTACT.resistance]
+    whole = resisting(rolling, load, 0.8)[CONTACT.resistance]
     assert part_resists(rolling, load, 1.0, 0.0)[CONTACT.resistance] == pytest.approx(whole, rel=1e-12)
     assert part_resists(rolling, load, 0.5, 0.0)[CONTACT.resistance] == pytest.approx(whole, rel=0.3)
     far = part_resists(rolling, load, 0.5, 1e6)[CONTACT.resistance]  # a thousand kilometres away no film resists
-    alone = resisting(rolling, load / 0.5, 7e-3)[CONTACT.resistance] * 0.5
+    alone = resisting(rolling, load / 0.5, 0.8)[CONTACT.resistance] * 0.5
     assert far == pytest.approx(alone * (1 + 0.5 / load) / (1 + 1 / load), rel=1e-3)
     gaps = [part_resists(rolling, load, 0.5, gap)[CONTACT.resistance] for gap in (0.0, 1e-6, 3e-6, 1e-5, 1.0)]
     assert all(b <= a for a, b in zip(gaps, gaps[1:])) and gaps[0] <= whole * (1 + 1e-12)

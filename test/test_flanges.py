@@ -24,8 +24,9 @@ from bearing_sim.levels.steady.table_builder import solve_points
 from bearing_sim.model.params import pack
 from bearing_sim.numerics.linear_algebra import ARROW
 from bearing_sim.numerics.simd import by_roller as lanes_by_roller
-from bearing_sim.physics.flange import end_integrals, flange_friction, rim_corner, rub, shear
+from bearing_sim.physics.flange import end_integrals, rim_corner, rub, shear
 from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.mixed import film_state
 from bearing_sim.scene.flanges import flange_geometry
 
 NUP = ["bearing.flanges={inner: both, outer: both, end_clearance: 20 um}"]
@@ -92,12 +93,15 @@ def test_friction_derives_from_the_power_that_it_loses():
 
 
 def test_friction_falls_from_boundary_to_film_as_skf_weighs_it():
-    flanges = pack(load_scene("deng2017_table1", NUP)).flanges
+    params = pack(load_scene("deng2017_table1", [*NUP, "lubricant.mixed_friction=skf"]))
     mean = 0.5 * (50.027 + 73.4)
     for speed, viscosity in ((500.0, 12.0), (3000.0, 12.0), (20000.0, 2.0)):
         weight = math.exp(-2.6e-8 * (speed * viscosity) ** 1.4 * mean)
         expected = weight * 0.12 + (1 - weight) * 0.02
-        assert flange_friction(speed * math.pi / 30, 1e-6 * viscosity, flanges) == pytest.approx(expected, rel=1e-9)
+        assert params.flanges.film_friction == 0.02
+        given = params.flanges.film_friction, params.minimum_load, params.starvation, params.mixed
+        films = film_state(speed * math.pi / 30, 800.0, 1e-6 * viscosity, 0.05, *given)
+        assert films.flange_friction == pytest.approx(expected, rel=1e-9)
 
 
 def rough_slip_state(run, seed):
@@ -272,7 +276,7 @@ def test_jacobian_of_level_slip_has_the_flanges(options):
 def test_sizes_of_flanges_that_are_not_there_change_nothing():
     plainly, described = (
         simulation("slip", *options).advance(2e-3, samples=5)
-        for options in ([], ["bearing.flanges={inner: none, outer: none, boundary_friction: 0.3, film: 2 um}"])
+        for options in ([], ["bearing.flanges={inner: none, outer: none, film_friction: 0.3, film: 2 um}"])
     )
     assert plainly.tobytes() == described.tobytes() and (plainly["flange_power"] == 0.0).all()
 
@@ -349,16 +353,15 @@ def test_one_flange_carries_one_direction_and_two_carry_both():
 def test_an_axial_load_costs_a_moment_in_the_range_of_makers():
     """Harris and Kotzalas 2006, f_f F_a d_m with 0.002 to 0.006 for oil; SKF's 0.16 d_m^0.9 F_a mu_sl; the model's power over the shaft's speed."""
     for speed in (600, 3000):
-        options = ["operating.radial_load=3 kN", f"operating.shaft_speed={speed} rpm"]
+        options = ["operating.radial_load=3 kN", f"operating.shaft_speed={speed} rpm", "lubricant.mixed_friction=skf"]
         moments = []
         for load in (0, 300):
             scene, answer = settled(*NJ, f"operating.axial_load={load} N", *options)
             moments.append(answer[ANSWER.flange_power] / scene.operating.shaft_speed)
         by_load, mean = 1e3 * (moments[1] - moments[0]) / 300, 1e3 * 0.5 * (scene.bearing.bore_diameter + scene.bearing.outside_diameter)
         assert 0.002 < by_load / mean < 0.012
-        params = pack(scene)
-        friction = flange_friction(scene.operating.shaft_speed, 2.37e-6, params.flanges)
-        assert 0.3 < by_load / (0.16 * mean**0.9 * friction) < 3.0
+        weight = math.exp(-2.6e-8 * (speed * 2.37) ** 1.4 * mean)  # SKF's, of an oil of 2.37 mm2/s
+        assert 0.3 < by_load / (0.16 * mean**0.9 * (weight * 0.12 + (1 - weight) * 0.02)) < 3.0
 
 
 def test_estimated_sizes_follow_the_roller():

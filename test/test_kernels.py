@@ -20,6 +20,7 @@ from bearing_sim.physics.contact import CONTACT, line_contact_stiffness
 from bearing_sim.physics.drag import churning_force, cylinder_torque, end_face_torque
 from bearing_sim.physics.land import land_torque
 from bearing_sim.physics.load_balance import LOAD, balance_ring, squeezed_roller
+from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.physics.profile import STRAIGHT_PROFILE, profile_depth
 from bearing_sim.physics.raceway import TABLE_INTERVALS, contour_at, tabulated
 from bearing_sim.physics.rating_life import rating_life_revolutions
@@ -109,7 +110,7 @@ def traction_coefficient(slide_to_roll, load=1000.0, rolling=73.0, contact="inne
     lubrication = lubrication_with(tuple(overrides))
     contacts = np.zeros((2, len(CONTACT), LANES))
     contacts[:, CONTACT.rolling], contacts[:, CONTACT.sliding], contacts[:, CONTACT.load] = rolling, slide_to_roll * abs(rolling), load
-    traction(contacts, lubrication.inner, lubrication.outer)
+    traction(contacts, lubrication.inner, lubrication.outer, FULL_FILMS)
     return contacts[0 if contact == "inner" else 1, :, 1]
 
 
@@ -194,11 +195,32 @@ def test_ring_balance_is_found_at_any_load_clearance_and_speed(load, angle, clea
 
 
 def test_land_torque_is_petroffs_when_the_cage_is_central():
-    cage = pack(load_scene("deng2017_table1")).cage
-    torque, slope = land_torque(2000.0, 0.0, 0.0, 2e-3, cage)
+    cage, lubrication = pack(load_scene("deng2017_table1")).cage, lubrication_with(())._replace(viscosity=2e-3)
+    torque, slope = land_torque(2000.0, 0.0, 0.0, lubrication, cage)
     assert torque == pytest.approx(-2 * math.pi * 2e-3 * 2000 * 33.5e-3**3 * 5e-3 / 0.15e-3, rel=1e-12)
     assert slope == pytest.approx(torque / 2000)
-    assert land_torque(2000.0, 0.0, 0.8, 2e-3, cage)[0] == pytest.approx(torque / 0.6)
+    assert land_torque(2000.0, 0.0, 0.8, lubrication, cage)[0] == pytest.approx(torque / 0.6)
+
+
+@pytest.mark.parametrize(("speed", "regime"), [(50.0, "laminar"), (600.0, "vortices"), (2000.0, "turbulence")])
+@pytest.mark.parametrize("ring_speed", [0.0, 5000.0])
+def test_vortices_and_turbulence_multiply_the_torque_of_lands_that_are_full_of_oil(speed, regime, ring_speed):
+    cage = pack(load_scene("deng2017_table1", ["bearing.cage.land_vortices=true"])).cage
+    lubrication = lubrication_with(())
+    reynolds = lubrication.density * speed * 33.5e-3 * 0.15e-3 / lubrication.viscosity
+    factors = {
+        "laminar": 1.0,
+        "vortices": 1.3 * (reynolds * math.sqrt(0.15 / 33.5) / 41) ** 0.539,
+        "turbulence": 3.0 * (reynolds / 2500) ** 0.856,
+    }
+    assert max(factors, key=factors.get) == regime and lubrication.density == pytest.approx(893, abs=1)
+    for side in (1, -1):
+        cage_speed, step = ring_speed + side * speed, 1e-4 * speed
+        torque, slope = land_torque(cage_speed, ring_speed, 0.6, lubrication, cage)
+        laminar, _ = land_torque(cage_speed, ring_speed, 0.6, lubrication, cage._replace(land_vortices=False))
+        assert torque == pytest.approx(laminar * factors[regime], rel=1e-9) and torque * side < 0.0
+        ends = (land_torque(cage_speed + end * step, ring_speed, 0.6, lubrication, cage)[0] for end in (1, -1))
+        assert slope == pytest.approx((next(ends) - next(ends)) / (2 * step), rel=1e-6)
 
 
 def test_churning_of_a_roller_at_45000_rpm_is_half_rho_cd_area_speed_squared():

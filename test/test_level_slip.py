@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from cold_scenes import OTHERWISE, SCENES
 from reference_slip import Reference
 
 from bearing_sim import Inputs, Simulation, load_scene
@@ -12,6 +13,7 @@ from bearing_sim.levels.slip import model as slip
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.methods import advance
+from bearing_sim.numerics.linear_algebra import ARROW
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import IntegrationError, scene_inputs
@@ -58,6 +60,61 @@ def test_forces_of_pockets_with_play_are_those_of_the_plain_numpy_model(rpm, loa
         # both balance the ring to 1e-6 of the load, tractions follow from loads, and a pocket's force is the difference of large ones
         np.testing.assert_allclose(found, reference.pocket, rtol=0, atol=5e-5 * largest)
         np.testing.assert_allclose(rate, expected, rtol=0, atol=5e-5 * np.abs(expected).max())
+
+
+def cold_run(name, **changes):
+    """A run in cold oil, its plain NumPy model, with some fields changed, and rough states."""
+    cold = SCENES[name]
+    run = Simulation(cold.scene("slip"))
+    run.advance(0.02)
+    states = []
+    for seed in range(3):
+        random, state = np.random.default_rng(seed), run._state.copy()
+        state[slip_state.THETA] = random.uniform(0.0, 2.0 * math.pi)
+        state[slip_state.OMEGA] *= random.uniform(0.9, 1.0)
+        state[slip_state.SPIN :] *= random.uniform(0.98, 1.02, size=state.size - 2)
+        states.append(state)
+    return run, Reference(load=cold.load, **cold.fields(changes)), states
+
+
+def missed(run, reference, state):
+    """Largest differences of the rates from the plain model's, of the cage over the sum of its terms and of spins over the largest."""
+    rate, expected = np.zeros_like(state), reference.rate(run.time, state)
+    assert slip.rhs(run.time, state, run._model(run.inputs, 1.0), run._work, rate)
+    arms = reference.pitch_radius / (run._params.cage.inertia + reference.mass * reference.rollers * reference.pitch_radius**2)
+    largest = max(abs(expected[slip_state.OMEGA]), arms * np.abs(reference.pocket_without_play).sum())
+    spins, found = expected[slip_state.SPIN :], rate[slip_state.SPIN :]
+    return abs(rate[slip_state.OMEGA] - expected[slip_state.OMEGA]) / largest, np.abs(found - spins).max() / np.abs(spins).max()
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_rates_with_starved_inlets_asperities_and_vortices_are_those_of_the_plain_numpy_model(name):
+    run, reference, states = cold_run(name)
+    for state in states:
+        assert max(missed(run, reference, state)) < 3e-4  # the level balances its ring to 1e-4 of the load
+
+
+@pytest.mark.parametrize("part", OTHERWISE)
+def test_the_plain_numpy_model_tells_what_films_and_asperities_do(part):
+    name, changes = OTHERWISE[part]
+    run, reference, states = cold_run(name, **changes)
+    assert max(max(missed(run, reference, state)) for state in states) > 1e-3
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_jacobian_with_starved_inlets_and_asperities_is_that_of_differences_of_the_plain_numpy_model(name):
+    run, reference, states = cold_run(name)
+    for state in states[:2]:
+        assert slip.rhs_and_jacobian(run.time, state, run._model(run.inputs, 1.0), run._work, np.zeros_like(state))
+        rows = run._work.jacobian.rows.copy()
+        found, expected = rows[[ARROW.diagonal, ARROW.row]], np.zeros((2, reference.rollers))
+        for j in range(reference.rollers):
+            step = np.zeros_like(state)
+            step[slip_state.SPIN + j] = 1e-4 * abs(state[slip_state.SPIN + j])
+            difference = (reference.rate(run.time, state + step) - reference.rate(run.time, state - step)) / (2 * step.max())
+            expected[:, j] = difference[slip_state.SPIN + j], difference[slip_state.OMEGA]
+        # the matrix simplifies how pockets with play share their forces, which brake spins by friction
+        assert (np.abs(found - expected).max(1) < [1e-2, 5e-3] * np.abs(expected).max(1)).all()
 
 
 @pytest.mark.parametrize(

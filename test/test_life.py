@@ -30,10 +30,12 @@ from bearing_sim.physics.rating_life import (
     reliability_factor,
     viscosity_ratio,
 )
+from bearing_sim.physics.starvation import Starvation
 from bearing_sim.scene.ratings import fatigue_limit, static_rating
 from bearing_sim.studies.rating import life_report
 
 PITCH = 62.75e-3
+FULL_INLETS = Starvation(0.0, True)
 OIL = OilFactors(1.0, math.nan)  # of lives that no oil modifies
 
 
@@ -75,7 +77,7 @@ def test_no_load_lasts_for_ever():
     assert lamina_life(np.zeros((18, 20)), np.zeros((18, 20)), life) == math.inf
     cleaned = pack(deng("life.a_iso=filtered_15_12")).life
     for rated, speed in ((life, 4712.0), (cleaned, 4712.0), (cleaned, 0.0)):
-        oil = oil_factors(speed, 2.4e-6, PITCH, rated)
+        oil = oil_factors(speed, 2.4e-6, PITCH, FULL_INLETS, rated)
         lives = rate_lives(0.0, equivalent_loads(np.zeros((2, 4)), oil, rated), oil, rated)
         assert {lives.basic, lives.modified, lives.l10, lives.lnm, lives.l10r, lives.lnmr, lives.static_safety} == {math.inf}
         assert lives.equivalent_load == lives.reference_load == 0.0
@@ -365,7 +367,7 @@ def test_modified_lives_by_hand(name):
     slope, loss = CLEANLINESS[cleanliness]
     rated = pack(deng("life.method=iso281", "life.a_iso=bath_13_10")).life
     rated = rated._replace(dynamic_rating=1e3 * dynamic, fatigue_limit=1e3 * limit, cleanliness_slope=slope, cleanliness_loss=loss)
-    oil = oil_factors(rpm * math.pi / 30, 1e-6 * viscosity, 1e-3 * pitch, rated)
+    oil = oil_factors(rpm * math.pi / 30, 1e-6 * viscosity, 1e-3 * pitch, FULL_INLETS, rated)
     lives = rate_lives(1e3 * load, EquivalentLoads(0.0, 0.0, 0.0, 0.0, 1.0), oil, rated)
     assert lives.viscosity_ratio == pytest.approx(kappa, rel=1e-3) and lives.contamination_factor == pytest.approx(e_c, rel=2e-3)
     assert lives.modification_factor == pytest.approx(a_iso, rel=5e-3) and lives.modified / (60 * rpm) == pytest.approx(hours, rel=5e-3)

@@ -13,6 +13,7 @@ from bearing_sim.model.thermal_network import oil_flow
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.drag import bath_moment, mixture_density, swept_fraction
+from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.physics.rating_life import cleanliness
 from bearing_sim.physics.traction import thermal_eyring_constants, traction
 from bearing_sim.scene.loader import catalog_names, scene_from_yaml, scene_to_yaml
@@ -212,7 +213,7 @@ def coefficient(name, celsius, slide_to_roll, pressure=0.8e9, rolling=2.5):
     load = pressure**2 * 32 * size * size / (math.pi * modulus)
     contacts = np.zeros((2, len(CONTACT), LANES))
     contacts[:, CONTACT.load], contacts[:, CONTACT.rolling], contacts[:, CONTACT.sliding] = load, rolling, slide_to_roll * rolling
-    traction(contacts, constants, constants)
+    traction(contacts, constants, constants, FULL_FILMS)
     return contacts[0, CONTACT.force, 0] / load
 
 
@@ -265,7 +266,7 @@ def test_each_supply_has_its_drag_its_replenishment_and_its_flow():
     assert {law: each.mixture_density > 0 for law, each in found.items()} == {law: law == "oil_jet" for law in laws}
     assert found["circulating"].bath == pytest.approx([2 * each for each in found["oil_bath"].bath]), "SKF: a jet drags twice as much as a low bath"
     assert all(tuple(found[law].bath) == (0.0, 0.0) for law in ("oil_jet", "oil_air", "grease"))
-    assert {law: replenishment(each.lubricant, params) for law, each in scenes.items()} == {
+    assert {law: replenishment(each.lubricant, params.rollers.radius) for law, each in scenes.items()} == {
         law: 6e-8 if law in ("oil_air", "grease") else 3e-8 for law in laws
     }
     assert {law for law, each in scenes.items() if oil_flow(each) > 0} == {"oil_jet", "circulating"}

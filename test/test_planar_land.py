@@ -30,7 +30,7 @@ GUIDANCES = pytest.mark.parametrize("guidance", [[], INNER], ids=["outer ring", 
 def film_at(run, state):
     """Force and torque of the film, and their slopes, at a state."""
     cage = run._params.cage
-    return land_film(place_in_lands(state, SHAFT_SPEED, cage), run._params.variants.land_squeeze, cage, run._lubrication.viscosity)
+    return land_film(place_in_lands(state, SHAFT_SPEED, cage), run._params.variants.land_squeeze, cage, run._lubrication)
 
 
 def film_of_reynolds(cage, viscosity, place, velocity, omega):
@@ -107,7 +107,7 @@ def test_film_of_deng_is_that_of_a_centre_at_rest(guidance):
 
 
 @GUIDANCES
-@pytest.mark.parametrize("overrides", [[], ["bearing.cage.land_squeeze=false"]])
+@pytest.mark.parametrize("overrides", [[], ["bearing.cage.land_squeeze=false"], ["bearing.cage.land_vortices=true"]])
 @pytest.mark.parametrize("eps", [0.0, 0.4, 0.97, 0.995])
 def test_slopes_of_the_film_are_those_of_differences(eps, overrides, guidance):
     run = simulation(*overrides, *guidance)
@@ -123,6 +123,19 @@ def test_slopes_of_the_film_are_those_of_differences(eps, overrides, guidance):
         down[index] -= step
         difference = (np.array(film_at(run, up)) - np.array(film_at(run, down)))[:3] / (2 * step)
         assert film[3 + column :: 5][:3] == pytest.approx(difference, abs=1e-5 * scale[column])
+
+
+@GUIDANCES
+@pytest.mark.parametrize("speed", [600.0, 1850.0])
+def test_vortices_multiply_the_torque_of_the_film_alone_by_that_of_a_concentric_land(speed, guidance):
+    laminar, whirling = simulation(*guidance), simulation("bearing.cage.land_vortices=true", *guidance)
+    cage, oil = whirling._params.cage, whirling._lubrication
+    turning = abs(cage.guidance.turning * SHAFT_SPEED - speed)
+    reynolds = oil.density * turning * cage.guide_radius * 0.15e-3 / oil.viscosity
+    factor = max(1.0, 1.3 * (reynolds * math.sqrt(0.15e-3 / cage.guide_radius) / 41) ** 0.539, 3.0 * (reynolds / 2500) ** 0.856)
+    films = [film_at(run, cage_state(run, np.array([0.05e-3, 0.07e-3]), np.array([0.03, -0.02]), speed)) for run in (laminar, whirling)]
+    assert factor > 1.5 and films[1][2] == pytest.approx(factor * films[0][2], rel=1e-9)
+    assert films[1][:2] == films[0][:2]
 
 
 def power_at(run, state):

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from cold_scenes import OTHERWISE, SCENES
 from complex_step import assert_blocks_agree, complex_step_jacobian
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -133,38 +134,56 @@ VARIANTS = {
 }
 
 
-@pytest.mark.parametrize("variant", VARIANTS)
+def pair(variant, **changes):
+    """A run of a variant, or of a scene with starved inlets, asperities and vortices, and its plain model with some fields changed."""
+    if variant in VARIANTS:
+        fields, overrides = VARIANTS[variant]
+        return simulation(*overrides), Reference(**fields)
+    cold = SCENES[variant]
+    run = Simulation(cold.scene("planar"))
+    ring_mass = run.scene.bearing.inner_raceway.ring_mass + 0.5  # of the shaft
+    return run, Reference(load=(cold.load, 0.0), ring_mass=ring_mass, **cold.fields(changes))
+
+
+def largest_errors(run, reference, state):
+    """Largest difference of each kind of rate from the plain model's, over the largest rate of that kind."""
+    rate, which = np.zeros_like(state), kinds(reference.rollers)
+    assert planar.rhs(0.0, state, run._model(run.inputs, 1.0), run._work, rate)
+    forces = reference.forces(plain(state))
+    expected, pocket = rate_of(reference, state, forces), np.abs(forces.pocket).max()
+    # what ring and cage feel is a sum over rollers: its terms, not what is left of them, say what round-off may be
+    terms = {3: forces.inner.max() / reference.ring_mass, 4: pocket / reference.cage_mass}
+    terms[5] = pocket * reference.pitch_radius / reference.cage_inertia
+    largest = np.array([max(np.abs(expected[which == kind]).max(), terms.get(kind, 0.0)) for kind in range(11)])
+    return np.array([np.abs(rate - expected)[which == kind].max() for kind in range(11)]) / largest
+
+
+@pytest.mark.parametrize("variant", [*VARIANTS, *SCENES])
 def test_right_hand_side_is_that_of_the_plain_numpy_model(variant):
-    fields, overrides = VARIANTS[variant]
-    reference, run = Reference(**fields), simulation(*overrides)
-    model, which = run._model(run.inputs, 1.0), kinds(run._params.rollers.count)
-    rate = np.zeros_like(run._state)
+    run, reference = pair(variant)
 
     @settings(max_examples=40)
     @given(st.integers(0, 2**32 - 1), st.sampled_from([0.03, 0.3, 1.0]))
     def follows(seed, scale):
-        state = rough_state(run, seed, scale)
-        assert planar.rhs(0.0, state, model, run._work, rate)
-        forces = reference.forces(plain(state))
-        expected, pocket = rate_of(reference, state, forces), np.abs(forces.pocket).max()
-        # what ring and cage feel is a sum over rollers: its terms, not what is left of them, say what round-off may be
-        terms = {3: forces.inner.max() / reference.ring_mass, 4: pocket / reference.cage_mass}
-        terms[5] = pocket * reference.pitch_radius / reference.cage_inertia
-        for kind in range(11):
-            largest = max(np.abs(expected[which == kind]).max(), terms.get(kind, 0.0))
-            error = np.abs(rate - expected)[which == kind].max()
-            assert error <= 1e-9 * largest, (kind, error / largest)
+        errors = largest_errors(run, reference, rough_state(run, seed, scale))
+        assert errors.max() <= 1e-9, errors
 
     follows()
 
 
-@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("part", OTHERWISE)
+def test_the_plain_numpy_model_tells_what_films_and_asperities_do(part):
+    variant, changes = OTHERWISE[part]
+    run, reference = pair(variant, **changes)
+    assert max(largest_errors(run, reference, rough_state(run, seed, 0.3)).max() for seed in range(3)) > 1e-5
+
+
+@pytest.mark.parametrize("variant", [*VARIANTS, *SCENES])
 @pytest.mark.parametrize("seed", range(3))
 def test_jacobian_is_that_of_a_complex_step_through_the_plain_numpy_model(variant, seed):
-    fields, overrides = VARIANTS[variant]
-    run = simulation(*overrides)
+    run, reference = pair(variant)
     state = rough_state(run, seed, 0.3)
-    found, expected = dense_jacobian(run, state), complex_step_jacobian(partial(rate_of, Reference(**fields)), state)
+    found, expected = dense_jacobian(run, state), complex_step_jacobian(partial(rate_of, reference), state)
     assert_blocks_agree(found, expected, kinds(run._params.rollers.count))
 
 

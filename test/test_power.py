@@ -117,15 +117,18 @@ def planar_gap(run, state):
 
 INNER = ["bearing.cage.guidance=inner_ring", "bearing.cage.outer_radius=33.35 mm"]
 ROLLER_GUIDED = ["bearing.cage.guidance=roller", "bearing.cage.outer_radius=33.35 mm"]
+# kappa 0.9 at 120 degC: half of the load on asperities; vortices in the lands; skew and hysteresis although no oil is pumped
+MIXED = ["lubricant.mixed_friction={law: film_ratio, film_ratio_factor: 0.6}", "lubricant.starvation=skf", "bearing.cage.land_vortices=true"]
 
 
-@pytest.mark.parametrize("guidance", [[], INNER, ROLLER_GUIDED], ids=["outer ring", "inner ring", "roller"])
+@pytest.mark.parametrize("guidance", [[], INNER, ROLLER_GUIDED, MIXED], ids=["outer ring", "inner ring", "roller", "asperities"])
 @pytest.mark.parametrize("seed", range(12))
 def test_every_force_of_level_planar_stands_in_the_books(seed, guidance):
     run = simulation("planar", *guidance)
     gap, largest, powers = planar_gap(run, rough_planar_state(run, seed))
-    assert abs(gap) < 1e-8 * largest  # of finite differences; the powers go from 100 W to 10 MW
-    absent = (*ABSENT, "land") if guidance == ROLLER_GUIDED else ABSENT
+    # of finite differences, the powers go from 100 W to 10 MW; and resistance to rolling pushes rollers as if they were on the pitch circle
+    assert abs(gap) < 1e-8 * largest + 2e-4 * (powers.inner_rolling + powers.outer_rolling)
+    absent = (*ABSENT, "land") if guidance == ROLLER_GUIDED else ABSENT[2:] if guidance == MIXED else ABSENT
     assert all((lost == 0.0) if name in absent else (lost > 0.0) for name, lost in powers._asdict().items() if name != "shaft")
 
 
@@ -194,10 +197,14 @@ OPTIONS = (
     INNER,
     ["lubricant.rolling_resistance=hydrodynamic", "bearing.dimensions_at=cold", "lubricant.traction.law=eyring"],
     ["lubricant.supply=oil_bath", "bearing.seals=skf"],
+    MIXED,
+    [*MIXED, "lubricant.rolling_resistance=hydrodynamic", "lubricant.traction.law=eyring", "bearing.roller.crown=iso_log"],
 )
 
 
-@pytest.mark.parametrize("options", OPTIONS, ids=["stock", "inner ring", "resisted and grown", "in a bath"])
+@pytest.mark.parametrize(
+    "options", OPTIONS, ids=["stock", "inner ring", "resisted and grown", "in a bath", "asperities", "asperities and starved films"]
+)
 @pytest.mark.parametrize("seed", range(6))
 def test_every_force_of_level_slip_stands_in_the_books(seed, options):
     run = simulation("slip", *options)
@@ -214,7 +221,7 @@ def test_every_force_of_level_slip_stands_in_the_books(seed, options):
     lever = loads[LOAD_ROW.outer] * slope + loads[LOAD_ROW.inner] * (y * loads[LOAD_ROW.sine] - z * loads[LOAD_ROW.cosine])
     leaning = state[1] * (lever - 2 * mass * state[1] ** 2 * slope * radius).sum()
     assert powers.shaft + leaning - sum(powers[1:]) == pytest.approx(stored, abs=1e-9 * sum(map(abs, powers)))
-    resisted, sealed = "lubricant.rolling_resistance=hydrodynamic" in options, "bearing.seals=skf" in options
+    resisted, sealed = "lubricant.rolling_resistance=hydrodynamic" in options or MIXED[0] in options, "bearing.seals=skf" in options
     absent = {"damping", "flange", "support", *(() if resisted else ("inner_rolling", "outer_rolling")), *(() if sealed else ("seal",))}
     assert all((lost == 0.0) if name in absent else (lost > 0.0) for name, lost in powers._asdict().items() if name != "shaft")
 

@@ -19,6 +19,7 @@ from bearing_sim.numerics.simd import LANES, load, new_rows, store
 from bearing_sim.physics.contact import CONTACT, ContactDamping, line_contact_stiffness
 from bearing_sim.physics.lamina import ROLLER_ROW
 from bearing_sim.physics.load_balance import LOAD, squeezed_roller
+from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.physics.profile import concentrate, damped_profile_contact, new_profile, profile_depth, profile_force, spread_tractions
 from bearing_sim.physics.traction import traction
 from bearing_sim.scene.crown import IsoLogCrown, NoCrown, StraightArcCrown, TableCrown, crown_drops
@@ -153,14 +154,14 @@ def test_traction_is_that_of_all_slices(oil, force):
     slices = STIFFNESS * np.maximum(depth - drops("logarithmic", 4000), 0.0) ** (10 / 9)
     for slide in (0.02, 0.2, 4.0):
         contacts, each = rub(slices, slide)
-        traction(contacts, films.inner, films.outer)
+        traction(contacts, films.inner, films.outer, FULL_FILMS)
         expected = float(each[:, CONTACT.force].ravel()[: len(slices)].mean())
         found = []
         for changed in (force, force * 1.001, force * 0.999):
             contacts, whole = rub([changed], slide)
             whole[:, CONTACT.penetration] = profile_depth(changed, STIFFNESS, shape)
             concentrate(STIFFNESS, shape, contacts)
-            traction(contacts, films.inner, films.outer)
+            traction(contacts, films.inner, films.outer, FULL_FILMS)
             spread_tractions(contacts)
             assert whole[0, CONTACT.load, 0] == changed
             found.append(whole[0, [CONTACT.force, CONTACT.d_load], 0].copy())

@@ -19,6 +19,7 @@ from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import line_contact_stiffness
 from bearing_sim.physics.drag import churning_force, cylinder_torque
 from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.physics.rating_life import ring_ratings
 from bearing_sim.physics.traction import CONTACT, traction
 from bearing_sim.scene.ratings import load_rating
@@ -90,7 +91,7 @@ DIMENSIONS = (PARAMS.rollers.count, 2 * PARAMS.rollers.radius, PARAMS.rollers.le
 def traction_coefficient(slide_to_roll):
     contacts = np.zeros((2, len(CONTACT), LANES))
     contacts[:, CONTACT.load], contacts[:, CONTACT.rolling], contacts[:, CONTACT.sliding] = 1000.0, 73.0, 73.0 * slide_to_roll
-    traction(contacts, LUBRICATION.inner, LUBRICATION.outer)
+    traction(contacts, LUBRICATION.inner, LUBRICATION.outer, FULL_FILMS)
     return contacts[0, CONTACT.force, 0] / 1000.0
 
 

@@ -14,6 +14,7 @@ from bearing_sim.model.oil import oil_at
 from bearing_sim.model.params import lubricate, pack
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT, ROLLING_SPEED_FLOOR
+from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.physics.traction import _MOST_CORRECTIONS, STEP, _shear, kragelskii_coefficients, traction
 
 LAWS = {
@@ -35,11 +36,11 @@ def lubricated(overrides):
 LUBRICATIONS = {name: lubricated(overrides) for name, overrides in LAWS.items()}
 
 
-def contact(name, sliding, load=1000.0, rolling=73.0, ring=0):
+def contact(name, sliding, load=1000.0, rolling=73.0, ring=0, films=FULL_FILMS):
     contacts = np.zeros((2, len(CONTACT), LANES))
     contacts[:, CONTACT.rolling], contacts[:, CONTACT.sliding], contacts[:, CONTACT.load] = rolling, sliding, load
     lubrication = LUBRICATIONS[name][2]
-    traction(contacts, lubrication.inner, lubrication.outer)
+    traction(contacts, lubrication.inner, lubrication.outer, films)
     return contacts[ring, :, 1]
 
 
@@ -99,11 +100,12 @@ def test_slopes_of_every_law_are_finite_differences(name, sliding, load, rolling
 
 @pytest.mark.parametrize("name", ["eyring", "eyring, thick oil", "eyring, cold oil"])
 @pytest.mark.parametrize("ring", [0, 1])
+@pytest.mark.parametrize("left", [1.0, 0.6])  # of the film, by a starved inlet
 @pytest.mark.parametrize(
     ("sliding", "load", "rolling"),
     [(0.05, 1e3, 73.0), (1.0, 1e3, 73.0), (20.0, 300.0, 60.0), (5.0, 2e3, 10.0), (60.0, 20.0, 90.0), (4e-3, 9e4, 1.0), (2e-4, 5e4, 0.01)],
 )
-def test_eyring_traction_solves_its_equations(name, ring, sliding, load, rolling):
+def test_eyring_traction_solves_its_equations(name, ring, left, sliding, load, rolling):
     scene, params, _ = LUBRICATIONS[name]
     oil = oil_at(scene.lubricant.oil, scene.lubricant.temperature)
     raceways, length = params.raceways, params.rollers.length
@@ -112,7 +114,7 @@ def test_eyring_traction_solves_its_equations(name, ring, sliding, load, rolling
     half_width = math.sqrt(8 * load / length * radius / (math.pi * modulus))
     pressure, rolled = load / (2 * half_width * length), math.hypot(rolling, ROLLING_SPEED_FLOOR)
     film = radius * 3.06 * (eta * rolled / (modulus * radius)) ** 0.69 * (alpha * modulus) ** 0.56 * (load / (modulus * radius * length)) ** -0.10
-    film /= 1 + 0.1 * (1 + 14.8 * math.hypot(sliding / rolled, 0.01) ** 0.83) * (eta * beta * rolled**2 / k) ** 0.64
+    film *= left / (1 + 0.1 * (1 + 14.8 * math.hypot(sliding / rolled, 0.01) ** 0.83) * (eta * beta * rolled**2 / k) ** 0.64)
     z = alpha / (5.1e-9 * (math.log(eta) + 9.67))
     steep = (1 + 5.1e-9 * pressure) ** z  # by which Roelands' law makes both ln eta and its fall with temperature grow
     log_thick = math.log(eta) + (math.log(eta) + 9.67) * (steep - 1)
@@ -124,7 +126,8 @@ def test_eyring_traction_solves_its_equations(name, ring, sliding, load, rolling
 
     stress = brentq(residual, 0, math.pi * modulus * sliding / (8 * rolled), xtol=1e-9, rtol=1e-14)
     expected = 0.075 * math.tanh(stress / (0.075 * pressure)) * load
-    assert contact(name, sliding, load, rolling, ring)[CONTACT.force] == pytest.approx(expected, rel=1e-7)
+    films = FULL_FILMS._replace(log_film=math.log(left))
+    assert contact(name, sliding, load, rolling, ring, films)[CONTACT.force] == pytest.approx(expected, rel=1e-7)
 
 
 def test_the_shear_stress_of_a_film_is_found_by_few_corrections_whatever_heats_it_and_creeps():

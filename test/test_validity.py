@@ -154,6 +154,7 @@ CASES = {
     ),
     "grease_speed": (("loads", "motor", GREASE, "lubricant.grease.speed_factor=200000"), ("loads", "motor", GREASE)),
     "grease_temperature": (("loads", "motor", GREASE, "lubricant.temperature=-30 degC"), ("loads", "motor", GREASE)),
+    "thin_film": (("loads", "motor", WATERY), ("loads", "motor", WATERY, "lubricant.temperature=40 degC")),
     "starved_film": (("run", "motor", GREASE, "lubricant.temperature=20 degC"), ("run", "motor", GREASE)),
     "churning_reynolds": (
         ("run", "motor", *VG_320, "lubricant.temperature=0 degC", "operating.shaft_speed=300 rpm", "lubricant.mixture_fraction=0.01"),
@@ -531,6 +532,16 @@ def test_pressure_and_equivalent_load_are_those_of_a_hand_calculation(scenes):
     for reference in (3e3, 9e3):  # the radial load is 5 kN
         sample["reference_load"] = reference
         assert Conditions(scene, sample).equivalent_load[0] == max(reference, 5e3)
+
+
+def test_a_thin_film_is_told_of_a_running_shaft_and_not_while_it_starts(scenes):
+    scene = load_scene(scenes["motor"])  # runs at 3000 rpm
+    block = block_of(scene, [0.0, 1.0, 2.0, 3.0], [1e3] * 4)
+    block["viscosity_ratio"], block["shaft_speed"] = 0.05, np.array([0.0, 60.0, -2990.0, 3000.0]) * math.pi / 30
+    judged = BY_NAME["thin_film"].value(Conditions(scene, block))
+    np.testing.assert_array_equal(judged, [np.nan, np.nan, 0.05, 0.05])
+    slow = load_scene(scenes["motor"], ["operating.shaft_speed=60 rpm"])  # and one that is meant to turn slowly is judged there
+    assert BY_NAME["thin_film"].value(Conditions(slow, block))[1] == 0.05
 
 
 def test_the_film_ratio_and_the_limits_see_the_same_contact_speeds(scenes):

@@ -34,6 +34,7 @@ def temperature_rows(report) -> list[tuple[str, str]]:
 
 def life_rows(scene, report) -> list[tuple[str, str]]:
     """Return rows of a table from `bearing_sim.studies.rating.report_of`."""
+    from bearing_sim.model.films import Films
     from bearing_sim.studies.rating import loads_text
 
     basic, modified = scene.life.symbols
@@ -45,6 +46,8 @@ def life_rows(scene, report) -> list[tuple[str, str]]:
     film = f"film {report['film_um']:.3g} um" if math.isfinite(report["film_um"]) else "no film"
     if report["film_ratio"] is not None:
         film += f", lambda {report['film_ratio']:.3g}"
+    if report.get("films") and (text := Films(**report["films"]).text):
+        film += f"; {text}"
     return [
         *rows,
         ("by ISO 281", f"L10 {hours(report['l10_hours'])}, L_nm {hours(report['lnm_hours'])}; P {report['equivalent_load']:.4g} N"),

@@ -37,6 +37,10 @@ _STUDIES = {
     "friction": Entry("study:friction", "Frictional moment and thermal reference speed against makers' models."),
     "scenes": Entry("study:scenes", "Whether random scenes of catalogue bearings settle, level by level."),
     "findings": Entry("study:findings", "Published findings about slip, and whether the model finds the same."),
+    "cold-oil": Entry("cold_oil:cold_oil", "Slip and skid load over load, temperature and supply of oil, from rolling and from a skid."),
+    "cold-start": Entry(
+        "cold_start:cold_start", "A cold start over time: slip, films, temperatures and sliding power while idling and as the load comes."
+    ),
     "estimator": Entry("estimator_study:estimator", "Whether the calibration of a running model is right about machines with hidden fields."),
     "catalog": Entry("study:catalog_rules", "Rules for the inside of catalogue bearings, and their errors."),
     "extremes": Entry("study:extremes", "Map which scenes finish, are step-limited, are refused or fail."),

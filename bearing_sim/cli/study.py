@@ -469,7 +469,8 @@ def friction(scene_name, overrides, series, table, as_json):
 
     With heat.law network SCENE is in thermal equilibrium, as in `bearing-sim run`; where there is none, the command fails and says why.
     Catalogue bearings stand in an oil bath under the conditions of ISO 15312, from 0.02 to 0.2 C_0 and from 500 rpm to the reference speed;
-    a second table has the speeds at which friction reaches the standard's heat flow, against those that makers print.
+    a second table has the speeds at which friction reaches the standard's heat flow, against those that makers print, and a third one rolling and
+    sliding against SKF's friction model, from mixed friction to thick films.
     """
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError
@@ -496,7 +497,7 @@ def friction(scene_name, overrides, series, table, as_json):
         return
     rows = (
         ("model", found.model),
-        ("model without rolling resistance", found.without_resistance),
+        ("model without hydrodynamic rolling resistance", found.without_resistance),
         ("M_0 + M_1 with f_0 and f_1", found.simple),
         ("SKF's friction model", found.skf),
         ("coefficient 0.0011", found.coefficient),
@@ -507,19 +508,25 @@ def friction(scene_name, overrides, series, table, as_json):
 
 
 def _friction_of_catalogue(overrides, table, as_json) -> None:
-    from bearing_sim.studies.friction import moment_table, thermal_speeds
+    from bearing_sim.studies.friction import FILM_BEARINGS, film_rows, moment_table, part_ratios, thermal_speeds
 
     found, speeds = moment_table(overrides=overrides), thermal_speeds(overrides=overrides)
-    rows = [{**one._asdict(), "simple": one.simple, "ratio": one.ratio, "reason": one.reason} for one in found]
+    rows = [{**one._asdict(), "simple": one.simple, "ratio": one.ratio} for one in found]
     if table is not None:
         with as_file_error():
             write_csv(table, rows)
-    medians = _medians(found, speeds)
+    with progress_bar("film ratios", len(FILM_BEARINGS)) as show:
+        ratios = part_ratios(lambda name: show(FILM_BEARINGS.index(name)), overrides, FILM_BEARINGS)
+    films, medians = film_rows(ratios), _medians(found, speeds)
     if as_json:
-        print_json({"moments": rows, "thermal_speeds": [one._asdict() for one in speeds], "medians": medians})
+        tables = {"moments": rows, "thermal_speeds": [one._asdict() for one in speeds], "part_ratios": [one._asdict() for one in ratios]}
+        spreads = ("whole", "rolling", "sliding", "slip")
+        by_films = [{**one._asdict(), **{name: getattr(one, name)._asdict() for name in spreads}} for one in films]
+        print_json({**tables, "films": by_films, "medians": medians})
         return
     _print_moments(found)
     _print_thermal_speeds(speeds)
+    _print_films(films)
     print_table("medians", [(name, f"{value:.2f}") for name, value in medians.items()])
 
 
@@ -550,8 +557,6 @@ def _print_moments(found) -> None:
     ]
     columns = ("bearing", "P/C_0", "rpm", "model, N mm", "rolling", "sliding", "drag", "pockets", "flanges", "M_0", "M_1", "SKF", "ratio")
     print_rows("frictional moment, and its ratio to M_0 + M_1", columns, rows, words=("bearing",))
-    far = [(one.bearing, f"{one.load:.2f}", f"{one.speed:.4g}", f"{one.ratio:.2f}", one.reason) for one in found if one.reason]
-    print_rows("ratios beyond a factor of 2", ("bearing", "P/C_0", "rpm", "ratio", "why"), far, words=("bearing", "why"))
 
 
 def _print_thermal_speeds(speeds) -> None:
@@ -564,6 +569,15 @@ def _print_thermal_speeds(speeds) -> None:
     ]
     columns = ("bearing", "model", "M_0 + M_1", "SKF's friction model", "NKE prints", "SKF prints", "model/NKE", "model/SKF")
     print_rows("thermal reference speed, rpm (ISO 15312)", columns, rows, words=("bearing",))
+
+
+def _print_films(films) -> None:
+    def shown(spread, scale=1.0, digits=".2f"):
+        return f"{scale * spread.median:{digits}} ({scale * spread.low:{digits}} to {scale * spread.high:{digits}})"
+
+    rows = [(f"{one.kappa:g}", *(shown(each) for each in (one.whole, one.rolling, one.sliding)), shown(one.slip, 100.0, ".2g")) for one in films]
+    title = f"friction over SKF's friction model by film ratio: median (5 to 95 %) of {films[0].count} points, loads from 0.02 to 0.3 C"
+    print_rows(title, ("kappa", "whole moment", "rolling over M_rr", "sliding over M_sl", "cage slip, %"), rows)
 
 
 @click.command("scenes", cls=WritingCommand)

@@ -11,21 +11,23 @@ from bearing_sim.model.oil import oil_at, pressure_index, shear_strength
 from bearing_sim.model.running_clearance import mounted, running_play, uniform
 from bearing_sim.physics.contact import ContactDamping, iso_contact_stiffness, line_contact_stiffness
 from bearing_sim.physics.drag import LARGEST_FRACTION, Bath, bath_drag, swept_fraction
-from bearing_sim.physics.film import RollingResistance, replenishment_rate, resistance_constants
-from bearing_sim.physics.flange import NO_FACE, Flanges, corner_stiffness, film_constant, flange_face
+from bearing_sim.physics.film import RollingResistance, resistance_constants
+from bearing_sim.physics.flange import NO_FACE, Flanges, corner_stiffness, flange_face, rim_corner
 from bearing_sim.physics.growth import Growth, Mounted, Temperatures, growth_at
 from bearing_sim.physics.lamina_life import Laminae, new_laminae
+from bearing_sim.physics.mixed import FILM_RATIO, NONE, SKF, MixedFriction, hysteresis_constant, skf_constant
 from bearing_sim.physics.profile import Profile, new_profile
 from bearing_sim.physics.raceway import tabulated
 from bearing_sim.physics.rating_life import METHODS, cleanliness, reliability_factor, ring_ratings
 from bearing_sim.physics.squeeze_film import SqueezeFilm, new_squeeze_film
+from bearing_sim.physics.starvation import MinimumLoad, Starvation, starvation_rate
 from bearing_sim.physics.traction import TractionConstants, constant_constants, kragelskii_constants, oil_4109_constants, thermal_eyring_constants
 from bearing_sim.scene.bearing import Roller
 from bearing_sim.scene.contour import outer_contour
 from bearing_sim.scene.crown import IsoLogCrown, NoCrown, StraightArcCrown, crown_drops, log_scale, slice_middles
 from bearing_sim.scene.flanges import flange_geometry
 from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, HydrodynamicRollingResistance, KragelskiiTraction
-from bearing_sim.scene.ratings import rate
+from bearing_sim.scene.ratings import minimum_load_law, rate
 from bearing_sim.scene.scene import Bearing, Lubricant, Scene
 from bearing_sim.scene.support import settled_support
 
@@ -70,7 +72,7 @@ class CageBody(NamedTuple):
 
     inertia: float  # about the shaft axis [kg m^2]
     mass: float  # [kg]
-    pocket_friction: float  # mu_c
+    pocket_friction: float  # mu_c, on a full film
     assumed_eccentricity: float  # of the cage at level slip, over the guide clearance
     pocket_clearance: float  # C_p [m]
     pocket_stiffness: float  # K_c of the film, until the clearance is used up [N/m]
@@ -81,6 +83,7 @@ class CageBody(NamedTuple):
     guide_width: float  # L_g, all lands together [m]; 0 without lands
     land_film: float  # films in the guide land thinner than this touch [m]
     land_friction: float  # coefficient of boundary friction there
+    land_vortices: bool  # whether vortices and turbulence in their films count
     outer_radius: float  # of the cage [m]
     inner_radius: float  # of the cage [m]
     outer_width: float  # of its outer surface, without what runs on lands [m]
@@ -202,6 +205,9 @@ class Params(NamedTuple):
     variants: Variants
     envelope: Envelope
     flanges: Flanges
+    minimum_load: MinimumLoad
+    starvation: Starvation
+    mixed: MixedFriction
 
 
 class Lubrication(NamedTuple):
@@ -210,6 +216,7 @@ class Lubrication(NamedTuple):
     inner: TractionConstants  # of roller and inner raceway
     outer: TractionConstants  # of roller and outer raceway
     viscosity: float  # eta_0 of the oil [Pa s]
+    density: float  # of the oil [kg/m^3]
     mixture_density: float  # of the oil-air mixture at most [kg/m^3], see `bearing_sim.physics.drag.mixture_density`
     mixture_flow: float  # that density times the shaft's speed [kg rad/(m^3 s)], infinite where the speed does not matter
     temperature: float  # of the oil [K]
@@ -277,6 +284,7 @@ def pack(scene: Scene) -> Params:
             guide_width=land_width,
             land_film=cage.land_film,
             land_friction=cage.land_friction,
+            land_vortices=cage.land_vortices,
             outer_radius=cage.outside,
             inner_radius=cage.bore,
             outer_width=cage.width - (land_width if cage.guidance == "outer_ring" else 0.0),
@@ -296,6 +304,9 @@ def pack(scene: Scene) -> Params:
         ),
         envelope=Envelope(bearing.bore_diameter, bearing.outside_diameter, bearing.boundary_width, bearing.seal_moment),
         flanges=_flanges(scene),
+        minimum_load=MinimumLoad(*minimum_load_law(bearing)[:2]),
+        starvation=_starvation(scene),
+        mixed=_mixed(scene),
     )
 
 
@@ -334,9 +345,51 @@ def _flanges(scene: Scene) -> Flanges:
         clearance=half,
         stiffness=corner_stiffness(rim, size.corner_radius, layback, bearing.material.youngs_modulus, bearing.material.poisson_ratio),
         damping=bearing.contact.damping,
-        boundary_friction=given.boundary_friction,
         film_friction=given.film_friction,
-        film_constant=film_constant(0.5 * (bearing.bore_diameter + bearing.outside_diameter)),
+    )
+
+
+_SPARSE, _SPARSER = 3e-8, 6e-8  # K_rs of oil jets and low baths, of grease and oil-air, see `bearing_sim.physics.starvation.starvation_rate`
+
+
+def replenishment(lubricant: Lubricant, roller_radius: float) -> float:
+    """Return K_rs of SKF: the scene's, or that of the supply; 0 of contacts that are never starved."""
+    law = lubricant.starvation
+    if law.law == "none":
+        return 0.0
+    if law.constant is not None:
+        return law.constant
+    if lubricant.supply.law in ("oil_air", "grease"):
+        return _SPARSER
+    return 0.0 if lubricant.has_bath and _bath_level(lubricant, roller_radius) > roller_radius else _SPARSE
+
+
+def _starvation(scene: Scene) -> Starvation:
+    bearing, law = scene.bearing, scene.lubricant.starvation
+    rate = starvation_rate(replenishment(scene.lubricant, bearing.roller.diameter / 2), bearing.bore_diameter, bearing.outside_diameter)
+    return Starvation(rate, law.law != "none" and law.under_minimum_load == "flooded")
+
+
+def _free_skew(bearing: Bearing) -> float:
+    """Return the skew that flanges and pockets leave a roller [rad]; a bearing without flanges in its scene has some all the same (assumption)."""
+    size, radius = flange_geometry(bearing), 0.5 * bearing.roller.diameter
+    _, along = rim_corner(size.outer_radius, bearing.outer_raceway.low_radius - radius, radius - size.corner_radius)
+    between_flanges = 0.5 * size.end_clearance / along if along > 0.0 else math.inf
+    return min(between_flanges, 2.0 * bearing.cage.pocket_clearance / bearing.roller.length)
+
+
+def _mixed(scene: Scene) -> MixedFriction:
+    bearing, law = scene.bearing, scene.lubricant.mixed_friction
+    if law.law == "none":
+        return MixedFriction(NONE, 0.0, 1.0, 0.0, False, 0.0, bearing.pitch_diameter)
+    return MixedFriction(
+        law=SKF if law.law == "skf" else FILM_RATIO,
+        boundary_friction=law.boundary_friction,
+        film_ratio_factor=law.film_ratio_factor,
+        skf_constant=skf_constant(0.5 * (bearing.bore_diameter + bearing.outside_diameter)),
+        raceways=law.raceways,
+        skew=law.skew * _free_skew(bearing),
+        pitch_diameter=bearing.pitch_diameter,
     )
 
 
@@ -461,6 +514,7 @@ def lubricate(lubricant: Lubricant, params: Params, temperature: float, temperat
         inner=inner,
         outer=outer,
         viscosity=oil.viscosity,
+        density=oil.density,
         mixture_density=oil.density * (LARGEST_FRACTION if by_flow else lubricant.mixture_fraction),
         mixture_flow=oil.density * swept_fraction(lubricant.flow, 2.0 * raceways.pitch_radius) if by_flow else math.inf,
         temperature=oil.temperature,
@@ -486,36 +540,23 @@ def mixture_fraction(lubricant: Lubricant, pitch_diameter: float, shaft_speed):
     return np.minimum(LARGEST_FRACTION, swept_fraction(lubricant.flow, pitch_diameter) / np.maximum(np.abs(shaft_speed), 1e-9))
 
 
-_SPARSE, _SPARSER = 3e-8, 6e-8  # K_rs of oil jets and low baths, of grease and oil-air, see `bearing_sim.physics.film.replenishment_rate`
 _JET_DRAG = 2.0  # drag of circulating oil over that of a bath, see `bearing_sim.physics.drag.bath_moment`
 
 
 def _rolling_resistance(lubricant, params, films) -> RollingResistance:
     """Return the constants of both kinds of contact by the lubricant's law, from the state of the oil in each kind's films."""
-    law, raceways, envelope = lubricant.rolling_resistance, params.raceways, params.envelope
-    on = isinstance(law, HydrodynamicRollingResistance)
-    constant = law.replenishment if on else 0.0
-    if constant is None:
-        constant = replenishment(lubricant, params)
-    boundary = envelope.bore_diameter, envelope.outside_diameter
-    constants = []
+    law, mixed, raceways, length = lubricant.rolling_resistance, lubricant.mixed_friction, params.raceways, params.rollers.length
+    hydrodynamic, constants = isinstance(law, HydrodynamicRollingResistance), []
     for film, radius in zip(films, (raceways.inner_curvature_radius, raceways.outer_curvature_radius)):
-        rate = replenishment_rate(constant, film.viscosity / film.density, 2.0 * raceways.pitch_radius, raceways.diameter_ratio, *boundary)
-        heated = on and law.inlet_heating
-        constants.append(resistance_constants(film, raceways.reduced_modulus, radius, params.rollers.length, rate, heated))
-    return RollingResistance(int(on), *constants)
+        hysteresis = 0.0 if mixed.law == "none" else hysteresis_constant(mixed.hysteresis, radius, raceways.reduced_modulus, length)
+        heated = hydrodynamic and law.inlet_heating
+        constants.append(resistance_constants(film, raceways.reduced_modulus, radius, length, heated, hysteresis))
+    return RollingResistance(int(hydrodynamic or mixed.law != "none"), float(hydrodynamic), *constants)
 
 
-def replenishment(lubricant: Lubricant, params: Params) -> float:
-    """Return K_rs of the lubricant's supply where the scene gives none; see `bearing_sim.physics.film.replenishment_rate`."""
-    if lubricant.supply.law in ("oil_air", "grease"):
-        return _SPARSER
-    return 0.0 if lubricant.has_bath and _bath_level(lubricant, params) > params.rollers.radius else _SPARSE
-
-
-def _bath_level(lubricant, params) -> float:
+def _bath_level(lubricant, roller_radius) -> float:
     """Return the level of the oil bath above the lowest point of the outer raceway [m]."""
-    return params.rollers.radius if lubricant.supply.level is None else lubricant.supply.level
+    return roller_radius if lubricant.supply.level is None else lubricant.supply.level
 
 
 def _bath(lubricant, params, oil) -> Bath:
@@ -525,7 +566,7 @@ def _bath(lubricant, params, oil) -> Bath:
     envelope = params.envelope
     boundary = envelope.bore_diameter, envelope.outside_diameter, envelope.width
     factor = _JET_DRAG if lubricant.supply.law == "circulating" else 1.0
-    return bath_drag(_bath_level(lubricant, params), oil.viscosity / oil.density, params.rollers, params.raceways, *boundary, factor)
+    return bath_drag(_bath_level(lubricant, params.rollers.radius), oil.viscosity / oil.density, params.rollers, params.raceways, *boundary, factor)
 
 
 def _traction_constants(lubricant, oil, curvature_radius, reduced_modulus, length) -> TractionConstants:

@@ -12,7 +12,7 @@ from bearing_sim.model.running_clearance import clearance_at_speed
 from bearing_sim.model.validity import outside, still_sample
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.mounting import LARGEST_BORE, clearance_limits
-from bearing_sim.scene.ratings import rate
+from bearing_sim.scene.ratings import minimum_load_law, rate
 from bearing_sim.scene.scene import Scene
 
 # Assumption: a mass within a factor of 2 of its volume's is taken as meant, because pockets and ribs are known roughly only.
@@ -26,7 +26,6 @@ _LEAST_FILL, _LARGEST_FILL = 0.4, 0.97  # assumption: rollers' widths over the p
 # A maker's rating over that by the standards (assumption: catalogues give 0.85 to 1.17 times C, fatigue limits differ more).
 _RATING_RATIO = {"dynamic": (0.65, 1.5), "static": (0.65, 1.5), "fatigue_limit": (0.4, 2.5)}
 _RPM = 30.0 / math.pi
-_MINIMUM_OF_RATING = 0.02  # of C_r: the least load of roller bearings where a maker gives no factor (SKF, Schaeffler)
 
 
 def plausibility(scene: Scene) -> list[str]:
@@ -59,18 +58,13 @@ def left_out(scene: Scene) -> list[str]:
 def minimum_load(scene: Scene, speed: np.ndarray | float | None = None) -> tuple[np.ndarray | float, str]:
     """Return the load below which makers expect slip [N], and where it comes from.
 
-    P_min = k_r (6 + 4 n/n_r)(d_m/100 mm)^2 (SKF, LYC) where ``bearing.ratings`` has k_r and n_r, otherwise 0.02 C_r.
-
     Parameters
     ----------
-    scene : with the bearing.
+    scene : with the bearing, see `bearing_sim.scene.ratings.minimum_load_law`.
     speed : of the shaft [rad/s], one or several; None for the operating speed of the scene.
     """
-    limits, bearing = scene.bearing.ratings, scene.bearing
-    if limits.minimum_load_factor is not None and limits.reference_speed is not None:
-        ratio = np.abs(scene.operating.shaft_speed if speed is None else speed) / limits.reference_speed
-        return limits.minimum_load_factor * (6.0 + 4.0 * ratio) * (bearing.pitch_diameter / 0.1) ** 2, "k_r (6 + 4 n/n_r)(d_m/100 mm)^2"
-    return _MINIMUM_OF_RATING * rate(bearing).dynamic, "0.02 C_r; give minimum_load_factor and reference_speed in bearing.ratings"
+    law = minimum_load_law(scene.bearing)
+    return law.at_rest + law.by_speed * np.abs(scene.operating.shaft_speed if speed is None else speed), law.rule
 
 
 def _rollers(bearing: Bearing) -> list[str]:

@@ -20,13 +20,13 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.model.oil import OilState, oil_at, viscosity_100
-from bearing_sim.model.params import Params, mixture_fraction, pack, replenishment
+from bearing_sim.model.params import Params, mixture_fraction, pack
 from bearing_sim.model.running_clearance import largest_hoop_stress, mounted, seat_pressure, sleeve_pressure
 from bearing_sim.model.sample import new_block, part_temperature
 from bearing_sim.model.table_span import Span, span_of
 from bearing_sim.model.temperatures import film_temperatures, given_temperatures
 from bearing_sim.model.turning import turns
-from bearing_sim.physics.film import DOWSON_TOYODA, replenishment_rate
+from bearing_sim.physics.film import DOWSON_TOYODA
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.crown import NoCrown
 from bearing_sim.scene.flanges import flange_geometry
@@ -46,7 +46,6 @@ _EXTRAPOLATED = 60.0  # [K] beyond the two viscosities of a custom oil
 _SEPARATOR = "; "  # of exceedances in a cell of a table
 _SMALL_FRACTION = 0.1  # of the losses that brake the cage: one that stays below it decides nothing
 _ELASTIC_EXPONENTS = 0.75 - 0.658  # of speed, Biboulet and Houpert's elastic asymptote over that of the law in use, see the theory of film
-_KAPPA_OF_FILM = 1.3  # kappa goes with this power of the film (ISO 281:2007, 9.3.3.2: about Lambda^1.3)
 _MARTIN_COUETTE, _RIGID_THICKENED, _ELASTIC_EVEN, _ELASTIC_THICKENED = 3.0, 1.287, 2.621, 1.311  # of `film_of_all_regimes`
 
 
@@ -145,6 +144,11 @@ class Conditions:
         """Return values, NaN where the shaft does not turn."""
         return np.where(self.turning, values, np.nan)
 
+    def while_running(self, values: np.ndarray) -> np.ndarray:
+        """Return values, NaN where the shaft turns neither fast enough for slip nor at half its operating speed: thin films are of slow shafts."""
+        least = min(self.scene.thresholds.slip_from_speed, 0.5 * abs(self.scene.operating.shaft_speed))
+        return np.where(turns(self.samples["shaft_speed"], least), values, np.nan)
+
     def _oils_at(self, temperatures: np.ndarray) -> tuple[np.ndarray, ...]:
         temperatures = np.clip(temperatures, *_OIL_TEMPERATURES)
         if np.ptp(temperatures) > 0.0:
@@ -185,13 +189,8 @@ class Conditions:
 
     @property
     def replenishment(self) -> np.ndarray:
-        """The factor exp(-k u) of SKF by which contacts that little oil flows back to resist rolling less; see `replenishment_rate`."""
-        lubricant, raceways, envelope = self.scene.lubricant, self.params.raceways, self.params.envelope
-        given = getattr(lubricant.rolling_resistance, "replenishment", None)
-        constant = replenishment(lubricant, self.params) if given is None else given
-        boundary = envelope.bore_diameter, envelope.outside_diameter
-        rate = replenishment_rate(constant, self.film_viscosity / self.film_density, 2.0 * raceways.pitch_radius, raceways.diameter_ratio, *boundary)
-        return np.exp(-rate * self.rolling_speed)
+        """Factor of SKF by which contacts that little oil flows back to resist rolling less (`bearing_sim.physics.starvation`)."""
+        return np.exp(-self.params.starvation.rate * (self.film_viscosity / self.film_density) * np.abs(self.samples["shaft_speed"]))
 
     @property
     def pressure_viscosity(self) -> np.ndarray:
@@ -629,10 +628,6 @@ def _parts_differ_from_oil(scene: Scene) -> float:
     return float(any(each != oil for each in (parts.inner_ring, parts.rollers, parts.outer_ring)))
 
 
-def _with_replenishment(scene: Scene) -> bool:
-    return scene.lubricant.rolling_resistance.law != "none" or scene.lubricant.supply.law in ("grease", "oil_air")
-
-
 def _by_kind_of_oil(scene: Scene) -> bool:
     oil = scene.lubricant.oil
     return isinstance(oil, CustomOil) and oil.pressure_viscosity is None
@@ -946,7 +941,7 @@ LAWS = (
         "assumption: N. Biboulet and L. Houpert, Proc. IMechE J 224 (2010) 765, computed to 1.6e-10; widened because to 1e-9 the ratio to SKF's "
         "model stays as it is inside, and their elastic resistance is 1.3 to 1.65 times the one in use, inside 0.6 to 1.4 times",
         "read rolling powers as good to a factor of 1.5; at high speed heating and supply of oil limit them, see "
-        "lubricant.rolling_resistance.replenishment",
+        "lubricant.starvation",
         lambda scene: scene.lubricant.rolling_resistance.law != "none",
         lambda at: 2.0 * at.film_speed,
         variations=(
@@ -1063,23 +1058,32 @@ LAWS = (
         expected="temperatures that the grease is for",
     ),
     Law(
+        "thin_film",
+        "validity.film",
+        "films of the raceways",
+        "the viscosity ratio kappa",
+        "",
+        0.1,
+        math.inf,
+        "ISO 281:2007, 9.3.3.2: below 0.1 films separate nothing",
+        "surfaces touch: they wear, and neither a life by fatigue nor a film says how long; take a thicker oil, one with EP or AW additives, or a "
+        "higher speed",
+        _always,
+        lambda at: at.while_running(at.samples["viscosity_ratio"]),
+    ),
+    Law(
         "starved_film",
         "validity.film",
-        "films of contacts that little oil flows back to",
+        "starved contacts",
         "SKF's replenishment factor",
         "",
-        0.5,
+        0.2,
         math.inf,
-        "assumption: the films are computed for full inlets; half of the resistance to rolling is gone where the factor is 0.5, and much of the film",
+        "N. Biboulet and L. Houpert, Proc. IMechE J 224 (2010) 765, eq. 44, computed from S = 2 on; below, film and resistance are held at that",
         "read film, kappa and a_ISO as upper bounds; take a thinner base oil or a lower speed, or supply more oil",
-        _with_replenishment,
+        lambda scene: scene.lubricant.starvation.law != "none",
         lambda at: at.while_turning(at.replenishment),
-        variations=(
-            Variation(
-                "films and kappa of starved inlets",
-                {"film": lambda each, at: each.value, "viscosity_ratio": lambda each, at: each.value**_KAPPA_OF_FILM},
-            ),
-        ),
+        variations=(Variation("contacts with full inlets", overrides=("lubricant.starvation=none",)),),
     ),
     Law(
         "churning_reynolds",
@@ -1161,8 +1165,8 @@ LAWS = (
         -math.inf,
         41.0,
         "G. I. Taylor (1923); judged where vortices add more than a tenth to what brakes the cage",
-        "the drag of the lands is larger than computed, by 1.3 (Ta/41)^0.539; the film is not laminar",
-        _has_lands,
+        "the drag of the lands is larger than computed, by 1.3 (Ta/41)^0.539; set bearing.cage.land_vortices to true",
+        lambda scene: _has_lands(scene) and not scene.bearing.cage.land_vortices,
         lambda at: at.land_taylor,
         variations=(Variation("drag of lands with vortices", {"lands": lambda each, at: float(vortex_factor(each.value))}),),
     ),
@@ -1298,16 +1302,16 @@ LAWS = (
         "life modification factor a_ISO",
         "the viscosity ratio kappa",
         "",
-        0.1,
+        -math.inf,
         4.0,
         "ISO 281:2007, 9.3.3.3: a_ISO is defined for 0.1 to 4",
-        "below it surfaces touch: take a thicker oil, the life by fatigue says nothing; above it a_ISO is that of 4: take a thinner oil",
+        "above it a_ISO is that of 4: take a thinner oil",
         lambda scene: scene.life.a_iso != "none",
         lambda at: at.while_turning(at.samples["viscosity_ratio"]),
         variations=(
             Variation(
                 "kappa at the end of its range",
-                {"viscosity_ratio": lambda each, at: each.edge / each.value if each.value > each.high else math.nan},
+                {"viscosity_ratio": lambda each, at: each.edge / each.value},
             ),
         ),
     ),

@@ -10,6 +10,7 @@ from bearing_sim.model.params import pack
 from bearing_sim.model.temperatures import film_temperatures
 from bearing_sim.model.validity import contact_speeds
 from bearing_sim.physics.film import DOWSON_HIGGINSON, films
+from bearing_sim.physics.starvation import starved_film
 from bearing_sim.scene.scene import Scene
 
 _SAME_OIL = 0.1  # [K] an oil so much warmer is the same oil: its film differs by half a percent at most
@@ -19,7 +20,8 @@ _LOADED_FROM = 1.0  # [N] a roller that is pressed by less is not separated from
 class ThinnestFilm:
     """h_min of the thinnest film between any loaded roller and either raceway.
 
-    It is that of Dowson and Higginson, thinned by the heated inlet (`bearing_sim.physics.film.film_thickness`).  Almost always it is that of the
+    It is that of Dowson and Higginson, thinned by the heated inlet (`bearing_sim.physics.film.film_thickness`) and by what little oil flows back
+    (`bearing_sim.physics.starvation`).  Almost always it is that of the
     inner ring's most heavily loaded contact, whose effective radius R is smallest.  Spins that a sample does not hold are those of rolling
     on the outer ring.
 
@@ -46,12 +48,22 @@ class ThinnestFilm:
         """
         raceways, (inner_film, outer_film) = self._params.raceways, map(float, film_temperatures(samples[-1]))
         inner, outer = contact_speeds(samples, self._params)
+        left = self._left(samples, 0.5 * (inner_film + outer_film))
         films = [
             self._film(self._oil_at("inner", inner_film), raceways.inner_curvature_radius, samples["inner_load"], *inner),
             self._film(self._oil_at("outer", outer_film), raceways.outer_curvature_radius, samples["outer_load"], *outer),
         ]
         thinnest = np.minimum(*(film.min(axis=1) for film in films))
-        return np.where(np.isinf(thinnest), np.nan, thinnest)
+        return left * np.where(np.isinf(thinnest), np.nan, thinnest)
+
+    def _left(self, samples: np.ndarray, temperature: float) -> np.ndarray:
+        """Return what starved inlets leave of films at a mean temperature [K], shape (n,)."""
+        starvation = self._params.starvation
+        if starvation.rate == 0.0:
+            return np.ones(len(samples))
+        oil = self._oil_at("mean", temperature)
+        exponents = starvation.rate * (oil.viscosity / oil.density) * np.abs(samples["shaft_speed"])
+        return np.array([starved_film(exponent) for exponent in exponents.tolist()])
 
     def _film(self, oil: OilState, radius: float, force: np.ndarray, rolling: np.ndarray, sliding: np.ndarray) -> np.ndarray:
         """Return the least thickness [m] of the contacts of one ring, infinite where a roller is not loaded; arrays of one shape."""

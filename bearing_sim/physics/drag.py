@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import fused, kernel
+from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.elementary import exponential, logarithm, power
 
 # Drag coefficient C_d of a long cylinder across a flow by Re = rho v D_w/eta, interpolated in logarithms and constant beyond the table.
@@ -168,17 +168,37 @@ def churning_force(speed, density, viscosity, roller_diameter, roller_length):
     return force, (2.0 + exponent) * force / speed
 
 
+@template
+def regime_factor(reynolds, clearance_ratio):
+    """Return the torque between coaxial cylinders over Petroff's, and its exponent of speed.
+
+    It is the largest of
+
+        1,   1.3 (Ta/41)^0.539 (Taylor vortices),   3.0 (Re/2500)^0.856 (turbulence),    Re = rho omega R c/eta, Ta = Re sqrt(c/R),
+
+    so that nothing jumps between the regimes.  41 is the critical Taylor number of a narrow gap whose inner cylinder turns (G. I. Taylor, Phil.
+    Trans. R. Soc. A 223 (1923)); the two factors and their exponents are *assumptions*, common in dynamic models of roller bearings.
+
+    Parameters
+    ----------
+    reynolds : Re.
+    clearance_ratio : c/R.
+    """
+    factor, exponent = 1.0, 0.0
+    vortices = 1.3 * power(reynolds * math.sqrt(clearance_ratio) / 41.0, 0.539)
+    if vortices > factor:
+        factor, exponent = vortices, 0.539
+    turbulence = 3.0 * power(reynolds / 2500.0, 0.856)
+    if turbulence > factor:
+        factor, exponent = turbulence, 0.856
+    return factor, exponent
+
+
 @fused
 def cylinder_torque(relative_speed, radius, clearance, width, density, viscosity):
     """Return the torque between coaxial cylinders in the mixture [N m] and its derivative by relative speed [N m s].
 
-    Petroff's laminar torque 2 pi eta R^3 omega L/c times the largest of
-
-        1,   1.3 (Ta/41)^0.539 (Taylor vortices),   3.0 (Re/2500)^0.856 (turbulence),    Re = rho omega R c/eta, Ta = Re sqrt(c/R),
-
-    so that nothing jumps between the regimes; air without oil has none.  41 is the critical Taylor number of a narrow gap whose inner cylinder
-    turns (G. I. Taylor, Phil. Trans. R. Soc. A 223 (1923)); the two factors and their exponents are *assumptions*, common in dynamic
-    models of roller bearings.
+    Petroff's laminar torque 2 pi eta R^3 omega L/c times `regime_factor`; air without oil has none.
 
     Parameters
     ----------
@@ -190,13 +210,7 @@ def cylinder_torque(relative_speed, radius, clearance, width, density, viscosity
         return 0.0, 0.0
     petroff = 2.0 * math.pi * viscosity * radius**3 * width / clearance
     reynolds = density * abs(relative_speed) * radius * clearance / viscosity
-    factor, exponent = 1.0, 0.0
-    vortices = 1.3 * power(reynolds * math.sqrt(clearance / radius) / 41.0, 0.539)
-    if vortices > factor:
-        factor, exponent = vortices, 0.539
-    turbulence = 3.0 * power(reynolds / 2500.0, 0.856)
-    if turbulence > factor:
-        factor, exponent = turbulence, 0.856
+    factor, exponent = regime_factor(reynolds, clearance / radius)
     return petroff * factor * relative_speed, petroff * factor * (1.0 + exponent)
 
 

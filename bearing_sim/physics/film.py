@@ -33,13 +33,12 @@ DOWSON_HIGGINSON = FilmLaw(2.65, 0.70, 0.54, -0.13)
 DOWSON_TOYODA = FilmLaw(3.06, 0.69, 0.56, -0.10)
 # Heating of the inlet, see `film_thickness`.
 _HEAT_FACTOR, _HEAT_EXPONENT, _SHEAR_FACTOR, _SHEAR_EXPONENT = 0.1, 0.64, 14.8, 0.83
-# Resistance to rolling, see `resistance_constants` and `replenishment_rate`.
+# Resistance to rolling, see `resistance_constants`.
 _ELASTIC, _ELASTIC_SPEED, _ELASTIC_LOAD = 4.318, 0.658, 0.0126
 _RIGID = 1.42
 _SHARPNESS = 10.0  # of the passage between both regimes
 _MARTIN = 4.9  # Q h/(eta_0 u R L_c) of rigid cylinders that roll in an oil of one viscosity
 _INLET_HEAT, _INLET_HEAT_EXPONENT = 0.411483, 0.707071
-_STARVED_SHAPE = 5.1  # K_Z
 _LOADED_FROM = 1.0  # N; assumption: a contact that carries less has no film to roll through
 _LEAST_RATIO = 1e-30  # of sliding to rolling speed, for its logarithm
 
@@ -82,7 +81,7 @@ def film_thickness(exponential, law, constants, log_speed, log_load, log_ratio):
     The isothermal thickness is that of the `FilmLaw`.  The form of the thermal factor is that of L. E. Murch, W. R. D. Wilson, J. Lubr.
     Technol. 97 (1975) 212, the term in S that of W. R. D. Wilson, S. Sheu, J. Lubr. Technol. 105 (1983) 187, both as secondary literature
     gives them; the originals have not been compared, so take its four numbers for an *assumption*.  Range: fully flooded line contacts in
-    the elastic, piezoviscous regime (U 1e-13 to 1e-10, W 1e-5 to 1e-3); a starved inlet is not modelled.
+    the elastic, piezoviscous regime (U 1e-13 to 1e-10, W 1e-5 to 1e-3); starved inlets: `bearing_sim.physics.starvation`.
 
     Parameters
     ----------
@@ -123,7 +122,8 @@ def films(law, oil, curvature_radius, reduced_modulus, length, load, rolling, sl
 class RollingResistance(NamedTuple):
     """Resistance to rolling of both kinds of contact; see `resistance_constants`."""
 
-    on: int  # whether it counts at all
+    on: int  # whether anything resists
+    hydrodynamic: float  # factor on the resistance of the oil that inlets pump back, 0 or 1
     inner: "ResistanceConstants"
     outer: "ResistanceConstants"
 
@@ -134,21 +134,21 @@ class ResistanceConstants(NamedTuple):
     elastic: float  # ln F_E without its powers of u and Q
     rigid: float  # ln F_I likewise
     heating: float  # ln of what multiplies u^(2 x 0.707071) in the thermal factor; -inf without heating
-    replenishment: float  # k of exp(-k u) [s/m]; 0 where the inlet is always full
     film: float  # ln h [m] in the middle without its powers of u and Q, see `DOWSON_TOYODA`
     rigid_film: float  # likewise of rigid bodies, 4.9 eta_0 u R L_c/Q (Martin 1916)
+    hysteresis: float  # F_R over Q^(3/2) of rolling hysteresis [N^-0.5], see `bearing_sim.physics.mixed`; no logarithm
 
 
-def resistance_constants(oil, reduced_modulus, curvature_radius, length, replenishment, heated=True):
+def resistance_constants(oil, reduced_modulus, curvature_radius, length, heated=True, hysteresis=0.0):
     """Return the `ResistanceConstants` of one contact.
 
     The oil that the inlet pumps back resists each surface's motion through the contact with
 
-        F_R = [F_I^-10 + F_E^-10]^(-1/10) exp(-k u)/(1 + 0.411483 L^0.707071),   L = eta_0 beta u^2/k_oil,
+        F_R = s [F_I^-10 + F_E^-10]^(-1/10)/(1 + 0.411483 L^0.707071),   L = eta_0 beta u^2/k_oil,
         F_E = 4.318 E' R L_c (G U)^0.658 W^0.0126/G,   F_I = 1.42 E' R L_c (2 U)^(1/2) W^(1/2),   U = eta_0 u/(E' R), L_c the length,
 
     and presses the roller's centre along that motion by 2 F_R R/R_w = 2 F_R (1 -/+ gamma), gamma = D_w/d_m.  The contact passes on no net
-    force, and loses the power 2 F_R u.
+    force, and loses the power 2 F_R u.  s is what is left of it where little oil flows back (`bearing_sim.physics.starvation`).
 
     F_E, the elastic and piezoviscous regime, and the factor for the heat of the inlet: P. K. Goksem, R. A. Hargreaves, The effect of viscous shear
     heating on both film thickness and rolling traction in an EHL line contact, J. Lubr. Technol. 100 (1978) 346-352, whose factor is
@@ -163,8 +163,8 @@ def resistance_constants(oil, reduced_modulus, curvature_radius, length, repleni
     reduced_modulus : E' [Pa].
     curvature_radius : effective radius R of the contact [m].
     length : L_c [m].
-    replenishment : k [s/m], see `replenishment_rate`.
     heated : whether the inlet heats itself.
+    hysteresis : as of `ResistanceConstants`.
     """
     stiffness = reduced_modulus * curvature_radius
     scale, speed, load = math.log(stiffness * length), math.log(oil.viscosity / stiffness), -math.log(stiffness * length)
@@ -174,29 +174,10 @@ def resistance_constants(oil, reduced_modulus, curvature_radius, length, repleni
         elastic=math.log(_ELASTIC) + scale + _ELASTIC_SPEED * (speed + material) + _ELASTIC_LOAD * load - material,
         rigid=math.log(_RIGID) + scale + 0.5 * (math.log(2.0) + speed + load),
         heating=heat if heated else -math.inf,
-        replenishment=replenishment,
         film=film_constants(DOWSON_TOYODA, oil, curvature_radius, reduced_modulus, length).thickness,
         rigid_film=math.log(_MARTIN * oil.viscosity * curvature_radius * length),
+        hysteresis=hysteresis,
     )
-
-
-def replenishment_rate(constant, kinematic_viscosity, pitch_diameter, diameter_ratio, bore_diameter, outside_diameter):
-    """Return k of the factor exp(-k u) by which a contact resists less that is rolled over before oil flows back [s/m].
-
-    SKF's exp(-K_rs nu n (d + D) sqrt(K_Z/(2 (D - d)))) [mm^2/s, rpm, mm] with K_Z = 5.1 of cylindrical roller bearings with a cage (SKF, The SKF
-    model for calculating the frictional moment), with the shaft's speed n expressed by the mean surface speed of a contact that rolls,
-    u = (pi/60) n d_m (1 - gamma^2)/2.
-
-    Parameters
-    ----------
-    constant : K_rs; SKF: 3e-8 for oil jet and a low level of a bath, 6e-8 for grease and oil-air, 0 where contacts are flooded.
-    kinematic_viscosity : nu [m^2/s].
-    pitch_diameter, diameter_ratio : d_m [m] and gamma.
-    bore_diameter, outside_diameter : d and D of the bearing [m].
-    """
-    speed_by_rolling = 60.0 / math.pi * 2.0 / (pitch_diameter * (1.0 - diameter_ratio**2))  # rpm in a m/s
-    root = math.sqrt(_STARVED_SHAPE / (2e3 * (outside_diameter - bore_diameter)))
-    return constant * 1e6 * kinematic_viscosity * speed_by_rolling * 1e3 * (bore_diameter + outside_diameter) * root
 
 
 @template
@@ -238,10 +219,10 @@ def _partly_loaded(part, gap, log_speed, log_load, ratio, log_less, constants):
 
 
 @template
-def resist_rolling_by_rows(row, contacts, middle, crowned, resistance):
-    """Write the resistance to rolling F_R of all contacts and its derivatives.
+def resist_rolling_by_rows(row, contacts, middle, crowned, resistance, films):
+    """Write the resistance to rolling F_R of all contacts and its derivatives: of the oil, of skew and of hysteresis.
 
-    As Q/(Q + 1 N) it fades out where a contact carries next to nothing, and it is smooth through u = 0.
+    As Q/(Q + 1 N) that of the oil fades out where a contact carries next to nothing, and all are smooth through u = 0.
 
     Parameters
     ----------
@@ -251,7 +232,9 @@ def resist_rolling_by_rows(row, contacts, middle, crowned, resistance):
     crowned : whether contacts may bear on a part of their length; then the rows part and gap go in, too, whose
         changes are left out of derivatives.
     resistance : `RollingResistance`.
+    films : `bearing_sim.physics.mixed.FilmState`.
     """
+    left = resistance.hydrodynamic * films.resistance
     # Short loops: the processor works on several blocks at once.  What they pass on stands where the results come to stand.
     for block in range(contacts.shape[0]):
         rolling = load(contacts, block, row.rolling)
@@ -273,10 +256,10 @@ def resist_rolling_by_rows(row, contacts, middle, crowned, resistance):
         rigid, ratio = constants.rigid + 0.5 * (log_speed + log_load), load(contacts, block, row.resistance_d_rolling)
         elastic, log_less = ratio / (1.0 + ratio), logarithm(1.0 + ratio) / _SHARPNESS
         heat = exponential(constants.heating + 2.0 * _INLET_HEAT_EXPONENT * log_speed)
-        cooler, starved = 1.0 / (1.0 + heat), constants.replenishment * square_root(square)
-        whole = exponential(rigid - log_less - log_speed - starved) * cooler
+        cooler = 1.0 / (1.0 + heat)
+        whole = exponential(rigid - log_less - log_speed) * (cooler * left)
         by_load = 0.5 + (_ELASTIC_LOAD - 0.5) * elastic
-        by_speed = 0.5 + (_ELASTIC_SPEED - 0.5) * elastic - 2.0 * _INLET_HEAT_EXPONENT * heat * cooler - starved - 1.0
+        by_speed = 0.5 + (_ELASTIC_SPEED - 0.5) * elastic - 2.0 * _INLET_HEAT_EXPONENT * heat * cooler - 1.0
         if crowned:
             part, gap = load(contacts, block, row.part), load(contacts, block, row.gap)
             fraction, d_speed, d_load = _partly_loaded(part, gap, log_speed, log_load, ratio, log_less, constants)
@@ -286,12 +269,23 @@ def resist_rolling_by_rows(row, contacts, middle, crowned, resistance):
         store(contacts, block, row.resistance, strength * rolling)
         store(contacts, block, row.resistance_d_load, whole * rolling * loaded * (by_load + _LOADED_FROM * loaded))
         store(contacts, block, row.resistance_d_rolling, strength * (1.0 + by_speed * rolling * rolling / square))
+    if films.skew_resistance > 0.0 or resistance.inner.hysteresis > 0.0:
+        for block in range(contacts.shape[0]):
+            constants = resistance.inner if block < middle else resistance.outer
+            rolling, force = load(contacts, block, row.rolling), larger(load(contacts, block, row.load), 0.0)
+            inverse = 1.0 / square_root(rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR)
+            askew, lossy, forwards = films.skew_resistance, constants.hysteresis * square_root(force), rolling * inverse
+            bend = (ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR) * inverse * inverse * inverse
+            solid = force * (askew + lossy)
+            store(contacts, block, row.resistance, load(contacts, block, row.resistance) + solid * forwards)
+            store(contacts, block, row.resistance_d_load, load(contacts, block, row.resistance_d_load) + (askew + 1.5 * lossy) * forwards)
+            store(contacts, block, row.resistance_d_rolling, load(contacts, block, row.resistance_d_rolling) + solid * bend)
 
 
 @kernel
-def resist_rolling(contacts, resistance, crowned):
+def resist_rolling(contacts, resistance, films, crowned):
     """Write the resistance to rolling F_R of all contacts, rows `CONTACT`, half of them with each raceway; see `resist_rolling_by_rows`."""
     if crowned:
-        resist_rolling_by_rows(CONTACT, contacts, contacts.shape[0] // 2, True, resistance)
+        resist_rolling_by_rows(CONTACT, contacts, contacts.shape[0] // 2, True, resistance, films)
     else:
-        resist_rolling_by_rows(CONTACT, contacts, contacts.shape[0] // 2, False, resistance)
+        resist_rolling_by_rows(CONTACT, contacts, contacts.shape[0] // 2, False, resistance, films)

@@ -18,8 +18,7 @@ over the overlap of end face and flange.  *Assumptions*: the gap is full of oil 
 end clearance unless an axial load presses it; the flange opens by its layback beyond the root.
 
 **Friction.** A contact under the force N at the offset rho on the axis of symmetry: F = -mu N V_u, M = -mu N V_s, with the smooth sliding speed
-V = sqrt(v_t^2 + (s e)^2 + v_0^2), e how far the contact stands off that axis.  mu mixes boundary and film friction as in SKF's model of
-the sliding moment (`flange_friction`).
+V = sqrt(v_t^2 + (s e)^2 + v_0^2), e how far the contact stands off that axis.  mu mixes boundary and film friction (`bearing_sim.physics.mixed`).
 
 **Where.** A flat end presses on a flange that opens by its layback with the rim of its face, at rho = R_w - r_c; a spherical end of radius R_s at R_s
 sin(layback) (T. A. Harris, M. N. Kotzalas, Essential Concepts of Bearing Technology, 2006, on roller ends and flange layback).
@@ -37,13 +36,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import template
 from bearing_sim.numerics.simd import larger, magnitude, spread, square_root, total, where_positive
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 _STILL = 1e-2  # m/s; assumption: friction is proportional to the sliding speed well below this
 _EVEN = 1.0  # N; assumption: rollers that carry less share the axial load evenly
-_ROTATION = 30.0 / math.pi  # rpm per rad/s
 
 
 class Face(NamedTuple):
@@ -72,9 +70,7 @@ class Flanges(NamedTuple):
     clearance: float  # half the end clearance [m]
     stiffness: float  # K of a corner [N/m^1.5]
     damping: float  # a [s/m]
-    boundary_friction: float
-    film_friction: float
-    film_constant: float  # of `flange_friction`, [(s/m^2)^1.4]
+    film_friction: float  # coefficient on a full film
 
 
 NO_FACE = Face(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -140,28 +136,6 @@ def flange_face(sides: str, gaps, raceway: float, edge: float, centre: float, ri
 def corner_stiffness(rim: float, corner_radius: float, layback: float, youngs_modulus: float, poisson_ratio: float) -> float:
     """Return K of N = K delta^(3/2) [N/m^1.5]: (4/3) E* sqrt(R), 1/E* = 2 (1 - nu^2)/E (Hertz), R as in the docstring of the module."""
     return 4.0 / 3.0 * youngs_modulus / (2.0 * (1.0 - poisson_ratio**2)) * (corner_radius * rim / layback) ** 0.25
-
-
-def film_constant(mean_diameter: float) -> float:
-    """Return 2.6e-8 d_m of SKF's weighting factor, for speeds in rad/s and viscosities in m^2/s; d_m = (d + D)/2 [m]."""
-    return 2.6e-8 * (_ROTATION * 1e6) ** 1.4 * 1e3 * mean_diameter
-
-
-@kernel
-def flange_friction(shaft_speed, viscosity, flanges):
-    """Return the friction coefficient of roller ends on flanges, phi mu_bl + (1 - phi) mu_EHL, phi = exp(-2.6e-8 (n nu)^1.4 d_m).
-
-    SKF, The SKF model for calculating the frictional moment, sliding friction coefficient: n [rpm], nu [mm^2/s], d_m [mm].  *Assumption*: the
-    film of roller ends is that of a shaft without slip.
-
-    Parameters
-    ----------
-    shaft_speed : [rad/s].
-    viscosity : kinematic, nu [m^2/s].
-    flanges : `Flanges`.
-    """
-    boundary = math.exp(-flanges.film_constant * (abs(shaft_speed) * viscosity) ** 1.4)
-    return boundary * flanges.boundary_friction + (1.0 - boundary) * flanges.film_friction
 
 
 @template

@@ -13,34 +13,56 @@ from typing import NamedTuple
 
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.physics.contact import EXPONENT, damping_factor
+from bearing_sim.physics.drag import regime_factor
 
 _WEDGE = 10.0  # rad/s; assumption: the film's half-circle changes sides smoothly where the wedge speed changes sign
 _SLIDING = 0.1  # m/s; assumption: boundary friction is proportional to the sliding speed well below this
 
 
+@template
+def _land_regime(turning, lubrication, cage):
+    """Return the torque of lands that turn against the cage over the laminar one, and its exponent of speed; 1 and 0 of laminar lands.
+
+    `bearing_sim.physics.drag.regime_factor` with the film of a concentric land; *assumption*: an eccentric one begins to whirl in vortices
+    there, too.
+
+    Parameters
+    ----------
+    turning : speed of one surface relative to the other [rad/s].
+    lubrication : `bearing_sim.model.params.Lubrication`.
+    cage : `bearing_sim.model.params.CageBody`.
+    """
+    if not cage.land_vortices:
+        return 1.0, 0.0
+    clearance, radius = cage.guide_clearance, cage.guide_radius
+    return regime_factor(lubrication.density * abs(turning) * radius * clearance / lubrication.viscosity, clearance / radius)
+
+
 @kernel
-def land_torque(cage_speed, ring_speed, eccentricity_ratio, viscosity, cage):
+def land_torque(cage_speed, ring_speed, eccentricity_ratio, lubrication, cage):
     """Return the torque of the oil in the guide lands on the cage [N m] and its derivative by cage speed [N m s].
 
     M = 2 pi eta_0 V R_g^2 L_g/(c sqrt(1 - eps^2)), V = R_g (omega_ring - omega_c) (Deng 2017, section 3.1.3): Petroff's torque of an
-    eccentric journal, laminar, the land full of oil.
+    eccentric journal, the land full of oil; laminar, or with vortices and turbulence where ``land_vortices`` is true.
 
     Parameters
     ----------
     cage_speed, ring_speed : omega_c and omega_ring [rad/s].
     eccentricity_ratio : eps, below 1.
-    viscosity : eta_0 [Pa s].
+    lubrication : `bearing_sim.model.params.Lubrication`.
     cage : `bearing_sim.model.params.CageBody`.
     """
     slope = (
         2.0
         * math.pi
-        * viscosity
+        * lubrication.viscosity
         * cage.guide_radius**3
         * cage.guide_width
         / (cage.guide_clearance * math.sqrt(1.0 - eccentricity_ratio * eccentricity_ratio))
     )
-    return slope * (ring_speed - cage_speed), -slope
+    factor, exponent = _land_regime(ring_speed - cage_speed, lubrication, cage)
+    slope *= factor
+    return slope * (ring_speed - cage_speed), -slope * (1.0 + exponent)
 
 
 class Land(NamedTuple):
@@ -85,7 +107,7 @@ def _film_coefficients(eccentricity, cage):
 
 
 @fused
-def land_film(land, squeeze, cage, viscosity):
+def land_film(land, squeeze, cage, lubrication):
     """Return forces y, z [N] and torque [N m] of the guide lands' film on the cage, then their derivatives by y, z, y', z' and omega_c (3 rows of 5).
 
     Short journal bearing with half a film: F. W. Ocvirk, NACA TN 2808 (1952), and G. B. DuBois, F. W. Ocvirk, NACA Report 1157 (1953), for a
@@ -101,15 +123,17 @@ def land_film(land, squeeze, cage, viscosity):
     and e' = 0 (``land_squeeze: false``).  The torque is that of `land_torque`: both surfaces share it, and what the force's lever across the
     eccentricity adds, a thousandth of it, is given to the ring (see `bearing_sim.levels.planar.power`).
 
-    Range: L small against R_g, laminar, isoviscous, and a film that is full over the half-circle where the wedge or the approach fills it.
+    Range: L small against R_g, isoviscous, and a film that is full over the half-circle where the wedge or the approach fills it.  Forces are
+    those of a laminar film; vortices and turbulence change the torque alone.
 
     Parameters
     ----------
     land : `Land`.
     squeeze : 1 for the film of a moving centre, 0 for Deng's, of a centre at rest.
     cage : `bearing_sim.model.params.CageBody`.
-    viscosity : eta_0 [Pa s].
+    lubrication : `bearing_sim.model.params.Lubrication`.
     """
+    viscosity = lubrication.viscosity
     entraining, turning = land.cage_speed + land.ring_speed, land.cage_speed - land.ring_speed
     clearance, radius, width = cage.guide_clearance, cage.guide_radius, 0.5 * cage.guide_width
     unit = viscosity * radius * 2.0 * width**3 / (clearance * clearance)
@@ -140,7 +164,8 @@ def land_film(land, squeeze, cage, viscosity):
     in_t = turn * (in_out * along - in_along * outwards)
     across_t = turn * (across_out * along - across_along * outwards)
     n_n, t_n, n_t, t_t = -in_e, across_d_e, -in_t - f_across * turn, across_t - f_in * turn
-    friction = -2.0 * math.pi * viscosity * radius**3 * cage.guide_width / clearance
+    regime, exponent = _land_regime(turning, lubrication, cage)
+    friction = -2.0 * math.pi * viscosity * radius**3 * cage.guide_width / clearance * regime
     torque = friction * drag * turning
     return (
         -f_in * n_y - f_across * n_z, -f_in * n_z + f_across * n_y, torque,
@@ -148,7 +173,7 @@ def land_film(land, squeeze, cage, viscosity):
         -in_omega * n_y - across_omega * n_z,
         *_in_plane(n_n, t_n, n_t, t_t, n_y, n_z)[2:], *_in_plane(-in_out, across_out, -in_along, across_along, n_y, n_z)[2:],
         -in_omega * n_z + across_omega * n_y,
-        friction * drag_e * turning * n_y, friction * drag_e * turning * n_z, 0.0, 0.0, friction * drag,
+        friction * drag_e * turning * n_y, friction * drag_e * turning * n_z, 0.0, 0.0, friction * drag * (1.0 + exponent),
     )  # fmt: skip
 
 

@@ -20,7 +20,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.elementary import ninth_root, power
@@ -76,7 +75,11 @@ def new_profile(drops) -> Profile:
     flat = float(np.mean(drop <= _STRAIGHT))
     first = [flat, 2.0 * (nodes[0, 0] - flat) / spacing - nodes[0, 1], *nodes[0, 2:]]
     nodes = np.array([first, *nodes, [1.0, 0.0, 1.0, 1.0, 0.0]])
-    cubic = CubicHermiteSpline(np.arange(_INTERVALS + 1), nodes[:, 0], nodes[:, 1] * spacing).c
+    # Hermite's cubics of values and slopes at both ends of each interval, of length 1
+    value, slope = nodes[:, 0], nodes[:, 1] * spacing
+    rise = np.diff(value)
+    bend = slope[:-1] + slope[1:] - 2.0 * rise
+    cubic = bend, rise - slope[:-1] - bend, slope[:-1], value[:-1]
     lines = [column for k in (2, 3, 4) for column in (nodes[:-1, k], np.diff(nodes[:, k]))]
     return Profile(True, highest, math.sqrt(scale), np.ascontiguousarray(np.stack([*cubic, *lines], axis=1)))
 

@@ -8,11 +8,13 @@ import math
 from typing import NamedTuple
 
 from bearing_sim.numerics.compilation import kernel
+from bearing_sim.physics.starvation import starvation_exponent, starved_film
 
 ROTATING_EXPONENT = 4.0  # of the mean load of a ring that rotates against the load (ISO/TS 16281)
 STATIONARY_EXPONENT = 4.5  # and of one that is stationary
 LARGEST_MODIFICATION = 50.0  # a_ISO is never more
 LARGEST_VISCOSITY_RATIO = 4.0  # kappa counts no more than that
+KAPPA_EXPONENT = 1.3  # kappa = Lambda^1.3 of the ratio of film and roughness (ISO 281:2007, 9.3.3.2)
 _LEAST_VISCOSITY_RATIO = 0.1  # below it a_ISO is at its least, 0.1
 ISO16281, ISO281, DENG2017 = 0, 1, 2  # methods, see `Lives`
 METHODS = {"iso16281": ISO16281, "iso281": ISO281, "deng2017": DENG2017}
@@ -154,22 +156,27 @@ def modification_factor(kappa, limit_ratio):
 class OilFactors(NamedTuple):
     """What the oil contributes to a modified life."""
 
-    viscosity_ratio: float  # kappa
+    viscosity_ratio: float  # kappa, of starved films
     contamination_factor: float  # e_C; NaN where the scene names no cleanliness class
 
 
 @kernel
-def oil_factors(shaft_speed, kinematic_viscosity, pitch_diameter, life):
+def oil_factors(shaft_speed, kinematic_viscosity, pitch_diameter, starvation, life):
     """Return the `OilFactors` of a condition.
+
+    kappa stands for the ratio of film and roughness, kappa = Lambda^1.3 (ISO 281:2007, 9.3.3.2), so that a starved film has a lower one.
 
     Parameters
     ----------
     shaft_speed : [rad/s].
     kinematic_viscosity : of the oil [m^2/s].
     pitch_diameter : [m].
+    starvation : `bearing_sim.physics.starvation.Starvation`.
     life : `bearing_sim.model.params.Life`.
     """
     kappa = viscosity_ratio(kinematic_viscosity, shaft_speed, pitch_diameter)
+    if starvation.rate > 0.0:
+        kappa *= starved_film(starvation_exponent(shaft_speed, kinematic_viscosity, starvation)) ** KAPPA_EXPONENT
     cleanliness = contamination_factor(kappa, life.cleanliness_slope, life.cleanliness_loss, pitch_diameter) if life.modified else math.nan
     return OilFactors(kappa, cleanliness)
 

@@ -38,6 +38,7 @@ from bearing_sim.numerics.elementary import exponential, logarithm
 from bearing_sim.numerics.simd import highest, larger, load, magnitude, smaller, spread, square_root, store, where_positive
 from bearing_sim.physics.contact import CONTACT, LOAD_FLOOR, ROLLING_SPEED_FLOOR
 from bearing_sim.physics.film import DOWSON_TOYODA, FilmConstants, film_constants, film_thickness
+from bearing_sim.physics.mixed import share_with_asperities
 
 FITTED, KRAGELSKII, EYRING = 0, 1, 2  # what `TractionConstants.law` may be
 SPECIAL = 14  # constants of a law that is more than the fitted form
@@ -171,9 +172,9 @@ def _static(contacts, first, end, scale, special):
 
 
 @fused
-def traction(contacts, inner, outer):
+def traction(contacts, inner, outer, films):
     """Compute the tangential forces of all contacts, half of them with each raceway; parameters as of `traction_along`."""
-    traction_along(contacts, contacts.shape[0] // 2, 1, inner, outer)
+    traction_along(contacts, contacts.shape[0] // 2, 1, inner, outer, films)
 
 
 @template
@@ -192,8 +193,8 @@ def _take_logarithms(contacts, together):
 
 
 @fused
-def traction_along(contacts, middle, together, inner, outer):
-    """Compute the tangential forces of all contacts.
+def traction_along(contacts, middle, together, inner, outer, films):
+    """Compute the tangential forces of all contacts, those what asperities add included.
 
     Parameters
     ----------
@@ -201,12 +202,21 @@ def traction_along(contacts, middle, together, inner, outer):
     middle : block where the contacts with the outer raceway begin.
     together : number of blocks that follow each other with one rolling speed.
     inner, outer : `TractionConstants` of the raceways; they differ in the constant factors alone.
+    films : `bearing_sim.physics.mixed.FilmState`.
     """
+    _film_traction(contacts, middle, together, inner, outer, films.log_film)
+    if films.raceway_share > 0.0:
+        share_with_asperities(contacts, films)
+
+
+@fused
+def _film_traction(contacts, middle, together, inner, outer, log_film):
+    """Compute the tangential forces of the oil in all contacts; parameters as of `traction_along`, ``log_film`` of its films."""
     blocks = contacts.shape[0]
     if inner.law == EYRING:
         _take_logarithms(contacts, together)
-        eyring_traction(contacts, 0, middle, inner.scale, inner.special)
-        eyring_traction(contacts, middle, blocks, outer.scale, outer.special)
+        eyring_traction(contacts, 0, middle, inner.scale, log_film, inner.special)
+        eyring_traction(contacts, middle, blocks, outer.scale, log_film, outer.special)
         return
     _take_logarithms(contacts, together)  # here and not above: what lies between slows the fitted form by 3 %
     _powers(contacts, 0, middle, inner)
@@ -312,7 +322,7 @@ def _hyperbolic(y):
 
 
 @kernel
-def eyring_traction(contacts, first, end, scale, special):
+def eyring_traction(contacts, first, end, scale, log_film, special):
     """Compute the tangential forces of the contacts in some blocks, and their derivatives; equations in the docstring of the module.
 
     Parameters
@@ -320,18 +330,19 @@ def eyring_traction(contacts, first, end, scale, special):
     contacts : array with rows `CONTACT`; `traction_along` has written ln Q, ln u and 1/u.
     first, end : blocks.
     scale : factor on the coefficient.
+    log_film : ln of the film's thickness over that of a full inlet.
     special : see `eyring_constants`.
     """
-    _film(contacts, first, end, special)
+    _film(contacts, first, end, log_film, special)
     _thicken(contacts, first, end, special)
     _shear(contacts, first, end)
     _limit_stress(contacts, first, end, scale, special)
 
 
 @kernel
-def _film(contacts, first, end, special):
+def _film(contacts, first, end, log_film, special):
     """Write the thickness of the films and its changes with ln |du| and ln u."""
-    constants = FilmConstants(special[ROW.film], special[ROW.inlet])
+    constants = FilmConstants(special[ROW.film] + log_film, special[ROW.inlet])
     for block in range(first, end):
         ratio = load(contacts, block, CONTACT.sliding) * load(contacts, block, CONTACT.inverse_speed)
         square = ratio * ratio + _SMALL_RATIO * _SMALL_RATIO

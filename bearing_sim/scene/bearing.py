@@ -167,6 +167,7 @@ class Cage:
     guide_land_distance: quantity("m", "between the middles of both guide lands; None: at the cage's edges", 0.0, 1.0, "mm") | None = None
     land_film: quantity("m", "film in the guide land below which surfaces touch", 0.0, 1e-4, "um") = 3e-6
     land_friction: quantity("", "boundary friction coefficient of the guide land", 0.0, 1.0) = 0.08
+    land_vortices: bool = True  # vortices and turbulence add to the drag of the guide land; false: laminar, as Deng's form
     land_squeeze: bool = True  # the film includes the motion of the cage centre; false: Deng's form for a centre at rest
     pocket_friction: quantity("", "friction coefficient between roller and pocket, mu_c", 0.0, 1.0) = 0.05
     # Level slip models neither pocket forces nor whirl; these two fields give it their effect on the cage.

@@ -41,7 +41,6 @@ class Flanges:
     opening_angle: quantity("rad", "layback of a flange, by which its face opens away from the raceway", 1e-4, 0.1, "deg") = math.radians(0.5)
     corner_radius: quantity("m", "radius between a roller's end face and its surface; None: estimated", 1e-6, 0.1, "mm") | None = None
     end_radius: quantity("m", "radius of a roller end ground as a sphere; None: a flat end", 1e-3, 100.0, "mm") | None = None
-    boundary_friction: quantity("", "friction coefficient of roller end and flange without a film; SKF: 0.12", 0.0, 1.0) = 0.12
     film_friction: quantity("", "friction coefficient of roller end and flange on a full film; SKF: 0.02", 0.0, 1.0) = 0.02
     guiding_load: quantity("", "axial force of a roller's end on its flange without an axial load, over its load on the inner raceway", 0.0, 0.1) = (
         0.0

@@ -38,7 +38,7 @@ from bearing_sim.scene.wants import candidates, read_wants, reason_of, without_m
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
-    | {"none", "iso_log", "straight_arc", "table", "hydrodynamic", "constant_moment", "skf", "given", "network"}
+    | {"none", "film_ratio", "iso_log", "straight_arc", "table", "hydrodynamic", "constant_moment", "skf", "given", "network"}
     | {"oil_jet", "circulating", "oil_bath", "oil_air", "grease"}
 )
 
@@ -58,6 +58,9 @@ _OPENED = {
     ("lubricant", "grease"): "preset",
     ("lubricant", "supply"): "law",
     ("lubricant", "traction"): "law",
+    ("lubricant", "rolling_resistance"): "law",
+    ("lubricant", "starvation"): "law",
+    ("lubricant", "mixed_friction"): "law",
 }
 _RACEWAY_RADII = tuple(f"outer_raceway.{name}" for name in ("low_radius", "diameter", "low_points", "high_points", "contour", "contour_file"))
 # What older scenes say, and what says it now.
@@ -65,6 +68,8 @@ _RENAMED = {
     "bearing.inner_raceway.supported_mass": "the shaft's mass is support.shaft.mass",
     "bearing.roller.slices_per_traction": "every slice has its own traction; leave it out",
     "lubricant.pumping": "give lubricant.rolling_resistance: hydrodynamic, or none",
+    "lubricant.rolling_resistance.replenishment": "K_rs is lubricant.starvation.constant",
+    "bearing.flanges.boundary_friction": "the coefficient of asperities everywhere is lubricant.mixed_friction.boundary_friction",
     "bearing.ring_growth": "bearing.dimensions_at: cold computes rotation, mounting the fits, heat the temperatures",
 }
 _MISSING = {

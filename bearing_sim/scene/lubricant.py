@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The lubricant of a scene: laws of viscosity, oils, laws of traction."""
 
+from collections.abc import Mapping
 from dataclasses import field
 from typing import Annotated, Literal
 
@@ -116,6 +117,11 @@ def _as_text(value: object) -> object:
     return f"{value:g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else value
 
 
+def _law_or(name: str) -> BeforeValidator:
+    """Return the validator of a record that may be given by its law's bare name, or without its law, which then is ``name``."""
+    return BeforeValidator(lambda value: {"law": name} | dict(given) if isinstance(given := named_law(value), Mapping) else given)
+
+
 THICKENERS = Literal[
     "lithium",
     "lithium_complex",
@@ -216,13 +222,53 @@ class HydrodynamicRollingResistance:
 
     law: Literal["hydrodynamic"] = "hydrodynamic"
     inlet_heating: bool = True  # whether the inlet heats itself and thins its oil
-    replenishment: (
-        quantity("", "K_rs of SKF's replenishment factor, 0: flooded; None: 3e-8, or 0 in a bath above half a roller", 0.0, 1e-6) | None
-    ) = None
 
 
-RollingResistance = Annotated[NoRollingResistance | HydrodynamicRollingResistance, Field(discriminator="law"), BeforeValidator(named_law)]
+RollingResistance = Annotated[NoRollingResistance | HydrodynamicRollingResistance, Field(discriminator="law"), _law_or("hydrodynamic")]
 """A record, or its bare name (``none``, ``hydrodynamic``)."""
+
+
+@record
+class NoStarvation:
+    """Contacts whose inlets are always full."""
+
+    law: Literal["none"] = "none"
+
+
+@record
+class SkfStarvation:
+    """Contacts that little oil flows back to: film and resistance to rolling fall together (see `bearing_sim.physics.starvation`)."""
+
+    law: Literal["skf"] = "skf"
+    constant: quantity("", "K_rs of SKF; None: 3e-8, 6e-8 of grease and oil-air, 0 in a bath above half a roller", 0.0, 1e-6) | None = None
+    under_minimum_load: Literal["flooded", "starved"] = "flooded"  # what contacts resist as below the makers' minimum load, where a cage may skid
+
+
+Starvation = Annotated[NoStarvation | SkfStarvation, Field(discriminator="law"), _law_or("skf")]
+"""A record, or its bare name (``none``, ``skf``)."""
+
+
+@record
+class NoMixedFriction:
+    """Contacts that films alone carry, as in Deng 2017."""
+
+    law: Literal["none"] = "none"
+
+
+@record
+class MixedFriction:
+    """Asperities that share the load by a film ratio or by SKF's weight; skew and hysteresis (see `bearing_sim.physics.mixed`)."""
+
+    law: Literal["film_ratio", "skf"] = "film_ratio"
+    boundary_friction: quantity("", "friction coefficient of asperities, mu_b", 0.0, 1.0) = 0.12
+    film_ratio_factor: quantity("", "film ratio over kappa^(1/1.3), for surfaces smoother or rougher than usual; of film_ratio", 0.1, 10.0) = 1.0
+    raceways: bool = True  # whether asperities count for the traction of the raceways, from the makers' minimum load on
+    skew: quantity("", "mean skew of rollers over what their end clearance leaves them", 0.0, 1.0) = 0.5
+    hysteresis: quantity("", "part of the elastic energy of a rolling contact that is lost", 0.0, 0.1) = 0.01
+
+
+Mixed = Annotated[NoMixedFriction | MixedFriction, Field(discriminator="law"), _law_or("film_ratio")]
+"""A record, or its bare name (``none``, ``film_ratio``, ``skf``)."""
 
 
 _FLOW = quantity("m^3/s", "oil that flows through the bearing", 0.0, 1.0, "l/min")
@@ -300,6 +346,8 @@ class Lubricant:
     traction_scale: quantity("", "factor on every traction coefficient", 0.0, 100.0) = 1.0
     traction: Traction | None = None  # None: oil_4109 of aviation oils, eyring of all others
     rolling_resistance: RollingResistance = field(default_factory=HydrodynamicRollingResistance)
+    starvation: Starvation = field(default_factory=SkfStarvation)
+    mixed_friction: Mixed = field(default_factory=MixedFriction)
 
     @model_validator(mode="after")
     def _fill_in(self):

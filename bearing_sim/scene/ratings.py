@@ -51,6 +51,30 @@ def rate(bearing) -> Rated:
     return Rated(computed.dynamic if given.dynamic is None else given.dynamic, static, limit, computed)
 
 
+class MinimumLoadLaw(NamedTuple):
+    """Load below which makers expect slip."""
+
+    at_rest: float  # [N]
+    by_speed: float  # by how much it grows with the speed of the shaft [N s/rad]
+    rule: str  # where it comes from
+
+
+_MINIMUM_OF_RATING = 0.02  # of C_r: the least load of roller bearings where a maker gives no factor (SKF, Schaeffler)
+
+
+def minimum_load_law(bearing) -> MinimumLoadLaw:
+    """Return the minimum load of a `bearing_sim.scene.bearing.Bearing`.
+
+    P_min = k_r (6 + 4 n/n_r)(d_m/100 mm)^2 (SKF, LYC) where ``bearing.ratings`` has k_r and n_r, otherwise 0.02 C_r.
+    """
+    limits = bearing.ratings
+    if limits.minimum_load_factor is not None and limits.reference_speed is not None:
+        scale = limits.minimum_load_factor * (bearing.pitch_diameter / 0.1) ** 2
+        return MinimumLoadLaw(6.0 * scale, 4.0 * scale / limits.reference_speed, "k_r (6 + 4 n/n_r)(d_m/100 mm)^2")
+    rule = "0.02 C_r; give minimum_load_factor and reference_speed in bearing.ratings"
+    return MinimumLoadLaw(_MINIMUM_OF_RATING * rate(bearing).dynamic, 0.0, rule)
+
+
 def load_rating(rollers, roller_diameter, length, gamma):
     """Return the basic dynamic radial load rating C_r [N] (ISO 281:2007, 7.1).
 

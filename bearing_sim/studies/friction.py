@@ -2,23 +2,27 @@
 """Frictional moment of the model against what makers and standards calculate, and the speeds at which it reaches ISO 15312's heat flow.
 
 Nothing of the model is fitted to these comparisons: all bearings have the same laws with the constants of their sources.  Bearings stand in an
-oil bath to the middle of the lowest roller, at 70 degC, in a mineral oil of 12 mm^2/s (ISO 15312), with a film that obeys thermal Eyring traction;
-moments are those of level ``steady``.
+oil bath to the middle of the lowest roller, with films that obey thermal Eyring traction, at 70 degC in a mineral oil of 12 mm^2/s (ISO 15312); over
+film ratios at 40 degC in mineral oils from 20 mm^2/s on.  Moments are those of level ``steady``.
 """
 
 import dataclasses
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
+
+import numpy as np
 
 from bearing_sim.levels.steady.model import Work, new_work
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.model.params import pack
 from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.physics.drag import bath_moment
+from bearing_sim.physics.rating_life import viscosity_ratio
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.lubricant import NoRollingResistance
+from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, scene_inputs
 from bearing_sim.sweep.thermal import OperatingState, operating_state, solved_answer
@@ -31,7 +35,11 @@ REFERENCE_LOAD = 0.05  # of C_0, ISO 15312
 _RPM = math.pi / 30.0
 # A mineral oil like ISO VG 32 with exactly the 12 mm^2/s at 70 degC of ISO 15312; its other properties follow from its kind of base oil.
 _OIL = {"law": "custom", "viscosity_40": 35.0e-6, "viscosity_100": 5.72e-6, "name": "ISO 15312 reference oil"}
-FAR = 2.0  # a ratio beyond this factor is explained
+FILM_RATIOS = (0.05, 0.1, 0.24, 0.5, 1.0, 2.8, 5.0, 10.0)  # kappa of full inlets, nu/nu_1
+FILM_LOADS = (0.02, 0.05, 0.1, 0.2, 0.3)  # of C
+_FILM_TEMPERATURE, _FILM_SPEED = 313.15, 0.5  # K; of the maker's reference speed
+_THINNEST = 20.0  # mm^2/s; for thinner films the shaft turns more slowly
+_INDEX = 95.0  # of viscosity, of a mineral oil
 
 
 class Coefficients(NamedTuple):
@@ -53,6 +61,12 @@ SERIES = {
 }
 # Of five series, from small to large.
 BEARINGS = ("NU 1010", "NU 1020", "NU 205", "NU 210", "NU 232", "NU 310", "NU 2210", "NU 2220", "NU 2310", "NU 2324")
+# Of all series and types with known R_1, from small to large.
+FILM_BEARINGS = (
+    *("NU 1010", "NU 1020", "NU 1032", "NU 1080", "NU 205", "NU 210", "NU 215", "NU 220", "NU 232", "NJ 210", "NUP 210", "N 210", "N 220"),
+    *("NU 305", "NU 310", "NU 318", "NU 326", "NJ 310", "NUP 313", "N 310", "NU 2205", "NU 2210", "NU 2220", "NUP 2210", "NJ 2232"),
+    *("NU 2305", "NU 2308", "NU 2310", "NU 2324", "NJ 2316"),
+)
 # R_1 of SKF's rolling moment by series (SKF General Catalogue, table 3c).
 _SKF_ROLLING = {"10": 1.12e-6, "2": 1.09e-6, "3": 1.09e-6, "22": 1.40e-6, "23": 1.48e-6}
 # Thermal speed ratings by ISO 15312 that NKE prints for the same sizes [rpm] (NKE, general catalogue, cylindrical roller bearings, E design).
@@ -103,10 +117,23 @@ def simple_moment(series: str, dimensions: Dimensions, speed: float, load: float
     return factors.f_0 * power * dimensions.mean**3 * 1e-7, factors.f_1 * load * dimensions.mean
 
 
-def skf_moment(series: str, dimensions: Dimensions, speed: float, load: float, viscosity: float, level: float) -> float:
-    """Return the moment [N mm] by SKF's friction model in an oil bath, no seals (SKF, The SKF model for calculating the frictional moment).
+class SkfMoment(NamedTuple):
+    """Frictional moment by SKF's friction model [N mm]."""
 
-    phi_ish phi_rs G_rr (nu n)^0.6 + G_sl mu_sl + M_drag with G_rr = R_1 d_m^2.41 F_r^0.31, G_sl = 0.0015 d_m F_r,
+    rolling: float  # M_rr
+    sliding: float  # M_sl
+    drag: float  # M_drag, of rollers and cage in the bath
+
+    @property
+    def whole(self) -> float:
+        """M_rr + M_sl + M_drag."""
+        return sum(self)
+
+
+def skf_moment(series: str, dimensions: Dimensions, speed: float, load: float, viscosity: float, level: float) -> SkfMoment:
+    """Return the moment by SKF's friction model in an oil bath, no seals (SKF, The SKF model for calculating the frictional moment).
+
+    M_rr = phi_ish phi_rs G_rr (nu n)^0.6 and M_sl = G_sl mu_sl with G_rr = R_1 d_m^2.41 F_r^0.31, G_sl = 0.0015 d_m F_r,
     mu_sl = phi_bl 0.12 + (1 - phi_bl) 0.02, phi_bl = exp(-2.6e-8 (n nu)^1.4 d_m), K_rs = 3e-8.
 
     Parameters
@@ -121,12 +148,20 @@ def skf_moment(series: str, dimensions: Dimensions, speed: float, load: float, v
     boundary = math.exp(-2.6e-8 * (speed * viscosity) ** 1.4 * mean)
     sliding = 0.0015 * mean * load * (0.12 * boundary + 0.02 * (1.0 - boundary))
     drag = sum(bath_moment(1e-3 * level, speed * _RPM, 1e-6 * viscosity, 1e-3 * d, 1e-3 * outside, 1e-3 * dimensions.width))
-    return rolling + sliding + 1e3 * drag
+    return SkfMoment(rolling, sliding, 1e3 * drag)
 
 
-def bath_scene(name: str, overrides: Sequence[str] = ()) -> Scene:
-    """Return a catalogue bearing under the reference conditions of ISO 15312 but for speed and load; ``overrides`` as of `load_scene`."""
-    lubricant = {"oil": _OIL, "temperature": TEMPERATURE, "supply": "oil_bath", "traction": {"law": "eyring"}}
+def bath_scene(name: str, overrides: Sequence[str] = (), oil: Mapping = _OIL, temperature: float = TEMPERATURE) -> Scene:
+    """Return a catalogue bearing in a bath, by default under the reference conditions of ISO 15312 but for speed and load.
+
+    Parameters
+    ----------
+    name : designation of the bearing.
+    overrides : as of `load_scene`.
+    oil : as in a scene.
+    temperature : of the oil and all parts [K].
+    """
+    lubricant = {"oil": oil, "temperature": temperature, "supply": "oil_bath", "traction": {"law": "eyring"}}
     operating = {"shaft_speed": f"{SLOWEST} rpm", "radial_load": "1 kN"}
     return load_scene({"name": name, "level": "steady", "bearing": name, "lubricant": lubricant, "operating": operating}, overrides)
 
@@ -153,6 +188,8 @@ class Moment(NamedTuple):
     viscous: float  # M_0 of the simple model
     by_load: float  # M_1 of it
     skf: float
+    skf_rolling: float  # parts of it
+    skf_sliding: float
     slip: float  # of the cage
 
     @property
@@ -164,21 +201,6 @@ class Moment(NamedTuple):
     def ratio(self) -> float:
         """The model's moment over that of the simple model."""
         return self.model / self.simple
-
-    @property
-    def reason(self) -> str:
-        """Why the ratio is beyond the factor `FAR`; empty where it is not."""
-        if 1.0 / FAR <= self.ratio <= FAR:
-            return ""
-        if self.ratio < 1.0:
-            return (
-                f"{100 * self.by_load / self.simple:.0f} % of the makers' moment is f_1 P d_m: sliding at roller ends and flanges, hysteresis and "
-                f"mixed friction are not in the model; ratio to M_0 alone {self.model / self.viscous:.2f}, to SKF's model {self.model / self.skf:.2f}"
-            )
-        return (
-            f"rolling resistance of flooded contacts, loaded or not ({self.rolling:.3g} N mm), and drag in the bath ({self.drag:.3g}), where M_0 is "
-            f"{self.viscous:.3g}; ratio to SKF's model {self.model / self.skf:.2f}"
-        )
 
 
 def moments(scene: Scene, series: str, conditions: Sequence[tuple[float, float]]) -> list[Moment]:
@@ -216,6 +238,7 @@ def _moment(scene: Scene, series: str, inputs: Inputs, state: OperatingState, wo
     level = 1e3 * (supply.level if getattr(supply, "level", None) is not None else params.rollers.radius)
     parts = {name: float(answer[column]) * 1e3 / (speed * _RPM) for name, column in ANSWER._asdict().items() if name.endswith("_power")}
     viscous, by_load = simple_moment(series, dimensions, speed, load, viscosity)
+    skf = skf_moment(series, dimensions, speed, load, viscosity, level)
     return Moment(
         scene.bearing.name,
         series,
@@ -230,7 +253,9 @@ def _moment(scene: Scene, series: str, inputs: Inputs, state: OperatingState, wo
         parts["flange_power"],
         viscous,
         by_load,
-        skf_moment(series, dimensions, speed, load, viscosity, level),
+        skf.whole,
+        skf.rolling,
+        skf.sliding,
         float(answer[ANSWER.cage_slip]),
     )
 
@@ -251,6 +276,111 @@ def moment_table(progress: Callable[[str], None] = lambda name: None, overrides:
         speeds = [SLOWEST, *(fraction * reference for fraction in SPEEDS)]
         found += moments(scene, series_of(name), [(speed, load * static) for speed in speeds for load in LOADS])
     return found
+
+
+class PartRatios(NamedTuple):
+    """Friction of one bearing at one film ratio and load, over that of SKF's friction model."""
+
+    bearing: str
+    series: str
+    kappa: float  # of full inlets
+    load: float  # of C
+    speed: float  # [rpm]
+    viscosity: float  # [mm^2/s]
+    whole: float  # moment
+    rolling: float  # hydrodynamic resistance to rolling over M_rr
+    sliding: float  # sliding on raceways, in pockets and on flanges, skew and hysteresis over M_sl
+    slip: float  # of the cage
+
+
+def film_condition(kappa: float, pitch_diameter: float, reference_speed: float) -> tuple[float, float]:
+    """Return speed [rpm] and viscosity [mm^2/s] at which a bearing has a film ratio.
+
+    Half of the reference speed in the oil that gives it; where that is thinner than 20 mm^2/s, an oil of 20 mm^2/s and a slower shaft.
+
+    Parameters
+    ----------
+    kappa : film ratio, see `bearing_sim.physics.rating_life.viscosity_ratio`.
+    pitch_diameter : D_pw [m].
+    reference_speed : of the maker [rpm].
+    """
+    from scipy.optimize import brentq
+
+    speed = _FILM_SPEED * reference_speed
+    viscosity = kappa / viscosity_ratio(1e-6, speed * _RPM, pitch_diameter)
+    if viscosity >= _THINNEST:
+        return speed, viscosity
+    slower = brentq(lambda log: math.log(viscosity_ratio(1e-6 * _THINNEST, math.exp(log) * _RPM, pitch_diameter) / kappa), -7.0, math.log(speed))
+    return math.exp(slower), _THINNEST
+
+
+def part_ratios(
+    progress: Callable[[str], None] = lambda name: None,
+    overrides: Sequence[str] = (),
+    names: Sequence[str] = FILM_BEARINGS,
+    kappas: Sequence[float] = FILM_RATIOS,
+) -> list[PartRatios]:
+    """Return the parts of friction over those of SKF's friction model, for all bearings, film ratios and loads.
+
+    Parameters
+    ----------
+    progress, overrides : as of `moment_table`.
+    names, kappas : bearings and film ratios.
+    """
+    found = []
+    for name in names:
+        progress(name)
+        bearing, series = bath_scene(name, overrides).bearing, series_of(name)
+        rating = rate(bearing).dynamic
+        for kappa in kappas:
+            speed, viscosity = film_condition(kappa, bearing.pitch_diameter, bearing.ratings.reference_speed / _RPM)
+            oil = {"law": "custom", "viscosity_40": 1e-6 * viscosity, "viscosity_index": _INDEX}
+            scene = bath_scene(name, overrides, oil, _FILM_TEMPERATURE)
+            conditions = [(speed, load * rating) for load in FILM_LOADS]
+            both = moments(scene, series, conditions), moments(_without_skew_and_hysteresis(scene), series, conditions)
+            for load, full, hydrodynamic in zip(FILM_LOADS, *both):
+                sliding = full.sliding + full.pocket + full.flange + full.rolling - hydrodynamic.rolling
+                ratios = full.model / full.skf, hydrodynamic.rolling / full.skf_rolling, sliding / full.skf_sliding
+                found.append(PartRatios(name, series, kappa, load, speed, viscosity, *ratios, full.slip))
+    return found
+
+
+def _without_skew_and_hysteresis(scene: Scene) -> Scene:
+    """Return a scene whose resistance to rolling is hydrodynamic only."""
+    mixed = scene.lubricant.mixed_friction
+    if mixed.law == "none":
+        return scene
+    return dataclasses.replace(
+        scene, lubricant=dataclasses.replace(scene.lubricant, mixed_friction=dataclasses.replace(mixed, skew=0.0, hysteresis=0.0))
+    )
+
+
+class Spread(NamedTuple):
+    """Where values lie."""
+
+    median: float
+    low: float  # 5 % are below
+    high: float  # 5 % are above
+
+
+class FilmRow(NamedTuple):
+    """`PartRatios` of all bearings and loads at one film ratio."""
+
+    kappa: float
+    count: int
+    whole: Spread
+    rolling: Spread
+    sliding: Spread
+    slip: Spread
+
+
+def film_rows(ratios: Sequence[PartRatios]) -> list[FilmRow]:
+    """Return the spread of ratios at each film ratio."""
+    rows = []
+    for kappa in dict.fromkeys(one.kappa for one in ratios):
+        points = np.array([one[6:] for one in ratios if one.kappa == kappa])
+        rows.append(FilmRow(kappa, len(points), *(Spread(*each) for each in np.percentile(points, (50, 5, 95), axis=0).T.tolist())))
+    return rows
 
 
 def heat_flow(dimensions: Dimensions) -> float:
@@ -288,7 +418,7 @@ def thermal_speeds(progress: Callable[[str], None] = lambda name: None, override
         laws = (
             lambda speed: moments(scene, series, [(speed, load)])[0].model,
             lambda speed: sum(simple_moment(series, dimensions, speed, load, viscosity)),
-            lambda speed: skf_moment(series, dimensions, speed, load, viscosity, level),
+            lambda speed: skf_moment(series, dimensions, speed, load, viscosity, level).whole,
         )
 
         def excess(log_speed, law):

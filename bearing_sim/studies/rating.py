@@ -1,11 +1,13 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Rating lives of a scene with everything that they follow from, side by side with the standards' symbols."""
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
 
 from bearing_sim.messages.topics import ARRAYS, LIFE_SYMBOLS
+from bearing_sim.model.films import films_of
 from bearing_sim.model.running_clearance import clearance_at_speed
 from bearing_sim.model.turning import turns
 from bearing_sim.monitoring.film_ratio import ThinnestFilm
@@ -38,7 +40,8 @@ def life_report(scene: Scene, samples: np.ndarray) -> dict:
     """
     lives, films = {name: mean_life(samples[name]) for name in LIVES}, ThinnestFilm(scene)
     film = np.where(turns(samples["shaft_speed"], 0.0), films.least(samples), np.nan)  # none at rest
-    return report_of(scene, lives | {name: float(np.mean(samples[name])) for name in FACTORS}, float(np.mean(film)))
+    report = report_of(scene, lives | {name: float(np.mean(samples[name])) for name in FACTORS}, float(np.mean(film)))
+    return report | {"films": films_of(scene, samples[-1])._asdict() if math.isfinite(report["film_um"]) else None}
 
 
 def report_of(scene: Scene, values: Mapping[str, float], film: float) -> dict:

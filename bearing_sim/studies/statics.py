@@ -81,7 +81,7 @@ def statics(scene: Scene, slices: int) -> Statics:
     def balance_at(turned, start=None):
         return balance(params, operating.load_angle + turned, cage_speed, load, moment, tilts, start, growth)
 
-    oil = oil_factors(speed, lubrication.kinematic_viscosity, 2 * raceways.pitch_radius, params.life)
+    oil = oil_factors(speed, lubrication.kinematic_viscosity, 2 * raceways.pitch_radius, params.starvation, params.life)
     equivalent, lives = _over_pitch(balance_at, oil, params.life, operating.radial_load, 2 * math.pi / count)
     at = balance_at(0.0)
     inner, outer = roller_loads(at)

@@ -7,7 +7,7 @@ one scrambled Sobol' sequence in 2 d dimensions; bands use both.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -18,9 +18,11 @@ from scipy import stats
 from scipy.stats import qmc
 
 from bearing_sim.levels.steady.table import empty_table
+from bearing_sim.model.params import replenishment
 from bearing_sim.scene import fidelity
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.fidelity import WHIRLING
+from bearing_sim.scene.mounting import clearance_limits
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.scene.uncertainty import Range, messages, quantities, ranges_of, ring_ranges, shown, value_at, with_values, without_dimensions
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
@@ -33,6 +35,13 @@ from bearing_sim.sweep.thermal import equilibrium_temperatures
 PROBABILITIES = (0.05, 0.50, 0.95)  # below the low end, the middle and the high end of a band
 CONFIDENCE = 0.95  # of intervals for the sampling error
 _RESAMPLES = 400
+_WARMER = 10.0  # K
+# Of films and asperities, with their sources.
+_MIXED_RANGES = (
+    ("lubricant.mixed_friction.boundary_friction", 0.08, 0.15, "uniform", "boundary friction of steel with usual additives"),
+    ("lubricant.mixed_friction.film_ratio_factor", 1 / 1.5, 3.0, "log_uniform", "published laws of asperities: 0.8 to 2.2 times"),
+    ("lubricant.mixed_friction.skew", 1 / 6, 1.0, "uniform", "assumption: a third to twice the mean skew"),
+)
 
 
 class Design(NamedTuple):
@@ -281,8 +290,45 @@ def lowest_level(scene: Scene, level: str | None = None) -> tuple[Scene, str]:
 
 
 def varied_ranges(scene: Scene) -> tuple[Range, ...]:
-    """Return the ranges that a study at a scene's level varies: those of `ranges_of`, and of the ring's motion where the level has it."""
-    return (*ranges_of(scene), *ring_ranges(scene))
+    """Return the ranges that a study at a scene's level varies.
+
+    Those of `ranges_of`, of the ring's motion where the level has it, and of clearance, oil temperature and films where the scene declares none.
+    """
+    declared = {one.field for one in scene.uncertainty}
+    return (*ranges_of(scene), *ring_ranges(scene), *(one for one in _assumed_ranges(scene) if one.field not in declared))
+
+
+def _assumed_ranges(scene: Scene) -> Iterator[Range]:
+    """Yield the ranges of what every bearing in service is uncertain about; none for a scene with full films alone, such as those of the paper."""
+    bearing, lubricant = scene.bearing, scene.lubricant
+    if lubricant.starvation.law == lubricant.mixed_friction.law == "none":
+        return
+    if isinstance(bearing.clearance, str):
+        limits = clearance_limits(bearing.clearance, bearing.bore_diameter)
+        yield Range(field="bearing.clearance", low=limits.least, high=limits.largest, source=f"group {bearing.clearance} of ISO 5753-1")
+    if scene.heat.law != "network":
+        kelvin = lubricant.temperature
+        source = "assumption: the temperature of the oil is known to 10 K"
+        yield Range(field="lubricant.temperature", low=kelvin - _WARMER, high=kelvin + _WARMER, source=source)
+    constant = replenishment(lubricant, 0.5 * bearing.roller.diameter)
+    if constant > 0.0:
+        source = "assumption: SKF's constants of sparse and sparser supply are a factor of 2 apart"
+        yield Range(
+            field="lubricant.starvation.constant", low=0.5 * constant, high=min(2.0 * constant, 1e-6), distribution="log_uniform", source=source
+        )
+    for field, low, high, shape, source in _MIXED_RANGES if lubricant.mixed_friction.law != "none" else ():
+        if low < value_at(scene, field) < high:  # otherwise somebody has chosen it
+            yield Range(field=field, low=low, high=high, distribution=shape, source=source)
+
+
+def filled_in(scene: Scene) -> Scene:
+    """Return a scene with numbers where it has names or nothing, for fields of `varied_ranges`: the mean of a clearance group, the supply's K_rs."""
+    values, (bearing, law) = {}, (scene.bearing, scene.lubricant.starvation)
+    if isinstance(bearing.clearance, str):
+        values["bearing.clearance"] = clearance_limits(bearing.clearance, bearing.bore_diameter).mean
+    if law.law != "none" and law.constant is None:
+        values["lubricant.starvation.constant"] = replenishment(scene.lubricant, 0.5 * bearing.roller.diameter)
+    return with_values(scene, values) if values else scene
 
 
 def rounded_up(samples: int) -> int:
@@ -320,8 +366,8 @@ def study(
         See `bearing_sim.sweep.tasks.run_tasks`.
     """
     scene, reason = lowest_level(scene, level)
-    ranges = varied_ranges(scene)
-    _check(scene, course is not None)
+    ranges, scene = varied_ranges(scene), filled_in(scene)
+    _check(scene, ranges, course is not None)
     conditions, seconds = course if course is not None else (None, np.ones(1))
     designed = design([distribution(one, value_at(scene, one.field)) for one in ranges], base, seed)
     if not shares:
@@ -376,8 +422,8 @@ def settled_batch(
     return {"settled": [settled(varied(scene, dict(zip(fields, point))), asked).tolist() for point in points]}
 
 
-def _check(scene: Scene, on_course: bool) -> None:
-    if not varied_ranges(scene):
+def _check(scene: Scene, ranges: Sequence[Range], on_course: bool) -> None:
+    if not ranges:
         raise UncertaintyError(
             "the scene has no uncertain fields; give ranges in its block `uncertainty`, such as "
             '--set "uncertainty.lubricant.mixture_fraction=[0.015, 0.05]"'
@@ -447,7 +493,7 @@ def largest_slip(scene: Scene, inputs: Inputs, draws: int = 8, seed: int = 1) ->
         No state was found.
     """
     scene = scene.at_level("steady")
-    ranges = varied_ranges(scene)
+    ranges, scene = varied_ranges(scene), filled_in(scene)
     points = design([distribution(one, value_at(scene, one.field)) for one in ranges], draws, seed).points[:draws] if ranges else ()
     scenes = [scene, *(varied(scene, dict(zip([one.field for one in ranges], point))) for point in points)]
     found = [state.cage_slip for each in scenes for state in states(each, inputs, skid_load=False).found]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.steady.operating_point import ANSWER, CREEP
-from bearing_sim.model.validity import PARTS, SHOWN, Conditions, Effect, Exceedance, Variation
+from bearing_sim.model.validity import SHOWN, Conditions, Effect, Exceedance, Variation
 from bearing_sim.physics.traction import EYRING, ROW, TractionConstants
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.loader import load_scene
@@ -90,14 +90,17 @@ def _figures(scene: Scene, sample: np.void, factors: Mapping[str, float]) -> _Fi
     answer = solved_answer(state, inputs, start=begin_at(float(sample["cage_slip"])))
     if math.isnan(answer[ANSWER.cage_slip]):
         return None
-    lives = lives_of(answer, steady_model(state, inputs))
+    # kappa is that of lives alone: the viscosity that drives starvation and asperities stays
+    kappa = factors.get("viscosity_ratio", 1.0) * state.lubrication.kinematic_viscosity
+    model = steady_model(state._replace(lubrication=state.lubrication._replace(kinematic_viscosity=kappa)), inputs)
+    lives = lives_of(answer, model)
     return _Figures(float(answer[ANSWER.cage_slip]), lives.modified, float(answer[ANSWER.shaft_power]), factors.get("film", 1.0))
 
 
 def _multiplied(state: OperatingState, factors: Mapping[str, float]) -> OperatingState:
     """Return the state of a bearing whose model has parts, names of `bearing_sim.model.validity.PARTS`, that are multiplied."""
     params, lubrication = state.params, state.lubrication
-    film, resistance, drag, lands, kappa = (factors.get(part, 1.0) for part in PARTS)
+    film, resistance, drag, lands = (factors.get(part, 1.0) for part in ("film", "rolling_resistance", "drag", "lands"))
     inner, outer = (
         each._replace(elastic=each.elastic + math.log(resistance))
         for each in (lubrication.rolling_resistance.inner, lubrication.rolling_resistance.outer)
@@ -109,7 +112,6 @@ def _multiplied(state: OperatingState, factors: Mapping[str, float]) -> Operatin
         mixture_density=drag * lubrication.mixture_density,
         mixture_flow=drag * lubrication.mixture_flow,
         bath=type(lubrication.bath)(*(drag * number for number in lubrication.bath)),
-        kinematic_viscosity=kappa * lubrication.kinematic_viscosity,
     )
     params = params._replace(cage=params.cage._replace(guide_width=lands * params.cage.guide_width))
     return state._replace(params=params, lubrication=lubrication)

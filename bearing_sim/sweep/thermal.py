@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
+from bearing_sim.levels.common.observation import oil_at_speed
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.model import Work, forget, new_work, solve_condition
 from bearing_sim.levels.steady.operating_point import ANSWER
@@ -15,7 +16,7 @@ from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.temperatures import given_temperatures, local_model, lubricate_scene
 from bearing_sim.physics.growth import excess_growth
 from bearing_sim.physics.lamina_life import EquivalentLoads
-from bearing_sim.physics.rating_life import Lives, oil_factors, rate_lives
+from bearing_sim.physics.rating_life import Lives, rate_lives
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs, thermal_nodes
 from bearing_sim.sweep.settling import advance_until_settled
@@ -116,7 +117,7 @@ def solved_answer(state: OperatingState, inputs: Inputs, work: Work | None = Non
 def lives_of(answer: np.ndarray, model: Model) -> Lives:
     """Return the rating lives of an answer of level steady, in revolutions."""
     params, drive = model.params, model.drive
-    oil = oil_factors(drive.shaft_speed, model.lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius, params.life)
+    oil = oil_at_speed(drive.shaft_speed, model)
     equivalent = EquivalentLoads(*answer[ANSWER.inner_equivalent_load : ANSWER.reference_modification_factor + 1].tolist())
     return rate_lives(math.hypot(drive.load_y, drive.load_z), equivalent, oil, params.life)
 

@@ -20,6 +20,7 @@ from bearing_sim.model.params import lubricate, pack
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.film import DOWSON_TOYODA, films, resist_rolling
+from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.physics.profile import concentrate, profile_depth
 from bearing_sim.scene.crown import crown_drops
 
@@ -40,7 +41,7 @@ def rolls(name, oil, temperature, speed="1500 rpm"):
 
 
 def resistance(params, lubrication, load, u, crowned):
-    """Return F_R of the inner contact by the package [N], without heat and supply."""
+    """Return F_R of the inner contact by the package [N]: that of the oil, without heat and of full inlets."""
     contacts = np.zeros((2, len(CONTACT), LANES))
     contacts[:, CONTACT.load], contacts[:, CONTACT.rolling] = load, u
     stiffness, profile = params.raceways.stiffness, params.raceways.profile
@@ -48,8 +49,8 @@ def resistance(params, lubrication, load, u, crowned):
     if crowned:
         concentrate(stiffness, profile, contacts)
         contacts[:, CONTACT.load] = load
-    inner = lubrication.rolling_resistance.inner._replace(heating=-np.inf, replenishment=0.0)
-    resist_rolling(contacts, lubrication.rolling_resistance._replace(inner=inner), crowned)
+    inner = lubrication.rolling_resistance.inner._replace(heating=-np.inf, hysteresis=0.0)
+    resist_rolling(contacts, lubrication.rolling_resistance._replace(inner=inner), FULL_FILMS, crowned)
     return contacts[0, CONTACT.resistance, 0], contacts[0, CONTACT.part, 0]
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from bearing_sim.model.params import Lubrication, Params
 from bearing_sim.numerics.compilation import template
 from bearing_sim.physics.growth import total_growth
+from bearing_sim.physics.mixed import film_state
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # golden section: the number that ratios of integers approximate worst
 HALF_PITCH = 1.0 / (2.0 + 1.0 / (3.0 + GOLDEN))  # 0.4393
@@ -55,6 +56,22 @@ def load_at(t, drive):
     """Return the radial load (y, z) [N] at a time [s]."""
     elapsed = t - drive.start
     return drive.load_y + drive.load_y_rate * elapsed, drive.load_z + drive.load_z_rate * elapsed
+
+
+@template
+def films_at(t, shaft_speed, model):
+    """Return the `bearing_sim.physics.mixed.FilmState` at a time [s], when the shaft turns at ``shaft_speed`` [rad/s]."""
+    params, (load_y, load_z) = model.params, load_at(t, model.drive)
+    return film_state(
+        shaft_speed,
+        math.sqrt(load_y * load_y + load_z * load_z),
+        model.lubrication.kinematic_viscosity,
+        params.cage.pocket_friction,
+        params.flanges.film_friction,
+        params.minimum_load,
+        params.starvation,
+        params.mixed,
+    )
 
 
 @template

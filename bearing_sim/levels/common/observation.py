@@ -40,7 +40,8 @@ TALLY = Tally()
 def oil_at_speed(shaft_speed, model):
     """Return the `bearing_sim.physics.rating_life.OilFactors` of a level's model at a shaft speed [rad/s]."""
     params = model.params
-    return oil_factors(shaft_speed, model.lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius, params.life)
+    viscosity, pitch_diameter = model.lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius
+    return oil_factors(shaft_speed, viscosity, pitch_diameter, params.starvation, params.life)
 
 
 @kernel

@@ -158,23 +158,24 @@ def _deepen(contact, block, deeper, faster, contacts):
 
 
 @fused
-def drag(raceways, lubrication, contacts):
+def drag(raceways, lubrication, films, contacts):
     """Write tractions and resistances to rolling of aligned rollers and their derivatives; rows `bearing_sim.physics.contact.CONTACT`.
 
     Parameters
     ----------
     raceways : `bearing_sim.model.params.Raceways`.
     lubrication : `bearing_sim.model.params.Lubrication`.
+    films : `bearing_sim.physics.mixed.FilmState`.
     contacts : load, rolling and sliding go in, and the penetration where rollers have a profile.
     """
     crowned = raceways.profile.crowned
     if crowned:
         concentrate(raceways.stiffness, raceways.profile, contacts)
-    traction(contacts, lubrication.inner, lubrication.outer)
+    traction(contacts, lubrication.inner, lubrication.outer, films)
     if crowned:
         spread_tractions(contacts)
     if lubrication.rolling_resistance.on:
-        resist_rolling(contacts, lubrication.rolling_resistance, crowned)
+        resist_rolling(contacts, lubrication.rolling_resistance, films, crowned)
 
 
 @template

@@ -28,7 +28,7 @@ orbit: what the other walls do, turned by a right angle.
 import math
 
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, total_load
-from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
+from bearing_sim.levels.common.model import films_at, inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import add, carry_normal_forces, drag, linear_churning, place_in_pockets, place_outwards, place_rollers
 from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
 from bearing_sim.levels.planar.jacobian import (
@@ -58,7 +58,7 @@ from bearing_sim.numerics.elementary import cosine_sine
 from bearing_sim.numerics.simd import load, magnitude, spread, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, damped_line_contact
 from bearing_sim.physics.drag import mixture_torque
-from bearing_sim.physics.flange import axial_share, flange_friction
+from bearing_sim.physics.flange import axial_share
 from bearing_sim.physics.land import Land, land_contact, land_film, land_friction
 from bearing_sim.physics.pocket import pocket_friction_lanes, wall_force
 from bearing_sim.physics.profile import damped_profile_contact
@@ -107,7 +107,7 @@ def _lands(land, model, own, rate, with_jacobian):
     """Write what the lands do to the cage, and to the ring if they are the inner ring's."""
     params = model.params
     cage = params.cage
-    film = land_film(land, params.variants.land_squeeze, cage, model.lubrication.viscosity)
+    film = land_film(land, params.variants.land_squeeze, cage, model.lubrication)
     contact, d_depth, d_rate, eccentricity, approach = land_contact(land, params)
     n_y, n_z = 0.0, 0.0
     friction, d_sliding = land_friction((land.cage_speed - land.ring_speed) * cage.guide_radius, cage.land_friction)
@@ -177,8 +177,8 @@ def _cage(y):
 
 
 @fused
-def _pocket_forces(y, params, rows):
-    """Write how all rollers lie in their pockets along the orbit, and what the pockets do to them."""
+def _pocket_forces(y, coefficient, params, rows):
+    """Write how all rollers lie in their pockets along the orbit, and what the pockets do to them; ``coefficient`` is that of friction."""
     cage, turn = params.cage, y[THETA] * (0.5 / math.pi)
     cage_cosine, cage_sine = cosine_sine(spread(turn - math.floor(turn)))
     for block in range(rows.shape[0]):
@@ -186,7 +186,7 @@ def _pocket_forces(y, params, rows):
         force, d_offset, d_rate = wall_force(
             offset, rate, cage.pocket_clearance, cage.pocket_stiffness, cage.pocket_damping, params.raceways.stiffness, params.raceways.damping
         )
-        friction, d_spin = pocket_friction_lanes(load(rows, block, ROLLER.spin), cage.pocket_friction)
+        friction, d_spin = pocket_friction_lanes(load(rows, block, ROLLER.spin), coefficient)
         store(rows, block, ROLLER.pocket_force, -force)
         store(rows, block, ROLLER.pocket_stiffness, d_offset)
         store(rows, block, ROLLER.pocket_damping, d_rate)
@@ -253,7 +253,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     """
     params, rows, contacts = model.params, work.rollers, work.contacts
     shaft_speed = shaft_speed_at(t, model.drive)
-    churning = linear_churning(y[OMEGA], shaft_speed, model)
+    films, churning = films_at(t, shaft_speed, model), linear_churning(y[OMEGA], shaft_speed, model)
     spread_state(y, params.rollers.count, rows)
     border_accelerations(t, y, model, work, rate, with_jacobian)
     for k in range(BORDER):
@@ -264,15 +264,15 @@ def equations(t, y, model, work, rate, with_jacobian):
     for k in range(4):
         work.evaluated_ring[k] = ring[k]
     normal_forces(params, contacts)
-    drag(params.raceways, model.lubrication, contacts)
-    _pocket_forces(y, params, rows)
+    drag(params.raceways, model.lubrication, films, contacts)
+    _pocket_forces(y, films.pocket_friction, params, rows)
     _accelerate(y, churning, model, rows, contacts, rate)
     pockets_guide = not params.cage.guidance.lands
     if pockets_guide:
         guide_forces(y, params, rows)
         guide_accelerations(params, rows, rate)
     if params.flanges.on:
-        flange_accelerations(shaft_speed, model, rows, contacts, rate)
+        flange_accelerations(shaft_speed, films.flange_friction, model, rows, contacts, rate)
     if with_jacobian:
         roller_jacobian(y, inner_radius, churning, params, rows, contacts, work.jacobian)
         if model.lubrication.rolling_resistance.on:
@@ -347,10 +347,9 @@ def guide_accelerations(params, rows, rate):
 
 
 @kernel
-def flange_accelerations(shaft_speed, model, rows, contacts, rate):
-    """Write what flanges do to the ends of all rollers, and add it to the accelerations of rollers and ring."""
+def flange_accelerations(shaft_speed, friction, model, rows, contacts, rate):
+    """Write what flanges do to the ends of all rollers, and add it to the accelerations of rollers and ring; ``friction`` is a coefficient."""
     params = model.params
-    friction = flange_friction(shaft_speed, model.lubrication.kinematic_viscosity, params.flanges)
     carried = total_load(ROLLER, CONTACT.load, rows, contacts)
     per_mass, per_inertia = 1.0 / params.rollers.mass, 1.0 / params.rollers.inertia
     for block in range(rows.shape[0]):

@@ -102,7 +102,7 @@ def land_powers(y, shaft_speed, model):
     params = model.params
     cage = params.cage
     land = place_in_lands(y, shaft_speed, cage)
-    film = land_film(land, params.variants.land_squeeze, cage, model.lubrication.viscosity)
+    film = land_film(land, params.variants.land_squeeze, cage, model.lubrication)
     against_ring = film[2] + land.y * film[1] - land.z * film[0]
     driven = against_ring * land.ring_speed
     lost = driven - (film[0] * land.y_speed + film[1] * land.z_speed + film[2] * land.cage_speed)

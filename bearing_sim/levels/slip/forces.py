@@ -23,7 +23,7 @@ What all rollers together give the cage is not changed: P_j = rho_j L_j + (1 - r
 
 import math
 
-from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
+from bearing_sim.levels.common.model import films_at, inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import drag, slides_up_to_rolling
 from bearing_sim.levels.slip.state import OMEGA, POCKET, SPIN, THETA
 from bearing_sim.numerics.compilation import fused, kernel
@@ -31,7 +31,7 @@ from bearing_sim.numerics.linear_algebra import ARROW
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT, TINY
 from bearing_sim.physics.drag import mixture_torque, roller_drag
-from bearing_sim.physics.flange import axial_share, flange_friction, rub, shear
+from bearing_sim.physics.flange import axial_share, rub, shear
 from bearing_sim.physics.lamina_life import MOMENTS, add_load_moments, equivalent_loads
 from bearing_sim.physics.land import land_torque
 from bearing_sim.physics.load_balance import LOAD, balance_ring
@@ -76,7 +76,7 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
 
 
 @fused
-def _tractions(cage_speed, shaft_speed, y, model, work):
+def _tractions(cage_speed, shaft_speed, films, y, model, work):
     """Compute the tangential forces in all contacts; results in ``work.contacts``."""
     rollers, inner_radius = model.params.rollers, model.params.raceways.inner_radius + work.growth[0]
     contacts, loads, count, profile = work.contacts, work.loads, model.params.rollers.count, model.params.raceways.profile
@@ -96,7 +96,7 @@ def _tractions(cage_speed, shaft_speed, y, model, work):
             inner = loads[LOAD.squeeze, j] + work.ring[0] * loads[LOAD.cosine, j] + work.ring[1] * loads[LOAD.sine, j] - outer
             contacts[block, CONTACT.penetration, lane] = inner + profile.highest
             contacts[blocks + block, CONTACT.penetration, lane] = outer + profile.highest
-    drag(model.params.raceways, model.lubrication, contacts)
+    drag(model.params.raceways, model.lubrication, films, contacts)
 
 
 @fused
@@ -117,7 +117,7 @@ def _leaning_force(cage_speed, params, work):
 def _cage_torque(cage_speed, shaft_speed, model):
     """Return the torque of guide lands and mixture on the cage body [N m] and its derivative by cage speed."""
     cage = model.params.cage
-    lands, d_lands = land_torque(cage_speed, cage.guidance.turning * shaft_speed, cage.assumed_eccentricity, model.lubrication.viscosity, cage)
+    lands, d_lands = land_torque(cage_speed, cage.guidance.turning * shaft_speed, cage.assumed_eccentricity, model.lubrication, cage)
     mixture, d_mixture = mixture_torque(cage_speed, shaft_speed, model.params, model.lubrication)
     return lands + mixture, d_lands + d_mixture
 
@@ -128,6 +128,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     params, drive, loads, tangential, pockets = model.params, model.drive, work.loads, work.tangential, work.pockets
     rollers, cage = params.rollers, params.cage
     cage_speed, shaft_speed = y[OMEGA], shaft_speed_at(t, drive)
+    films = films_at(t, shaft_speed, model)
     work.growth[0] = inner_growth(shaft_speed, model)
     inner_radius = params.raceways.inner_radius + work.growth[0]
     load_y, load_z = load_at(t, drive)
@@ -136,7 +137,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     torque, d_torque = _cage_torque(cage_speed, shaft_speed, model)
     churning, d_churning = roller_drag(cage_speed, shaft_speed, params, model.lubrication)
     _leaning_force(cage_speed, params, work)
-    _tractions(cage_speed, shaft_speed, y, model, work)
+    _tractions(cage_speed, shaft_speed, films, y, model, work)
     contacts, jacobian, border = work.contacts, work.jacobian.rows, work.jacobian.border
     inertia, roller_radius, blocks = cage.inertia, rollers.radius, contacts.shape[0] // 2
     for j in range(rollers.count):
@@ -162,7 +163,7 @@ def equations(t, y, model, work, rate, with_jacobian):
         torque, d_torque = torque + resisted, d_torque + d_resisted
     flanges = params.flanges.on
     if flanges:
-        rubbed, d_rubbed = _rub_on_flanges(y, shaft_speed, model, work, with_jacobian)
+        rubbed, d_rubbed = _rub_on_flanges(y, shaft_speed, films.flange_friction, model, work, with_jacobian)
         torque, d_torque = torque + rubbed, d_torque + d_rubbed
     cage_acceleration = torque / inertia
     shared = press_pockets(cage_speed, cage_acceleration, params, work)
@@ -171,8 +172,9 @@ def equations(t, y, model, work, rate, with_jacobian):
     for j in range(rollers.count):
         # The pocket supplies what keeps the roller with the cage, and its friction brakes the spin (Deng 2017, eq. 13).
         radius, spin, pressed = loads[LOAD.radius, j], y[SPIN + j], pockets[POCKET.force, j]
-        pocket, friction = abs(pressed), pocket_friction(spin, cage.pocket_friction)
+        pocket, friction = abs(pressed), pocket_friction(spin, films.pocket_friction)
         brake = pocket * friction
+        pockets[POCKET.brake, j] = brake
         reaction += roller_radius * brake
         block, lane = j // LANES, j % LANES
         turning = contacts[block, CONTACT.force, lane] - contacts[blocks + block, CONTACT.force, lane]
@@ -183,7 +185,7 @@ def equations(t, y, model, work, rate, with_jacobian):
             rate[SPIN + j] += (work.flanges[1, j] + work.flanges[3, j]) / rollers.inertia
         if with_jacobian:
             smooth = math.sqrt(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
-            d_brake = cage.pocket_friction * pocket * FRICTION_SPIN * FRICTION_SPIN / (smooth * smooth * smooth)
+            d_brake = films.pocket_friction * pocket * FRICTION_SPIN * FRICTION_SPIN / (smooth * smooth * smooth)
             # a pocket presses as its roller is driven, and as cage and rollers are accelerated
             felt, per_pressing = pockets[POCKET.felt_change, j], friction if pressed > 0.0 else -friction
             d_brake += per_pressing * felt * jacobian[ARROW.row, j] / radius
@@ -310,19 +312,20 @@ def _push_rollers(inner_radius, params, work, with_jacobian):
 
 
 @kernel
-def _rub_on_flanges(y, shaft_speed, model, work, with_jacobian):
+def _rub_on_flanges(y, shaft_speed, friction, model, work, with_jacobian):
     """Add to forces and Jacobian of the rollers what flanges do to their ends; return the torque on the cage [N m] and its derivative by cage speed.
 
     Parameters
     ----------
     y : state.
     shaft_speed : [rad/s].
+    friction : coefficient.
     model, work : of the level; takes forces and torques in ``work.flanges``.
     with_jacobian : whether to add to the Jacobian.
     """
     params, lubrication, jacobian = model.params, model.lubrication, work.jacobian.rows
     flanges, cage_speed, torque, d_torque = params.flanges, y[OMEGA], 0.0, 0.0
-    friction, count, carried = flange_friction(shaft_speed, lubrication.kinematic_viscosity, flanges), params.rollers.count, 0.0
+    count, carried = params.rollers.count, 0.0
     for j in range(count):
         carried += work.loads[LOAD.inner, j]
     for ring in range(2):

@@ -12,7 +12,6 @@ from bearing_sim.numerics.compilation import kernel
 from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.land import land_torque
 from bearing_sim.physics.load_balance import LOAD
-from bearing_sim.physics.pocket import pocket_friction
 
 
 @kernel
@@ -29,7 +28,7 @@ def slip_powers(cage_speed, spins, shaft_speed, model, work):
     params, lubrication, contacts, loads = model.params, model.lubrication, work.contacts, work.loads
     rollers, count, cage = params.rollers, params.rollers.count, params.cage
     guide_speed = cage.guidance.turning * shaft_speed
-    land = land_torque(cage_speed, guide_speed, cage.assumed_eccentricity, lubrication.viscosity, cage)[0]
+    land = land_torque(cage_speed, guide_speed, cage.assumed_eccentricity, lubrication, cage)[0]
     bore, windage = windage_powers(cage_speed, shaft_speed, params, lubrication)
     drag, seals = roller_drag(cage_speed, shaft_speed, params, lubrication)[0], seal_power(shaft_speed, params)
     blocks = contacts.shape[0] // 2
@@ -39,12 +38,7 @@ def slip_powers(cage_speed, spins, shaft_speed, model, work):
     for j in range(count):
         radius = loads[LOAD.radius, j]
         churning += drag * radius * cage_speed
-        pocket += (
-            abs(work.pockets[POCKET.force, j])
-            * pocket_friction(spins[j], cage.pocket_friction)
-            * rollers.radius
-            * (spins[j] + params.variants.pocket_reaction * cage_speed)
-        )
+        pocket += work.pockets[POCKET.brake, j] * rollers.radius * (spins[j] + params.variants.pocket_reaction * cage_speed)
     return Powers(
         shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + work.growth[0])
         + bore

@@ -26,6 +26,7 @@ class PocketRow(NamedTuple):
     felt: int = 1  # part that it feels of the force without play
     felt_change: int = 2  # and of a change of that force
     d_cage: int = 3  # derivative of the other forces on the roller by the cage's speed [N s/rad]
+    brake: int = 4  # friction against the roller's spin [N]
 
 
 POCKET = PocketRow()
@@ -38,7 +39,7 @@ class Work(NamedTuple):
     ring: np.ndarray  # ring centre (y, z) [m], shape (2,); start of the next search
     contacts: np.ndarray  # rows `bearing_sim.physics.contact.CONTACT`, those with the inner raceway first
     tangential: np.ndarray  # all forces along the orbit on each roller but the pocket's [N], shape (Z,)
-    pockets: np.ndarray  # rows `POCKET`, shape (4, Z)
+    pockets: np.ndarray  # rows `POCKET`, shape (len(PocketRow), Z)
     flanges: np.ndarray  # on each roller: force along the orbit [N] and torque on its spin [N m] of the inner ring's, then of the outer's, (4, Z)
     growth: np.ndarray  # of the inner raceway at present [m], shape (1,)
     pitch: np.ndarray  # rows cosine and sine of 2 pi j/Z, and the angle in intervals of the contour table, shape (3, Z)

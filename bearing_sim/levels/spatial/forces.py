@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, stop_skew_on_face, total_load
-from bearing_sim.levels.common.model import inner_growth, shaft_speed_at
+from bearing_sim.levels.common.model import films_at, inner_growth, shaft_speed_at
 from bearing_sim.levels.common.rollers import add, carry_normal_forces, linear_churning, place_in_pockets, place_outwards, place_rollers
 from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
 from bearing_sim.levels.planar import state as planar
@@ -59,7 +59,7 @@ from bearing_sim.levels.spatial.state import (
 from bearing_sim.numerics.compilation import fused, kernel, template
 from bearing_sim.numerics.simd import larger, load, magnitude, spread, spread_run, store, total, where_positive
 from bearing_sim.physics.contact import damped_line_contact
-from bearing_sim.physics.flange import axial_share, flange_friction
+from bearing_sim.physics.flange import axial_share
 from bearing_sim.physics.pocket import pocket_friction_lanes
 from bearing_sim.physics.traction import traction_along
 
@@ -211,11 +211,12 @@ def hold_slices(offset, rate, skew, skew_rate, clearance, stiffness, params):
 
 
 @fused
-def pocket_forces(block, params, rows):
+def pocket_forces(block, coefficient, params, rows):
     """Write what the pockets do to a block of rollers that has been placed in them.
 
     Parameters
     ----------
+    coefficient : of friction.
     params : of the bearing.
     rows : of the rollers, see `bearing_sim.levels.spatial.state.ROLLER`.
     """
@@ -223,7 +224,7 @@ def pocket_forces(block, params, rows):
     offset, rate = load(rows, block, ROLLER.pocket_offset), load(rows, block, ROLLER.pocket_rate)
     skew, skew_rate = load(rows, block, ROLLER.pocket_skew), load(rows, block, ROLLER.pocket_skew_rate)
     force, moment, k_0, k_1, k_2, d_0, d_1, d_2 = hold_slices(offset, rate, skew, skew_rate, cage.pocket_clearance, cage.pocket_stiffness, params)
-    friction, d_spin = pocket_friction_lanes(spin, cage.pocket_friction)
+    friction, d_spin = pocket_friction_lanes(spin, coefficient)
     store(rows, block, ROLLER.pocket_force, -force)
     store(rows, block, ROLLER.pocket_moment, -moment)
     store(rows, block, ROLLER.pocket_stiffness, k_0)
@@ -381,7 +382,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     """
     params, rows, contacts = model.params, work.rollers, work.contacts
     shaft_speed = shaft_speed_at(t, model.drive)
-    churning = linear_churning(y[OMEGA], shaft_speed, model)
+    films, churning = films_at(t, shaft_speed, model), linear_churning(y[OMEGA], shaft_speed, model)
     inner_radius, resistance = params.raceways.inner_radius + inner_growth(shaft_speed, model), model.lubrication.rolling_resistance.on
     spread_state(y, params.rollers.count, rows)
     border_accelerations(t, y, model, work, rate, with_jacobian)
@@ -394,15 +395,15 @@ def equations(t, y, model, work, rate, with_jacobian):
         work.evaluated_ring[k] = ring[k]
     points, first_points, count = work.points, work.first_points, params.slices.points
     middle, end = press_points(contacts, points, first_points, params.slices, params.raceways.stiffness, params.raceways.damping)
-    traction_along(points[:end], middle, count, model.lubrication.inner, model.lubrication.outer)
+    traction_along(points[:end], middle, count, model.lubrication.inner, model.lubrication.outer, films)
     sum_tractions(contacts, points, first_points, count)
     if resistance:
-        resist(contacts, params.slices, model.lubrication.rolling_resistance)
+        resist(contacts, params.slices, model.lubrication.rolling_resistance, films)
     if params.flanges.load > 0.0:
         press_axially(params, rows, contacts)
     for block in range(rows.shape[0]):
         _lie_in_pockets(block, y, cage_cosine, cage_sine, rows)
-        pocket_forces(block, params, rows)
+        pocket_forces(block, films.pocket_friction, params, rows)
     for block in range(rows.shape[0]):
         _accelerate(block, y, churning, model, rows, contacts, rate)
     if not params.cage.guidance.lands:
@@ -410,7 +411,7 @@ def equations(t, y, model, work, rate, with_jacobian):
             guide_forces(block, y, params, rows)
             guide_accelerations(block, params, rows, rate)
     if params.flanges.on:
-        flange_accelerations(shaft_speed, model, rows, contacts, rate)
+        flange_accelerations(shaft_speed, films.flange_friction, model, rows, contacts, rate)
     if with_jacobian:
         roller_jacobian(y, inner_radius, churning, resistance, params, model.lubrication.viscosity, rows, contacts, work.chain, work.jacobian)
     if work.support.shape[0] > 0:
@@ -536,14 +537,13 @@ def _write_flanges(block, shaft_speed, friction, pressed, model, rows):
 
 
 @kernel
-def flange_accelerations(shaft_speed, model, rows, contacts, rate):
-    """Write what flanges do to the ends of all rollers, and add it to the accelerations of rollers and ring.
+def flange_accelerations(shaft_speed, friction, model, rows, contacts, rate):
+    """Write what flanges do to the ends of all rollers, and add it to the accelerations of rollers and ring; ``friction`` is a coefficient.
 
     A moment on the skew has a lever along the orbit where the roller is tilted as well, as the points' forces have: the direction of the skew
     turns with the roller's position.
     """
     params, tilts = model.params, model.params.tilts
-    friction = flange_friction(shaft_speed, model.lubrication.kinematic_viscosity, params.flanges)
     carried = total_load(ROLLER, SLICED.load, rows, contacts)
     free, per_mass, per_tilt = tilts.ring_free / tilts.ring_inertia, 1.0 / params.rollers.mass, 1.0 / tilts.roller_inertia
     for block in range(rows.shape[0]):

@@ -322,7 +322,7 @@ def _find_part(block, contacts, slices):
 
 
 @kernel
-def resist(contacts, slices, resistance):
+def resist(contacts, slices, resistance, films):
     """Write resistances to rolling of all contacts and their derivatives; they have been pressed on their points.
 
     A contact resists on all its length, with what the film beside the part that bears adds (`bearing_sim.physics.film`), so evenly that its moment is
@@ -332,10 +332,11 @@ def resist(contacts, slices, resistance):
     ----------
     contacts, slices : as of `place_points`.
     resistance : `bearing_sim.physics.film.RollingResistance`.
+    films : `bearing_sim.physics.mixed.FilmState`.
     """
     for block in range(contacts.shape[0]):
         _find_part(block, contacts, slices)
-    resist_rolling_by_rows(SLICED, contacts, contacts.shape[0] // 2, True, resistance)
+    resist_rolling_by_rows(SLICED, contacts, contacts.shape[0] // 2, True, resistance, films)
     for block in range(contacts.shape[0]):
         d_load = load(contacts, block, SLICED.resistance_d_load)
         k_0, k_1 = d_load * load(contacts, block, SLICED.stiffness), d_load * load(contacts, block, SLICED.stiffness + 1)

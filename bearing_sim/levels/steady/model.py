@@ -445,6 +445,7 @@ def _warmed(lubrication, inlet, growth, viscosity, film_temperature):
         lubrication.inner,
         lubrication.outer,
         lubrication.viscosity,
+        lubrication.density,
         lubrication.mixture_density,
         lubrication.mixture_flow,
         inlet,

@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from bearing_sim.studies.validation import catalogues, closed_forms, heat_and_friction, independent, published_digits, trends
+from bearing_sim.studies.validation import catalogues, closed_forms, heat_and_friction, independent, published_digits, thin_films, trends
 from bearing_sim.studies.validation.check import Check
 from bearing_sim.studies.validation.recorded_lines import recorded_checks
 
@@ -13,6 +13,7 @@ CHECKS: tuple[Check, ...] = (
     *catalogues.CHECKS,
     *independent.CHECKS,
     *heat_and_friction.CHECKS,
+    *thin_films.CHECKS,
     *trends.CHECKS,
 )
 """Those that need no file.  Each has a name of its own."""

@@ -7,7 +7,7 @@ import numpy as np
 from scipy import stats
 
 from bearing_sim.model.oil import OilState
-from bearing_sim.model.params import pack
+from bearing_sim.model.params import lubricate, pack
 from bearing_sim.model.thermal_network import POWERS, thermal_network
 from bearing_sim.physics.drag import bath_moment
 from bearing_sim.physics.film import DOWSON_HIGGINSON, DOWSON_TOYODA, films
@@ -79,8 +79,10 @@ def _shrink_fits() -> list[Comparison]:
 
 
 def _oil_between_cage_and_land() -> list[Comparison]:
-    cage = pack(load_scene("deng2017_table1")).cage
-    found = [-land_torque(2000.0, 0.0, eccentricity, 2e-3, cage)[0] for eccentricity in (0.0, 0.8)]
+    scene = load_scene("deng2017_table1")
+    params = pack(scene)
+    lubrication = lubricate(scene.lubricant, params, 393.15)._replace(viscosity=2e-3)
+    found = [-land_torque(2000.0, 0.0, eccentricity, lubrication, params.cage)[0] for eccentricity in (0.0, 0.8)]
     central = 2 * math.pi * 2e-3 * 2000 * 33.5e-3**3 * 5e-3 / 0.15e-3
     quantity = "torque of a land of the paper's cage at 2000 rad/s, central and 0.8 eccentric"
     return [compared(quantity, "Petroff; 1/sqrt(1 - e^2) of it", (central, central / 0.6), found, unit="N m", relative=1e-10)]

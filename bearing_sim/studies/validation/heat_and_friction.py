@@ -13,7 +13,7 @@ from bearing_sim.physics.growth import Temperatures, growth_at, seats_at
 from bearing_sim.physics.thermal_network import NODE, NODES, NetworkInputs, heat_flows, new_work, settle
 from bearing_sim.scene.loader import scene_from_mapping
 from bearing_sim.simulation import IntegrationError
-from bearing_sim.studies.friction import BEARINGS, dimensions_of, heat_flow, moment_table, thermal_speeds
+from bearing_sim.studies.friction import BEARINGS, FILM_LOADS, FILM_RATIOS, dimensions_of, heat_flow, moment_table, part_ratios, thermal_speeds
 from bearing_sim.studies.validation.check import HOLDS, IN_PART, Check, Comparison, judged, within
 
 GROUP = "Heat and friction"
@@ -140,8 +140,28 @@ def _moments() -> list[Comparison]:
     ]
 
 
+_MIXED = 0.5  # kappa up to which SKF's sliding moment is that of asperities
+
+
+def _over_films() -> list[Comparison]:
+    found = part_ratios()
+    at = f"kappa {FILM_RATIOS[0]:g} to {FILM_RATIOS[-1]:g}, {FILM_LOADS[0]:g} to {FILM_LOADS[-1]:g} C"
+    mixed = [each for each in found if each.kappa <= _MIXED]
+    parts = (
+        (f"frictional moment over SKF's friction model, {at}", found, "whole"),
+        ("hydrodynamic resistance to rolling over M_rr, likewise", found, "rolling"),
+        (f"sliding, skew and hysteresis over M_sl, likewise up to kappa {_MIXED:g}", mixed, "sliding"),
+    )
+    results = []
+    for quantity, points, part in parts:
+        ratios = [getattr(each, part) for each in points]
+        results += _ratios(quantity, "SKF, general catalogue", [each.bearing for each in points], ratios, 1.5)
+    return results
+
+
 CHECKS = (
     Check("reference_heat", GROUP, _reference_heat),
     Check("thermal_speeds", GROUP, _thermal_speeds, "bearing-sim study friction"),
     Check("frictional_moments", GROUP, _moments, "bearing-sim study friction"),
+    Check("friction_over_films", GROUP, _over_films, "bearing-sim study friction", True),
 )

@@ -12,6 +12,7 @@ from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics import heat
 from bearing_sim.physics.contact import CONTACT, line_contact_stiffness
 from bearing_sim.physics.lamina_life import add_lamina_powers, equivalent_lamina_loads, stress_risers
+from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.physics.rating_life import OilFactors, rate_lives, reliability_factor, ring_ratings
 from bearing_sim.physics.traction import traction
 from bearing_sim.scene.loader import load_scene
@@ -141,7 +142,7 @@ def _traction_of_oil_4109() -> list[Comparison]:
     for slide_to_roll in (0.01, 0.05, 0.2):
         contacts = np.zeros((2, len(CONTACT), LANES))
         contacts[:, CONTACT.rolling], contacts[:, CONTACT.sliding], contacts[:, CONTACT.load] = rolling, slide_to_roll * rolling, load
-        traction(contacts, lubrication.inner, lubrication.outer)
+        traction(contacts, lubrication.inner, lubrication.outer, FULL_FILMS)
         found.append(float(contacts[0, CONTACT.force, 0]) / load)
     quantity = "coefficient of traction of 4109 oil at 1000 N, 73 m/s, slide-to-roll ratios of 0.01, 0.05, 0.2"
     return [compared(quantity, "Wang's fit, two digits", (0.0013, 0.0052, 0.0094), found, absolute=0.6e-4, digits=2)]

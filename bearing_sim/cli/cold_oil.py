@@ -1,0 +1,78 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim study cold-oil``: slip and skid load of an idling bearing over load, temperature and supply of oil."""
+
+import click
+
+from bearing_sim.cli.options import json_option, picture_option, scene_argument, set_option
+from bearing_sim.cli.outputs import WritingCommand
+from bearing_sim.cli.reporting import (
+    UsageError,
+    announce_compilation,
+    as_file_error,
+    as_usage_error,
+    print_json,
+    print_rows,
+    quantity_of,
+    warn_of_scene,
+)
+
+
+@click.command("cold-oil", cls=WritingCommand)
+@scene_argument
+@set_option
+@click.option("--supply", "supplies", multiple=True, help="Supply of oil; can be repeated  [default: oil_bath, circulating, oil_jet].")
+@click.option("--temperature", "temperatures", multiple=True, metavar="VALUE", help="Oil temperature; can be repeated  [default: 0 to 80 degC].")
+@click.option("--load", "loads", multiple=True, metavar="VALUE", help="Radial load; can be repeated  [default: 0.08 to 3 times the minimum load].")
+@picture_option("Draw the map")
+@json_option
+def cold_oil(scene_name, overrides, supplies, temperatures, loads, picture, as_json):
+    """Map the slip of SCENE over load and oil temperature, from ideal rolling and from a skid, by supply of oil.
+
+    Says below which load a skid lasts, whether that load and a skid grow as the oil cools and fall as the load grows, as is published of gearboxes,
+    and where a skid depends on how fast the shaft runs up. All parts are as warm as the oil.
+    """
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.simulation import IntegrationError
+    from bearing_sim.studies.cold_oil import SUPPLIES, TEMPERATURES, draw_map, run_ups, skid_map, trends
+
+    with as_usage_error(SceneError):
+        scene = load_scene(scene_name, overrides)
+    if not scene.operating.shaft_speed:
+        raise UsageError("operating.shaft_speed: 0; slip is mapped while the shaft turns: give a speed")
+    warn_of_scene(scene, before_results=False)
+    announce_compilation()
+    celsius = [round(quantity_of("--temperature", each, "K") - 273.15, 9) for each in temperatures] or TEMPERATURES
+    newtons = [quantity_of("--load", each, "N") for each in loads]
+    with as_usage_error(SceneError, IntegrationError):
+        found = skid_map(scene, supplies or SUPPLIES, celsius, newtons)
+        told, run_up = trends(found), run_ups(scene, found)
+    if picture is not None:
+        with as_file_error(), picture.draft() as draft:
+            draw_map(found, draft, f"{scene.name}: slip with cold oil")
+    if as_json:
+        parts = {"points": found.points, "skid_loads": found.skid_loads, "trends": told, "run_ups": run_up}
+        print_json(
+            {"scene": scene.name, "minimum_load": found.minimum_load, **{name: [one._asdict() for one in each] for name, each in parts.items()}}
+        )
+        return
+    for supply in dict.fromkeys(point.supply for point in found.points):
+        columns = [point.celsius for point in found.skid_loads if point.supply == supply]
+        rows = [
+            (f"{load:.4g} N", *(_slips(point) for point in found.points if (point.supply, point.load) == (supply, load)))
+            for load in dict.fromkeys(point.load for point in found.points)
+        ]
+        rows.append(("skid load", *(f"{each.load:.4g} N" for each in found.skid_loads if each.supply == supply)))
+        title = f"{scene.name}, {supply}: cage slip [%], and from a skid where that differs; minimum load {found.minimum_load:.4g} N"
+        print_rows(title, ("load", *(f"{each:g} degC" for each in columns)), rows)
+    rows = [(one.claim, one.figures, {True: "yes", False: "no", None: "no case"}[one.holds]) for one in told]
+    print_rows("published trends", ("trend", "figures", "holds"), rows, words=("trend", "figures"))
+    if run_up:
+        rows = [(each.supply, f"{each.load:.4g} N", f"{each.celsius:g} degC", f"{each.seconds:g} s", f"{100 * each.slip:.3g} %") for each in run_up]
+        print_rows("slip after a run-up from rest", ("supply", "load", "oil", "run-up", "cage slip"), rows, words=("supply",))
+    if picture is not None:
+        click.echo(picture.path)
+
+
+def _slips(point) -> str:
+    rolling, skid = f"{100 * point.rolling:.3g}", f"{100 * point.skid:.3g}"
+    return rolling if rolling == skid else f"{rolling} / {skid}"

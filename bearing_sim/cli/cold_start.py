@@ -1,0 +1,128 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim study cold-start``: a cold start over time, idling and then loaded."""
+
+import math
+
+import click
+
+from bearing_sim.cli.options import allow_outside_option, json_option, picture_option, set_option
+from bearing_sim.cli.outputs import WritingCommand
+from bearing_sim.cli.reporting import (
+    UsageError,
+    announce_compilation,
+    as_failed_run,
+    as_file_error,
+    as_usage_error,
+    print_json,
+    print_rows,
+    progress_bar,
+    quantity_of,
+    seconds_of,
+    warn_of_scene,
+)
+
+
+@click.command("cold-start", cls=WritingCommand)
+@allow_outside_option
+@click.argument("scene_name", metavar="[SCENE]", required=False)
+@set_option
+@click.option(
+    "--load", "loads", multiple=True, metavar="VALUE", help="Load while idling; can be repeated  [default: 5 and 30 % of the minimum load]."
+)
+@click.option("--loaded", metavar="VALUE", help="Load afterwards  [default: 0.1 of the dynamic load rating].")
+@click.option("--idling", default="1 h", show_default=True, metavar="S", help="Time under the first load.")
+@click.option("--temperature", default="0 degC", show_default=True, metavar="VALUE", help="Of all parts, the oil and the air at the start.")
+@click.option("--rise", default="1 s", show_default=True, metavar="S", help="Time in which the load rises, at most 10 s.")
+@picture_option("Draw the courses", "-o", "--out")
+@json_option
+def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise, picture, as_json):
+    """Follow SCENE from a cold start: it idles, its losses warm it, then the load comes, until it is near thermal equilibrium.
+
+    Once from ideal rolling and once from a skid.  A second table says what the load does to the cage if it comes earlier, and to a warm machine that
+    idles again: the largest sliding power of a contact, before and while the load rises.  Without SCENE: the NU 232 of a wind gearbox, in a bath.
+    """
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.simulation import IntegrationError
+    from bearing_sim.studies.cold_start import DEFAULT_OVERRIDES, DEFAULT_SCENE, SHARES, cold_scene, draw_courses
+    from bearing_sim.studies.cold_start import cold_start as follow
+
+    kelvin, seconds = quantity_of("--temperature", temperature, "K"), seconds_of(idling, "--idling")
+    rising = seconds_of(rise, "--rise")
+    if not 1e-3 <= rising <= 10.0:
+        raise UsageError(f"--rise {rise}: expected 1 ms to 10 s")
+    newtons = [quantity_of("--load", each, "N") for each in loads]
+    afterwards = None if loaded is None else quantity_of("--loaded", loaded, "N")
+    for option, value in (*(("--load", each) for each in newtons), ("--loaded", afterwards)):
+        if value is not None and not 0.0 < value <= 1e8:
+            raise UsageError(f"{option} {value:g} N: expected more than 0 and at most 1e8 N")
+    with as_usage_error(SceneError):
+        scene = load_scene(scene_name or DEFAULT_SCENE, [*(() if scene_name else DEFAULT_OVERRIDES), *overrides])
+        scene = cold_scene(scene, kelvin)
+    if not scene.operating.shaft_speed:
+        raise UsageError("operating.shaft_speed: 0; a cold start is followed while the shaft turns: give a speed")
+    warn_of_scene(scene, before_results=False)
+    announce_compilation()
+    with progress_bar("cold start", len(newtons or SHARES)) as show, as_failed_run(IntegrationError):
+        found = follow(scene, newtons, afterwards, seconds, kelvin, rising, show)
+    if picture is not None:
+        with as_file_error(), picture.draft() as draft:
+            draw_courses(found, draft, f"{scene.name}: cold start from {kelvin - 273.15:g} °C")
+    if as_json:
+        print_json(_report(scene, found))
+        return
+    for load in dict.fromkeys(course.load for course in found.courses):
+        share = f"{100 * load / found.minimum_load:.3g} % of the minimum load"
+        _print_course(f"{scene.name}: idling under {load:.4g} N, {share}, then {found.loaded:.4g} N", found, load)
+    if picture is not None:
+        click.echo(picture.path)
+
+
+def _report(scene, found) -> dict:
+    from bearing_sim.model.sample import NODE_OBSERVABLES
+
+    courses = [
+        {
+            **course._asdict(),
+            "instants": [each._asdict() | {"temperatures": dict(zip(NODE_OBSERVABLES, each.temperatures))} for each in course.instants],
+        }
+        for course in found.courses
+    ]
+    return {"scene": scene.name, **found._asdict(), "courses": courses, "loadings": [each._asdict() for each in found.loadings]}
+
+
+_SHOWN = 12  # instants of a course
+
+
+def _print_course(title, found, load) -> None:
+    from bearing_sim.studies.cold_start import ROLLING, SKID
+
+    pair = {course.start: course for course in found.courses if course.load == load}
+    skid, rolling = pair[SKID], pair[ROLLING]
+    marked = {round(k * (len(skid.instants) - 1) / (_SHOWN - 1)) for k in range(_SHOWN)}
+    rows = []
+    for k in sorted(marked):
+        at, beside = skid.instants[k], min(rolling.instants, key=lambda each: abs(each.time - skid.instants[k].time))
+        warmth = [f"{each - 273.15:.0f}" for each in at.temperatures]
+        asperities = "" if math.isnan(at.asperity_share) else f"{100 * round(at.asperity_share, 6):.2g}"
+        films = f"{1e6 * at.film:.3g}", f"{100 * at.film_left:.3g}", asperities
+        slips = f"{100 * at.cage_slip:.3g}", f"{100 * beside.cage_slip:.3g}"
+        rows.append((f"{at.time / 60:.3g}", *slips, *films, f"{at.sliding_power:.3g}", *warmth))
+    parts = ("shaft", "inner", "rollers", "outer", "housing", "oil")
+    columns = ("min", "slip, %", "from rolling", "film, um", "left, %", "asperities, %", "sliding, W", *parts)
+    print_rows(f"{title}; temperatures in degC", columns, rows)
+    rows = [
+        (
+            f"{each.time / 60:.3g}",
+            "skid" if each.start == SKID else "rolling",
+            f"{100 * each.cage_slip:.3g}",
+            f"{each.idling_power:.3g}",
+            f"{each.contact_power:.3g}",
+            f"{1e-6 * each.intensity:.3g}",
+            f"{each.energy:.3g}",
+            "never" if math.isinf(each.rolls_after) else f"{each.rolls_after:.3g}",
+        )
+        for each in found.loadings
+        if each.load == load
+    ]
+    columns = ("min", "from", "slip, %", "worst contact idling, W", "as the load comes, W", "W/mm^2", "energy, J", "rolls after, s")
+    print_rows("if the load comes at that time; the last lines: if a warm machine has idled again", columns, rows, words=("from",))
