@@ -11,6 +11,7 @@ from click.testing import CliRunner
 from recordings import steady_log, write_log
 from scipy import stats
 
+from bearing_sim import settle
 from bearing_sim.cli.estimation import band_rows, live_band_rows
 from bearing_sim.cli.main import main
 from bearing_sim.model.plausibility import left_out
@@ -21,6 +22,7 @@ from bearing_sim.studies.uncertainty import (
     band,
     design,
     distribution,
+    filled_in,
     indices,
     lowest_level,
     settled,
@@ -368,3 +370,23 @@ def test_a_run_prints_bands_on_request():
     assert report["level"] == "slip" and report["uncertainty"]["level"] == "steady" and report["uncertainty"]["cage_slip"]["p95"] > 0.05
     shown = CliRunner().invoke(main, arguments)
     assert "cage slip depends on" in shown.output and "32 runs of level steady" in shown.output
+
+
+def test_clearance_group_oil_temperature_and_films_of_a_catalogue_bearing_are_uncertain_by_themselves():
+    lubricant = {"oil": "ISO VG 68", "supply": "oil_bath", "temperature": "65 degC"}
+    motor = {"name": "motor", "bearing": "NU 210/C3", "lubricant": lubricant, "operating": {"shaft_speed": "1480 rpm", "radial_load": "5 kN"}}
+    scene = load_scene(motor)
+    found = {one.field: (one.low, one.high) for one in varied_ranges(scene)}
+    assert found["bearing.clearance"] == pytest.approx((50e-6, 80e-6))  # ISO 5753-1, C3 of bores over 40 to 50 mm
+    assert found["lubricant.temperature"] == pytest.approx((328.15, 348.15))
+    assert found["lubricant.starvation.constant"] == pytest.approx((1.5e-8, 6e-8))
+    assert {f"lubricant.mixed_friction.{name}" for name in ("boundary_friction", "film_ratio_factor", "skew")} < found.keys()
+    # what somebody has declared or chosen stays
+    chosen = load_scene(scene, ["uncertainty.lubricant.temperature=[60 degC, 66 degC]", "lubricant.mixed_friction.boundary_friction=0.2"])
+    other = {one.field: (one.low, one.high) for one in varied_ranges(chosen)}
+    assert other["lubricant.temperature"] == pytest.approx((333.15, 339.15)) and "lubricant.mixed_friction.boundary_friction" not in other
+    # a scene whose names have become numbers is the same bearing
+    assert settle(filled_in(scene), "steady").cage_slip == pytest.approx(settle(scene, "steady").cage_slip, rel=1e-9)
+    # in a bath that covers the lowest rollers no contact is starved
+    deep = load_scene(scene, ["lubricant.supply={law: oil_bath, level: 20 mm}"])
+    assert "lubricant.starvation.constant" not in {one.field for one in varied_ranges(deep)}
