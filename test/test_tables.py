@@ -234,6 +234,7 @@ def test_course_by_table_under_a_clock_is_that_of_a_replay_to_the_last_bit(small
 
 @pytest.fixture(scope="module")
 def warm():
+    # takes minutes: an idling bearing without load, whose cage is marched, at many speeds and temperatures
     scene = load_scene(
         "deng2017_table1",
         [
@@ -249,6 +250,7 @@ def warm():
 
 
 @pytest.mark.long
+@pytest.mark.timeout(1050)
 def test_course_beside_a_thermal_network_is_the_same_as_one_advance_after_the_other(warm):
     scene, table = warm
     times = np.linspace(0.1, 6.0, 120)  # intervals of half the network's: it steps at every second instant
@@ -266,6 +268,7 @@ def test_course_beside_a_thermal_network_is_the_same_as_one_advance_after_the_ot
     np.testing.assert_allclose(one.thermal.books, other.thermal.books, rtol=1e-4)
 
 
+@pytest.mark.timeout(1050)
 def test_course_with_a_measured_temperature_leaves_the_rest_to_single_steps(warm):
     scene, table = warm
     inputs = np.array([[3000.0, 500.0, 0.0, 383.15, math.nan, math.nan]] * 3 + [[3000.0, 500.0, 0.0, 383.15, 390.0, math.nan]])
