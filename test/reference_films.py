@@ -132,6 +132,24 @@ class Films:
         return (askew + hysteresis) * rolling / np.sqrt(rolling**2 + 0.05**2)
 
 
+def films_of(plain):
+    """The films of a plain model of a level, whose options ``films`` are fields of `Films`."""
+    return Films(
+        shaft_speed=plain.shaft_speed,
+        load=np.linalg.norm(plain.load),
+        oil=plain.oil,
+        rollers=plain.rollers,
+        roller_radius=plain.roller_radius,
+        length=plain.length,
+        inner_radius=plain.inner_radius,
+        low_radius=plain.low_radius,
+        bore=plain.bore,
+        outside=plain.outer_diameter,
+        pocket_clearance=plain.pocket_clearance,
+        **plain.films,
+    )
+
+
 def starved(exponent):
     """Film and resistance to rolling over those of full inlets.
 

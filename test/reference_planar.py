@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import numpy as np
-from reference_films import Films, Oil, couette_factor, hydrodynamic_resistance, larger, magnitude, power_of_positive
+from reference_films import Oil, couette_factor, films_of, hydrodynamic_resistance, larger, magnitude, power_of_positive
 
 
 def dot(a, b):
@@ -114,20 +114,7 @@ class Reference:
         self.guide_radius = on_ring[self.guidance]
         self.outside_width = self.width - (2 * self.land_width if self.guidance == "outer_ring" else 0.0)
         self.inside_width = self.width - (2 * self.land_width if self.guidance == "inner_ring" else 0.0)
-        self.film = Films(
-            shaft_speed=self.shaft_speed,
-            load=np.hypot(*self.load),
-            oil=self.oil,
-            rollers=self.rollers,
-            roller_radius=self.roller_radius,
-            length=self.length,
-            inner_radius=self.inner_radius,
-            low_radius=self.low_radius,
-            bore=self.bore,
-            outside=self.outer_diameter,
-            pocket_clearance=self.pocket_clearance,
-            **self.films,
-        )
+        self.film = films_of(self)
         if self.rubbing_in_pockets is None:
             self.rubbing_in_pockets = self.film.mixed(self.pocket_friction)
 

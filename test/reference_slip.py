@@ -8,7 +8,7 @@ published powers, no Jacobian.  Integrated by scipy's Radau.
 from dataclasses import dataclass, field
 
 import numpy as np
-from reference_films import Films, Oil, couette_factor, hydrodynamic_resistance
+from reference_films import Oil, couette_factor, films_of, hydrodynamic_resistance
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, root
 
@@ -61,20 +61,7 @@ class Reference:
         self.pitch_angles = 2 * np.pi * np.arange(self.rollers) / self.rollers
         play = self.low_radius - self.inner_radius - 2 * self.roller_radius
         self.ring = np.array([1.3 * max(play, 0.0), 0.0])
-        self.film = Films(
-            shaft_speed=self.shaft_speed,
-            load=self.load,
-            oil=self.oil,
-            rollers=self.rollers,
-            roller_radius=self.roller_radius,
-            length=self.length,
-            inner_radius=self.inner_radius,
-            low_radius=self.low_radius,
-            bore=self.bore,
-            outside=self.outer_diameter,
-            pocket_clearance=self.pocket_clearance,
-            **self.films,
-        )
+        self.film = films_of(self)
         if self.rubbing_in_pockets is None:
             self.rubbing_in_pockets = self.film.mixed(self.pocket_friction)
         self.pocket = self.pocket_without_play = np.zeros(self.rollers)  # of the last rate, what pockets take from their rollers [N]

@@ -11,7 +11,7 @@ from bearing_sim.model.params import pack
 from bearing_sim.model.temperatures import film_temperatures
 from bearing_sim.physics.mixed import NONE, film_state
 from bearing_sim.physics.rating_life import viscosity_ratio
-from bearing_sim.physics.starvation import starvation_exponent, starved_film
+from bearing_sim.physics.starvation import Starvation, starvation_exponent, starved_film
 from bearing_sim.scene.scene import Scene
 
 _FULL = 0.995  # what is left of a film that rounds to all of it
@@ -23,7 +23,6 @@ class Films(NamedTuple):
     full_viscosity_ratio: float  # kappa with full inlets
     left: float  # thickness over that of full inlets, as lives take it
     drag_left: float  # the same as drag and traction take it: nearer to 1 below the minimum load
-    resistance_left: float  # resistance to rolling over that of full inlets
     asperity_share: float  # share of loads that asperities carry; NaN where the scene has none
 
     @property
@@ -39,6 +38,19 @@ class Films(NamedTuple):
         return "; ".join(parts)
 
 
+def starvation_exponents(speeds: np.ndarray, viscosity: np.ndarray | float, starvation: Starvation) -> np.ndarray:
+    """Return the exponents x of many instants (`bearing_sim.physics.starvation`), in NumPy.
+
+    Parameters
+    ----------
+    speeds : of the shaft [rad/s].
+    viscosity : kinematic, nu in the films [m^2/s], one or as many.
+    starvation : of the bearing.
+    """
+    uncompiled = getattr(starvation_exponent, "py_func", starvation_exponent)
+    return uncompiled(speeds, viscosity, starvation)
+
+
 def films_of(scene: Scene, sample: np.void) -> Films:
     """Return the `Films` of a sample of a turning shaft (`bearing_sim.model.sample`)."""
     params = pack(scene)
@@ -50,6 +62,5 @@ def films_of(scene: Scene, sample: np.void) -> Films:
         viscosity_ratio(viscosity, speed, 2.0 * params.raceways.pitch_radius),
         starved_film(starvation_exponent(speed, viscosity, params.starvation)),
         math.exp(state.log_film),
-        state.resistance,
         state.asperity_share if params.mixed.law != NONE else math.nan,
     )

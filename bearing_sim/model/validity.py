@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.model.films import starvation_exponents
 from bearing_sim.model.oil import OilState, oil_at, viscosity_100
 from bearing_sim.model.params import Params, mixture_fraction, pack
 from bearing_sim.model.running_clearance import largest_hoop_stress, mounted, seat_pressure, sleeve_pressure
@@ -190,7 +191,7 @@ class Conditions:
     @property
     def replenishment(self) -> np.ndarray:
         """Factor of SKF by which contacts that little oil flows back to resist rolling less (`bearing_sim.physics.starvation`)."""
-        return np.exp(-self.params.starvation.rate * (self.film_viscosity / self.film_density) * np.abs(self.samples["shaft_speed"]))
+        return np.exp(-starvation_exponents(self.samples["shaft_speed"], self.film_viscosity / self.film_density, self.params.starvation))
 
     @property
     def pressure_viscosity(self) -> np.ndarray:

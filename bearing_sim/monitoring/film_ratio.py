@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from bearing_sim.model.films import starvation_exponents
 from bearing_sim.model.oil import OilState, oil_at
 from bearing_sim.model.params import pack
 from bearing_sim.model.temperatures import film_temperatures
@@ -62,7 +63,7 @@ class ThinnestFilm:
         if starvation.rate == 0.0:
             return np.ones(len(samples))
         oil = self._oil_at("mean", temperature)
-        exponents = starvation.rate * (oil.viscosity / oil.density) * np.abs(samples["shaft_speed"])
+        exponents = starvation_exponents(samples["shaft_speed"], oil.viscosity / oil.density, starvation)
         return np.array([starved_film(exponent) for exponent in exponents.tolist()])
 
     def _film(self, oil: OilState, radius: float, force: np.ndarray, rolling: np.ndarray, sliding: np.ndarray) -> np.ndarray:

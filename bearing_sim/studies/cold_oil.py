@@ -28,7 +28,6 @@ TEMPERATURES = (0.0, 10.0, 20.0, 40.0, 60.0, 80.0)  # degC
 SHARES = (0.08, 0.15, 0.3, 0.45, 0.6, 0.8, 1.2, 1.8, 3.0)  # of the makers' minimum load
 RUN_UPS = (0.3, 3.0, 30.0)  # s from rest to the operating speed
 SKID = 0.1  # slip of a cage that skids
-_ZERO = 273.15
 _NEAR, _SAME_SLIP = 0.01, 1e-3  # skid loads, relative, and slips that count as equal
 _SLOWEST = 1e-3  # of the operating speed, at which a run-up begins
 

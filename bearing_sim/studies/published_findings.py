@@ -16,11 +16,11 @@ from typing import NamedTuple
 from bearing_sim.model.plausibility import minimum_load
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
+from bearing_sim.studies.cold_oil import SKID
 from bearing_sim.sweep.point import run_until_settled
 
 RIG, GEARBOX = "nu215_rig", "nu232_wind_gearbox"
 NO_SLIP = 0.02  # cage slip that counts as none
-_SKIDS = 0.1  # cage slip of a skid; what creeps may creep more as oil thins
 _NEAR = 1e-3  # cage slips that count as equal
 _SPEEDS = (1000, 3000, 5000)  # rpm
 _SHARES = (0.1, 0.3, 1.0, 2.0, 4.0)  # of the minimum load
@@ -138,7 +138,7 @@ def gearbox_findings(level: str = "slip") -> list[Finding]:
             "idling, a skid falls as the oil warms",
             "Guo and Keller 2020",
             f"{figures}; over loads and supplies: bearing-sim study cold-oil {GEARBOX}",
-            all(warm < cold for slips in idling.values() for cold, warm in itertools.pairwise(slips) if cold > _SKIDS),
+            all(warm < cold for slips in idling.values() for cold, warm in itertools.pairwise(slips) if cold > SKID),
         ),
         Finding(
             "with cold oil, slip falls as the load grows",

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.steady.operating_point import ANSWER, CREEP
-from bearing_sim.model.validity import SHOWN, Conditions, Effect, Exceedance, Variation
+from bearing_sim.model.validity import PARTS, SHOWN, Conditions, Effect, Exceedance, Variation
 from bearing_sim.physics.traction import EYRING, ROW, TractionConstants
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.loader import load_scene
@@ -100,7 +100,7 @@ def _figures(scene: Scene, sample: np.void, factors: Mapping[str, float]) -> _Fi
 def _multiplied(state: OperatingState, factors: Mapping[str, float]) -> OperatingState:
     """Return the state of a bearing whose model has parts, names of `bearing_sim.model.validity.PARTS`, that are multiplied."""
     params, lubrication = state.params, state.lubrication
-    film, resistance, drag, lands = (factors.get(part, 1.0) for part in ("film", "rolling_resistance", "drag", "lands"))
+    film, resistance, drag, lands, _ = (factors.get(part, 1.0) for part in PARTS)  # the last is that of lives
     inner, outer = (
         each._replace(elastic=each.elastic + math.log(resistance))
         for each in (lubrication.rolling_resistance.inner, lubrication.rolling_resistance.outer)

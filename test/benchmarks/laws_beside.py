@@ -16,7 +16,7 @@ from bearing_sim.physics.film import DOWSON_TOYODA
 from bearing_sim.scene.designation import designations
 from bearing_sim.scene.loader import load_bearing, scene_from_mapping
 from bearing_sim.scene.ratings import rate
-from bearing_sim.studies.friction import _SKF_ROLLING, dimensions_of, series_of
+from bearing_sim.studies.friction import SERIES, dimensions_of, series_of, skf_moment
 from bearing_sim.studies.operating_point import settle
 
 _BEARINGS, _LARGEST_BORE, _CLASSES = 60, 0.15, (32, 46, 68, 100, 150, 220, 320, 460)
@@ -26,17 +26,15 @@ _ENDS = (0.0, 1.6e-10, 1e-9, math.inf)  # of 2 U: of the originals, of the range
 def skf_rolling_power(scene, viscosity: float) -> float:
     """Return the rolling power by SKF's model [W], K_rs = 3e-8; the viscosity is kinematic [mm^2/s]."""
     size, speed, load = dimensions_of(scene), scene.operating.shaft_speed * 30.0 / math.pi, scene.operating.radial_load
-    heated = 1.0 / (1.0 + 1.84e-9 * (speed * size.mean) ** 1.28 * viscosity**0.64)
-    starved = math.exp(-3e-8 * viscosity * speed * (size.bore + size.outside) * math.sqrt(5.1 / (2.0 * (size.outside - size.bore))))
-    series = series_of(scene.bearing.designation)
-    moment = heated * starved * _SKF_ROLLING[series] * size.mean**2.41 * load**0.31 * (viscosity * speed) ** 0.6
+    level = 500.0 * scene.bearing.roller.diameter
+    moment = skf_moment(series_of(scene.bearing.designation), size, speed, load, viscosity, level).rolling
     return 1e-3 * moment * scene.operating.shaft_speed
 
 
 def rolling(generator: random.Random, known: list) -> tuple[float, float]:
     """Return the speed parameter 2 U of a random bearing and its rolling power over SKF's."""
     series = None
-    while series not in _SKF_ROLLING or not limit:
+    while series not in SERIES or not limit:
         text = generator.choice(known).designation.text
         bearing, series = load_bearing(text), series_of(text)
         limit = bearing.ratings.limiting_speed
