@@ -7,9 +7,11 @@ import importlib.util
 import json
 import math
 import shlex
+import shutil
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -163,9 +165,14 @@ def unknown_report(profile) -> dict:
 
 
 def quantity_of(option: str, text: str, unit: str) -> float:
-    """Return the quantity of an option in SI; raise `UsageError` if it is none of that unit's dimension and kind."""
-    from bearing_sim.scene.quantity import to_si
+    """Return the quantity of an option in SI; raise `UsageError` if it is none of that unit's dimension and kind, or a bare number.
 
+    A time may be a bare number, of seconds.
+    """
+    from bearing_sim.scene.quantity import Quantity, to_si
+
+    if unit != "s" and (reason := Quantity(unit, "").why_unit_is_needed(text)):
+        raise UsageError(f"{option}: {reason}")
     try:
         return to_si(text, unit)
     except ValueError as error:
@@ -227,6 +234,32 @@ def suggest_level(scene) -> None:
 
     if line := hint(scene):
         click.echo(line, err=True)
+
+
+def refuse_idle_temperature(scene, fields: Iterable[str]) -> None:
+    """Raise `UsageError` where a command in thermal equilibrium was given an oil temperature that its network computes.
+
+    Parameters
+    ----------
+    scene : with the overrides.
+    fields : that the command line sets or varies, or ``FIELD=VALUE``.
+    """
+    named = {each.partition("=")[0].strip() for each in fields}
+    if "lubricant.temperature" not in named or scene.heat.law != "network" or oil_flows(scene):
+        return
+    raise UsageError(
+        f"lubricant.temperature: no oil flows through (supply {scene.lubricant.supply.law}), and heat.law network computes how warm it gets; for a "
+        "bearing and oil of this temperature add --set heat.law=none; for a cold or warm place set heat.ambient_temperature; for oil that flows "
+        "through set heat.oil_flow"
+    )
+
+
+def oil_flows(scene) -> bool:
+    """Return whether oil comes into a scene's thermal network from outside, so that its temperature counts."""
+    from bearing_sim.model.thermal_network import oil_flow
+
+    given = scene.heat.conductances.oil_flow
+    return (oil_flow(scene) if given is None else given) > 0.0
 
 
 def warn(lines: Iterable[str]) -> None:
@@ -308,42 +341,115 @@ def write_csv(output: Output, rows: Sequence[Mapping]) -> None:
 
 def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:
     """Print a table of names and values."""
+    print_groups(title, [list(rows)])
+
+
+def print_groups(title: str, groups: Iterable[Sequence[tuple[str, str]]]) -> None:
+    """Print a table of names and values with a line between groups; empty groups are left out."""
+    groups = [group for group in groups if group]
     if not importlib.util.find_spec("rich"):
-        _print_plain(title, ("", ""), rows, words=("",))
+        _print_plain(title, ("", ""), [row for group in groups for row in group], words=("",))
         return
     from rich.table import Table
 
     table = Table("", "", title=title, show_header=False, title_justify="left")
-    for name, value in rows:
-        table.add_row(name, value)
+    for group in groups:
+        for name, value in group:
+            table.add_row(name, value)
+        table.add_section()
     _show(table)
 
 
 def print_rows(
-    title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], words: Container[str] = (), width: int = 150, whole: Container[str] = ()
+    title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], words: Container[str] = (), width: int = 150, keys: int = 1
 ) -> None:
     """Print rows under headings, numbers aligned right.
+
+    A number is never cut or broken: a table wider than the terminal is printed in parts, each of which begins with the same first columns.
 
     Parameters
     ----------
     title : above the table.
-    columns : headings.
+    columns : headings; they break between words.
     rows : texts, one per column.
-    words : columns to align left.
-    width : of the table if there is no terminal.
-    whole : columns whose texts are never wrapped.
+    words : columns to align left, whose texts may break between words.
+    width : of the table if there is no terminal, and the environment has no COLUMNS.
+    keys : how many of the first columns stand in every part.
     """
+    rows, available = [tuple(row) for row in rows], shutil.get_terminal_size((width, 24)).columns
+    least = [_least_width(name, [row[place] for row in rows], name in words) for place, name in enumerate(columns)]
+    parts = _parts(least, available, keys)
+    for number, part in enumerate(parts):
+        some = "" if len(parts) == 1 else f" ({number + 1} of {len(parts)})"
+        _print_part(f"{title}{some}", [columns[place] for place in part], [[row[place] for place in part] for row in rows], words, available)
+
+
+def column_texts(column, values) -> tuple[str, list[str]]:
+    """Return the heading of a column of a table (`bearing_sim.sweep.point.Column`), and its values as people write them."""
+    from bearing_sim.scene.display import LONGEST_LIFE, heading, number, shown
+    from bearing_sim.sweep.pictures import as_shown
+
+    if any(isinstance(value, (str, bool)) for value in values):
+        return heading(column.name, column.unit), [str(value) for value in values]
+    told, digits = as_shown(column.name, column.unit, values), max(shown(column.name).digits, 4)
+    longest = LONGEST_LIFE if column.unit == "h" else math.inf
+    return told.label, [f"> {number(longest)}" if value > longest else number(value, digits) for value in told.values.tolist()]
+
+
+_BORDER = 3  # characters that a column adds
+_LEAST_OF_WORDS = 24  # characters of a column of words that is broken into lines
+
+
+def _least_width(name: str, texts: Sequence[str], of_words: bool) -> int:
+    """Return the width that a column needs."""
+    heading = max((len(word) for word in name.split()), default=0)
+    longest = max(map(len, texts), default=0)
+    return max(heading, min(longest, _LEAST_OF_WORDS) if of_words else longest)
+
+
+def _parts(least: Sequence[int], available: int, keys: int) -> list[list[int]]:
+    """Return the places of the columns of each part of a table."""
+    first, parts, part = list(range(min(keys, len(least)))), [], []
+    room = available - 1 - sum(least[place] + _BORDER for place in first)
+    left = room
+    for place in range(len(first), len(least)):
+        needed = least[place] + _BORDER
+        if part and needed > left:
+            parts.append(first + part)
+            part, left = [], room
+        part.append(place)
+        left -= needed
+    return [*parts, first + part]
+
+
+def _print_part(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], words: Container[str], width: int) -> None:
     if not importlib.util.find_spec("rich"):
         _print_plain(title, columns, rows, words)
         return
     from rich.table import Table
 
     table = Table(title=title, title_justify="left")
-    for name in columns:
-        table.add_column(name, justify="left" if name in words else "right", no_wrap=name in whole)
+    for name, column in zip(columns, _widths(columns, rows, words, width)):
+        table.add_column(name, justify="left" if name in words else "right", width=column, overflow="fold")
     for row in rows:
         table.add_row(*row)
     _show(table, width)
+
+
+def _widths(columns: Sequence[str], rows: Sequence[Sequence[str]], words: Container[str], available: int) -> list[int]:
+    """Return the widths of the columns: what each needs, and what is left for those whose heading or words would break."""
+    texts = [[row[place] for row in rows] for place in range(len(columns))]
+    widths = [_least_width(name, each, name in words) for name, each in zip(columns, texts)]
+    over = sum(width + _BORDER for width in widths) + 1 - available
+    if over > 0 and (broken := [place for place, name in enumerate(columns) if name in words]):  # one column of words beside the first ones
+        widths[broken[-1]] = max(widths[broken[-1]] - over, 1)
+    wanted = [max(width, len(name), *map(len, each or [""])) for name, each, width in zip(columns, texts, widths)]
+    left = available - 1 - sum(width + _BORDER for width in widths)
+    while left > 0 and (open_places := [place for place, width in enumerate(widths) if width < wanted[place]]):
+        place = min(open_places, key=lambda each: widths[each] / wanted[each])
+        widths[place] += 1
+        left -= 1
+    return widths
 
 
 def _print_plain(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], words: Container[str]) -> None:
@@ -356,26 +462,65 @@ def _print_plain(title: str, columns: Sequence[str], rows: Iterable[Sequence[str
         click.echo("  ".join(cells).rstrip())
 
 
-def _show(table, width: int = 150) -> None:
+def _show(table, width: int | None = None) -> None:
+    """Print a table of rich; as wide as the terminal, or as COLUMNS says, else 150 characters."""
     from rich.console import Console
 
+    width = width or shutil.get_terminal_size((150, 24)).columns
     # Units in brackets are not mark-up.
-    Console(width=None if sys.stdout.isatty() else width, markup=False, emoji=False).print(table)
+    Console(width=width, markup=False, emoji=False, highlight=False).print(table)
 
 
 @contextmanager
 def progress_bar(text: str, total: float) -> Iterator[Callable[[float], None]]:
-    """Show a progress bar on stderr, on a terminal only; yields the function that takes how much of ``total`` is done."""
+    """Show a progress bar on stderr, where that is no terminal a line now and then; yields the function that takes how much of ``total`` is done."""
     if not (sys.stderr.isatty() and importlib.util.find_spec("rich")):
-        yield lambda done: None
+        with _progress_lines(text, total) as show:
+            yield show
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.table import Column
 
-    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    def whole(width):  # a narrow terminal cuts the words, never the times
+        return Column(no_wrap=True, min_width=width)
+
+    columns = (
+        TextColumn("{task.description}", table_column=Column(ratio=1, no_wrap=True, overflow="ellipsis")),
+        BarColumn(16),
+        TaskProgressColumn(table_column=whole(4)),
+        TimeElapsedColumn(table_column=whole(7)),
+        TextColumn("left", table_column=whole(4)),
+        TimeRemainingColumn(table_column=whole(7)),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True, expand=True) as bar:
         task = bar.add_task(text, total=total)
         yield lambda done: bar.update(task, completed=done)
+
+
+_LINE_EVERY = 10.0  # [s]
+
+
+@contextmanager
+def _progress_lines(text: str, total: float) -> Iterator[Callable[[float], None]]:
+    """Print a line of progress on stderr every `_LINE_EVERY`, also while nothing is done; yields the function that takes how much is."""
+    begun, done, ended = time.monotonic(), [0.0], threading.Event()
+
+    def tell() -> None:
+        while not ended.wait(_LINE_EVERY):
+            if done[0] < total:  # what follows, such as writing, has no measure
+                click.echo(f"{text}: {100.0 * done[0] / total:.0f} % after {time.monotonic() - begun:.0f} s", err=True)
+
+    def show(now: float) -> None:
+        done[0] = now
+
+    teller = threading.Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield show
+    finally:
+        ended.set()
+        teller.join()
 
 
 class Points:
@@ -392,6 +537,7 @@ class Points:
         self.computed, self.kept = 0, total
 
     def __enter__(self):
+        self._stack.enter_context(progress_bar(f"{self._text}: preparing", 1.0))
         return self
 
     def __exit__(self, *error):
