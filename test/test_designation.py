@@ -76,6 +76,154 @@ def test_a_designation_is_read_whatever_its_case_blanks_and_hyphens(text, expect
     assert parse_designation(read.text) == read and is_designation(text)
 
 
+READ = {  # as makers, GOST and shop floors write: what it is
+    "SKF NU 210": "NU 210",
+    "SKF NU 210 ECP/C3": "NU 210 ECP/C3",
+    "NU 210 ECM": "NU 210 ECM",
+    "NU210ECMC3": "NU 210 ECM/C3",
+    "NU 310 ECM/C3HVL0241": "NU 310 ECM/VL0241/C3H",
+    "NU 2232 ECML/C4VA3091": "NU 2232 ECML/VA3091/C4",
+    "NU 210 ECJ/C3 L4B": "NU 210 ECJ/L4B/C3",
+    "NU 210 ECP/CNL": "NU 210 ECP/CNL",
+    "NCF 2934 CV/C3": "NCF 2934 CV/C3",
+    "FAG NU210-E-XL-TVP2-C3": "NU 210 ETVP2/XL/C3",
+    "NU311-E-XL-M1-J20AA-C3 FAG": "NU 311 EM1/XL/J20AA/C3",
+    "NU326-E-XL-MPAX-C4 FAG": "NU 326 EMPAX/XL/C4",
+    "NJ2336-EX-TB-M1": "NJ 2336 EXM1/TB",
+    "NJ207E.JP3.C3": "NJ 207 EJP3/C3",
+    "SL182210": "NCF 2210 V",
+    "SL182918-B-XL-C3 INA": "NCF 2918 V/XL/C3",
+    "SL18 3036": "NCF 3036 V",
+    "NSK NU210EWC3": "NU 210 EW/C3",
+    "NSK NU 210 EM CM": "NU 210 EM/CM",
+    "NU 318 MCM": "NU 318 M/CM",
+    "NU 210 CM": "NU 210/CM",
+    "NTN NU210EG1C3": "NU 210 EG1/C3",
+    "NTN NU 210 ET2X": "NU 210 ET2X",
+    "NU1010 P5CC1": "NU 1010/P5/CC1",
+    "Timken NU210EMA": "NU 210 EMA",
+    "Timken NU 210 CT": "NU 210/CT",
+    "NKE NU2310-E-MA6-C4": "NU 2310 EMA6/C4",
+    "Koyo NUP 210 R FY": "NUP 210 RFY",
+    "ZWZ NU 210 EM/C3": "NU 210 EM/C3",
+    "LYC NU2210E/P6/Z1": "NU 2210 E/P6/Z1",
+    "NU 210 ETN1 HRB": "NU 210 ETN1",
+    "NU 210 ECP/P63": "NU 210 ECP/P6/C3",
+    "NU 210 P5C3": "NU 210/P5/C3",
+    "NU 210/C3S0": "NU 210/S0/C3",
+    "nu 210 c 3": "NU 210/C3",
+    "ＮＵ ２１０ ＥＣＰ／Ｃ３": "NU 210 ECP/C3",
+    "NU\u00a0210\u00a0ECP": "NU 210 ECP",
+    "NJ 308 М": "NJ 308 M",  # a Cyrillic М
+    "NU 210 ECNP": "NU 210 ECP/N",
+    "NU 22 10 ECP": "NU 2210 ECP",
+    "НУ 210": "NU 210",
+    "76 - 42210 Л": "NJ 210 M/P6/CC3",
+    "NU–210–ЕС": "NU 210 EC",  # dashes, Cyrillic Е and С
+    "ГОСТ 32210": "NU 210/CC",
+    "GOST 2210": "N 210/CC",
+    "12210": "NF 210/CC",
+    "42210": "NJ 210/CC",
+    "92210": "NUP 210/CC",
+    "12-32210": "NU 210/P2/GOST1",
+    "76-42210Л": "NJ 210 M/P6/CC3",
+    "6-92210Е": "NUP 210 P/P6/CC",
+    "0-32310Л1": "NU 310 M/CC",
+    "32615К": "NU 2315 J/CC",
+    "32124": "NU 1024/CC",
+    "30-42417М": "NJ 417/GOST3",
+}
+REFUSED = {  # what it is, and what is near
+    "NU 210 ECP/HC5C3": ("HC5: hybrid", "silicon nitride", "NU 210 ECP/C3"),
+    "HC NU 210": ("HC: hybrid", "NU 210"),
+    "NU 04": ("at least three digits", "NU 210"),
+    "NU 210 KTN9": ("tapered bore", "NU 210 TN9"),
+    "N 1010 K/C3": ("tapered bore", "N 1010/C3"),
+    "RNU 210 ECP": ("without inner ring", "NU 210"),
+    "R NU 210": ("without inner ring", "NU 210"),
+    "RN 210": ("without outer ring", "N 210"),
+    "HJ 210 EC": ("an angle ring", "NJ 210"),
+    "NUJ 210": ("angle ring HJ", "NJ 210"),
+    "NH 210": ("angle ring HJ", "NUP 210"),
+    "NJ 210 EC + HJ 210 EC": ("angle ring HJ", "NUP 210"),
+    "NN 3010 KTN/SP": ("two rows", "NU 1010"),
+    "NNU 4930": ("two rows", "NU 1030"),
+    "NNCF 5010 CV": ("two rows", "NCF 3010"),
+    "NUPK 2210": ("special design", "NUP 2210"),
+    "NJG 2310 VH": ("full complement", "NJ 2310"),
+    "RSL183020": ("without outer ring", "NCF 3020"),
+    "SL192310": ("self-retaining", "NCF 2210"),
+    "NU 2010": ("no dimension series '20'", "NU 1010, NU 210, NU 2210"),
+    "MR 1310": ("American", "catalog --bore"),
+    "RXLS 2": ("inch", "catalog --bore"),
+    "32210": ("tapered roller bearing by ISO, and NU 210 by GOST", "which one is meant?", "GOST 32210"),
+    "2210": ("self-aligning ball bearing by ISO, and N 210 by GOST", "which one is meant?"),
+    "52210": ("thrust ball bearing", "with an angle ring by GOST", "NU 210"),
+    "292210": ("without inner ring", "NU 210"),
+    "502210": ("without outer ring", "N 210"),
+    "3182110": ("two rows",),
+    "42210Б": ("bronze cage", "NJ 210"),
+    "Н0-42210": ("clearance group Н",),
+    "6210-2RS": ("deep groove ball bearing", "NU 210"),
+    "NU 210 ECP F7 QX": ("unknown suffix 'F7', 'QX'", "NU 210 ECP"),
+    "NU 210 PHA": ("PEEK, guided by the outer ring",),
+    "NU 203 CM": ("above 24 to 200 mm",),
+    "NU 210 CM C3": ("two clearance groups",),
+    "F-554377": ("drawing number",),
+}
+
+
+@pytest.mark.parametrize("text", READ)
+def test_designations_of_makers_of_gost_and_of_shop_floors_are_read(text):
+    read = parse_designation(text)
+    assert is_designation(text) and read.text == READ[text] and parse_designation(read.text) == read
+    assert bearing_tree(text)["clearance"] == read.clearance
+    assert all(each in read.text or any(each in note for note in read.notes) for each in ("VL0241", "P6", "CM") if each in text.replace("-", ""))
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_what_cannot_be_read_is_refused_by_what_it_is_and_with_what_is_near(text):
+    assert is_designation(text)
+    with pytest.raises(DesignationError) as error:
+        parse_designation(text)
+    assert all(words in str(error.value) for words in REFUSED[text]) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("text", ["deng2017_table1", "my_bearing", "motor-3", "NU", "", "N", 3, None, True, "2026_motor", "NU_test"])
+def test_names_of_presets_are_no_designations(text):
+    assert not is_designation(text)
+
+
+def test_a_whole_number_of_a_yaml_file_is_a_designation_by_gost():
+    assert scene("42210").bearing.flanges.inner == "one" and scene("42210").bearing.designation == "NJ 210/CC"
+
+
+def test_no_letter_of_a_designation_is_left_out():
+    known = ("", "E", "EC", "P", "M", "C3", "CM")
+    for letters in ("Q7", "ECW5", "MX", "C3Q", "AB", "ZZZ", "E7", "PX1"):
+        assert letters not in known
+        with pytest.raises(DesignationError, match="unknown suffix|none of the kinds|do not have"):
+            parse_designation(f"NU 210 {letters}")
+
+
+def test_clearances_of_electric_motors_and_of_gost_are_as_published():
+    # NSK, E1102, table 9.13.2; GOST 24810-2013, tables 6 and 7 [um]
+    published = {
+        ("CM", 50): (20, 35), ("CT", 50): (20, 40), ("CM", 55): (25, 40), ("CM", 90): (35, 55), ("CT", 150): (50, 85),
+        ("CM", 200): (65, 100), ("CC", 50): (30, 45), ("CC3", 50): (50, 65), ("CC1", 80): (10, 25), ("CC5", 120): (180, 205),
+        ("GOST1", 50): (5, 40), ("GOST2", 100): (65, 115),
+        ("C3H", 50): (65, 80), ("CNL", 50): (30, 45), ("CNM", 50): (37.5, 52.5), ("CNP", 50): (45, 65),
+    }  # fmt: skip
+    for (group, bore), limits in published.items():
+        assert clearance_limits(group, 1e-3 * bore) == pytest.approx([1e-6 * limit for limit in limits])
+    for bore in range(25, 200, 5):  # CM lies within CT, and below CN at its upper end; groups rise
+        motor, loose, normal = (clearance_limits(group, 1e-3 * bore) for group in ("CM", "CT", "CN"))
+        assert motor.least == loose.least and motor.largest < loose.largest and motor.largest < normal.largest
+        means = [clearance_limits(group, 1e-3 * bore).mean for group in ("CC1", "CC2", "CC", "CC3", "CC4", "CC5")]
+        assert means == sorted(means)
+    assert scene("NU 210 CM").bearing.radial_clearance_at_low_points * 2 == pytest.approx(27.5e-6)
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -90,7 +238,7 @@ def test_a_designation_is_read_whatever_its_case_blanks_and_hyphens(text, expect
         ("NCF 3010 P", "has no cage"),
         ("N 210 MA", "guided by the outer ring, which has no flanges in type N"),
         ("NU 210 MB", "guided by the inner ring, which has no flanges in type NU"),
-        ("6205", "expected a designation such as NU 210 ECP/C3"),
+        ("6205", "a deep groove ball bearing, not a cylindrical roller bearing; with a bore of 25 mm the tables have NU 1005, NU 205"),
         ("deng2017_tabel1", "did you mean 'deng2017_table1'"),
         ("''", "expected a designation"),
     ],
@@ -245,8 +393,8 @@ def test_the_study_prints_its_tables():
 
 
 def test_a_designation_of_another_kind_of_bearing_is_refused_by_the_parser():
-    for text in ("6205", "", "NU", "22210 E", None):
-        with pytest.raises(DesignationError, match="no designation"):
+    for text, said in (("6205", "deep groove"), ("22210 E", "spherical roller"), ("", "no designation"), ("NU", "no designation"), (None, "None")):
+        with pytest.raises(DesignationError, match=said):
             parse_designation(text)
 
 

@@ -1,8 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Designations of single row cylindrical roller bearings, such as ``NU 210 ECP/C3``, and the tables of the bearings that they name.
 
-The tables are in ``catalog/designations``: ``boundary.csv`` (ISO 15), ``ratings.csv`` (what makers print) and ``rollers.csv`` (numbers of
-rollers); each says where its figures come from.  `bearing_tree` turns a designation into the block that a preset file would hold.
+The tables are in ``catalog/designations``: ``boundary.csv`` (ISO 15), ``ratings.csv`` (what makers print), ``rollers.csv`` (numbers of
+rollers), ``types.csv`` and ``suffixes.csv`` (what letters mean); each says where it comes from.  Designations are those of makers and of GOST 3189
+(types of GOST 8328).  `bearing_tree` turns a designation into the block that a preset file would hold.
 """
 
 import csv
@@ -10,12 +11,13 @@ import difflib
 import math
 import re
 import types
+import unicodedata
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
 
-from bearing_sim.scene.mounting import CLEARANCE_GROUPS
+from bearing_sim.scene.mounting import CLEARANCE_GROUPS, CLEARANCE_PARTS, OTHER_CLEARANCES, clearance_limits
 from bearing_sim.scene.ratings import Ratings
 
 TYPES = ("N", "NU", "NJ", "NUP", "NF", "NCF")
@@ -27,19 +29,63 @@ _FULL_SERIES = ("22", "29", "30")  # of NCF; 29 and 30 are its own
 CAGES = ("P", "J", "M", "MA", "MB", "ML", "M1")
 """Cages: P polyamide, J pressed steel, M brass of two pieces (M1 with integral rivets), guided by the rollers; MA, MB brass, guided by the outer or
 the inner ring; ML brass of one piece, guided by a ring with flanges."""
-_SYNONYMS = {  # suffixes of makers for these cages
-    **{name: "P" for name in ("P", "PH", "TVP", "TVP2", "TVP3", "TN9", "T", "G15", "G")},
-    **{name: "J" for name in ("J", "JP", "JP1", "JP3", "W")},
-    **{name: "M" for name in ("M", "M6")},
-    **{name: "MA" for name in ("MA", "MA6", "MAS", "M1A", "PHA")},
-    **{name: "MB" for name in ("MB", "MBS", "M1B")},
-    **{name: "ML" for name in ("ML", "MP", "MPA")},
-    "M1": "M1",
+_DESIGNS = {"EC": True, "EX": True, "EA": True, "E": True, "R": True, "C": False}  # of the inside, and whether it is the high-capacity one
+_MAKERS = re.compile(
+    r"\b(SKF|FAG|INA|SCHAEFFLER|NSK|NTN|SNR|NTN-SNR|TIMKEN|NKE|ZWZ|LYC|HRB|KOYO|JTEKT|NACHI|RHP|ZKL|ZVL|KINEX|URB|CRAFT|ISB|MRC|TORRINGTON|FAFNIR|"
+    r"ROLLWAY|FBJ|DAS|RKB|CX|KBC|NBC|FERSA|EPK|GPZ|VBF|SPZ|MPZ|HARP|ЕПК|ГПЗ|ВБФ|СПЗ|МПЗ|ХАРП|BEARINGS?|LAGER|ПОДШИПНИК|CYLINDRICAL|ROLLER|X-LIFE)\b"
+)
+_LOOK_ALIKE = str.maketrans("АВЕКМНОРСТХУ", "ABEKMHOPCTXY")  # Cyrillic letters with the shape of Latin ones
+_CYRILLIC = str.maketrans("ABEKMHOPCTXYLUDGJ", "АБЕКМНОРСТХУЛУДГЮ")  # Latin letters that stand for those of a suffix of GOST
+_LETTERS = re.compile(r"^([A-Z]{1,4})[\s_.-]*(\d{2}/\d{3}|\d{1,7})(?!\d)(.*)$", re.DOTALL)
+_INA = re.compile(r"^([RLZ]?SL)[\s-]*(\d\d)[\s-]*(\d{2}/\d{3}|\d{4})(?!\d)(.*)$", re.DOTALL)
+_DIGITS = re.compile(r"^(?:(ГОСТ|GOST|GOCT)[\s-]*)?(?:(\d?[ABАВ]?[\dMМHН]{0,2}[0-8TТ])\s?-\s?)?(\d{3,7})(/\d+)?(?![\d_])[\s-]*([0-9A-ZА-Я/., -]*)$")
+_GOST_TYPES = {  # construction digits, before type digit 2 (GOST 8328-75, GOST 5377-79): type, or what it is and the nearest type
+    "": "N",
+    "1": "NF",
+    "3": "NU",
+    "4": "NJ",
+    "9": "NUP",
+    "5": ("an NU bearing with an angle ring", "NJ"),
+    "6": ("an NJ bearing with an angle ring", "NUP"),
+    "10": ("a bearing without flanges on the outer ring but with two snap washers", "N"),
+    "29": ("a bearing without inner ring (RNU)", "NU"),
+    "50": ("a bearing without outer ring (RN)", "N"),
 }
-_DESIGNS = ("EC", "ET", "EW", "EM", "E", "C", "R", "")  # high-capacity designs; what follows names the cage
-_WITHOUT_EFFECT = re.compile(r"^(X|XL|N|NR|S[0-4N]|V|VH|CV|HA\d?|HB\d?|L[457]B|P[56]|V[ACELQ]\d{2,4})$")
-_GROUP = re.compile(r"^C[2345N]$")
-_FORM = re.compile(r"^\s*([A-Za-z]{1,4})[\s_-]*(\d{2}/\d{3}|\d{1,5})(?!\d)(.*)$", re.DOTALL)
+_GOST_SERIES = {"1": "10", "2": "2", "3": "3", "4": "4", "5": "22", "6": "23"}  # by the digit of the diameter series, width series normal (0)
+_GOST_CLEARANCES = {
+    **{"": "CC", "0": "CC1", "5": "CC2", "7": "CC3", "8": "CC4", "9": "CC5"},
+    **{digit: f"GOST{digit}" for digit in "16234"},
+}
+_GOST_SUFFIXES = {  # meaning, and the cage if it is one of `CAGES`; None where the model does not have it (GOST 3189-89, table 7)
+    "А": ("higher load capacity", ""),
+    "К": ("pressed steel cage", "J"),
+    "М": ("rollers or raceways with modified contact, which this model has anyway", ""),
+    "Л": ("brass cage; GOST does not say what guides it, taken as guided by the rollers", "M"),
+    "Е": ("cage of plastics, taken as polyamide guided by the rollers", "P"),
+    "У": ("special requirements, which the code does not spell out; without effect here", ""),
+    "Ш": ("vibration class, without effect here", ""),
+    "Т": ("temper of the rings, without effect here", ""),
+    "С": ("grease, without effect here: name it in the scene", ""),
+    "Х": ("case hardened steel, without effect here", ""),
+    "Н": ("heat-resistant steel, without effect here", ""),
+    "Э": ("steel with additives, without effect here", ""),
+    "Б": ("bronze cage, which is none of the kinds of cages", None),
+    "Г": ("solid steel or iron cage, which is none of the kinds of cages", None),
+    "Д": ("aluminium cage, which is none of the kinds of cages", None),
+    "Ю": ("stainless steel; its fatigue life is not known", None),
+    "Р": ("high-speed steel; give bearing.material", None),
+    "Я": ("hard metal, ceramics or glass; give bearing.material", None),
+}
+# Bearings whose number begins with its type by ISO, and what it is.
+_ISO_NUMBERS = (
+    (r"6\d{2,4}|16\d{3}|4[23]\d\d", "a deep groove ball bearing"),
+    (r"7\d{3,4}|3[23]\d\d", "an angular contact ball bearing"),
+    (r"1[0234]\d\d|2[23]\d\d|112\d\d|113\d\d", "a self-aligning ball bearing"),
+    (r"213\d\d|2[234][0-9]\d\d", "a spherical roller bearing"),
+    (r"3[0-3][0239]\d\d|3[01]3\d\d|33[01]\d\d", "a tapered roller bearing"),
+    (r"5[1-6][234]\d\d|511\d\d", "a thrust ball bearing"),
+    (r"8[19][12]\d\d|29[234]\d\d", "a thrust roller bearing"),
+)
 _CODES = {15: "02", 17: "03"}  # of bores that are no multiple of 5 mm, or below 20 mm
 _CLOSE = 3  # designations that a message proposes
 
@@ -74,6 +120,7 @@ class Designation:
     cage : of `CAGES`, or "" where the text names none; ``NCF`` has none.
     clearance : group by ISO 5753-1.
     unmodelled : suffixes that change nothing in this model, such as S1 or P6.
+    notes : what the letters and digits were read as, one sentence each.
     """
 
     text: str
@@ -85,6 +132,7 @@ class Designation:
     cage: str
     clearance: str
     unmodelled: tuple[str, ...]
+    notes: tuple[str, ...] = field(default=(), compare=False)
 
     @property
     def boundary(self) -> Boundary:
@@ -220,60 +268,213 @@ def roller_counts() -> tuple[RollerCount, ...]:
     )
 
 
+@cache
+def _suffixes() -> tuple[tuple[re.Pattern, str, str, str], ...]:
+    """Return pattern, kind, value and meaning of the suffixes of ``suffixes.csv``."""
+    return tuple((re.compile(rf"(?:{row['pattern']})$"), row["kind"], row["value"], row["meaning"]) for row in _table("suffixes"))
+
+
+@cache
+def _other_types() -> Mapping[str, tuple[str, str]]:
+    """Return what bearings are whose type is not of `TYPES`, and the nearest of `TYPES`, by the letters of the type."""
+    return types.MappingProxyType({row["type"]: (row["what"], row["nearest"]) for row in _table("types")})
+
+
+def _plain(text: object) -> str:
+    """Return a text in capitals without makers' names, with plain blanks, letters and hyphens; "" for what is no text."""
+    if isinstance(text, bool) or not isinstance(text, (str, int)):
+        return ""
+    written = re.sub("[‐-―−]", "-", unicodedata.normalize("NFKC", str(text)).upper())
+    written = re.sub(r"\b([CС])[ -](?=[2345N]\b)", r"\1", written)  # C 3, with a blank
+    return re.sub(r"\s+", " ", _MAKERS.sub(" ", written)).strip(" -,;:()\"'")
+
+
+def _latin(plain: str) -> tuple[str, str, str] | None:
+    """Return type, digits and suffixes of a designation that begins with letters; None if it is none."""
+    text = re.sub("^НУП", "NUP", re.sub("^НУ(?! ?П)", "NU", plain)).translate(_LOOK_ALIKE)
+    text = re.sub(r"^HC[ -]?(N[A-Z]*[ -]*\d+)", r"\1 HC", text)  # a prefix of FAG, as the suffix of SKF
+    text = re.sub(r"^([LRN]) (?=N|(UP|U|J|F)[ \d])", r"\1", text)  # a separate ring, a bearing without it (SKF); N U 210
+    text = re.sub(rf"^([A-Z]+[ .-]*(?:18[ -]*)?)({'|'.join(SERIES)})[ -](?=\d\d(?!\d))", r"\1\2", text)  # NU 22 10
+    found = _INA.match(text) or _LETTERS.match(text)
+    if found is None or len(found.groups()) == 3 and found[1] not in (*TYPES, *_other_types()):
+        return None
+    return (found[1], found[2] + " " + found[3], found[4]) if len(found.groups()) == 4 else (found[1], found[2], found[3])
+
+
 def is_designation(text) -> bool:
-    """Return whether a text has the form of a designation: one of `TYPES`, then a number."""
-    found = _FORM.match(text) if isinstance(text, str) else None
-    return found is not None and found[1].upper() in TYPES
+    """Return whether a text or a whole number has the form of a bearing's designation: letters of a type and a number, or a number of ISO or GOST.
+
+    Also those of bearings that the tables do not have: `parse_designation` says what they are.
+    """
+    plain = _plain(text)
+    return _latin(plain) is not None or _DIGITS.match(plain) is not None
 
 
-def parse_designation(text: str) -> Designation:
-    """Return what a designation says; case, blanks and hyphens between its parts do not matter.
+def parse_designation(text: str | int) -> Designation:
+    """Return what a designation says; case, blanks, hyphens and the names of makers do not matter.
 
     Parameters
     ----------
-    text : such as ``NU 210 ECP/C3``, ``nu210`` or ``NCF 2928 CV``.
+    text : such as ``NU 210 ECP/C3``, ``nu210``, ``FAG NU210-E-XL-TVP2-C3``, ``NCF 2928 CV``, ``SL18 2210`` or, by GOST, ``76-42210Л``.
 
     Raises
     ------
     DesignationError
-        It names no bearing of the tables, or has a suffix that is not known.
+        It names no bearing of the tables, or has a suffix that is not known; the message says what it is and what is near.
     """
-    found = _FORM.match(text) if isinstance(text, str) else None
-    if found is None or found[1].upper() not in TYPES:
-        raise DesignationError(
-            f"{text!r} is no designation of a cylindrical roller bearing; expected {', '.join(TYPES[:-1])} or {TYPES[-1]}, then series and bore "
-            "code, such as NU 210 ECP/C3"
-        )
-    kind, series, bore = found[1].upper(), *_series_and_bore(found[1].upper(), found[2])
-    read = _read_suffixes(kind, found[2], found[3])
-    size = f"/{bore}" if bore >= 500 else _CODES.get(bore, f"{bore // 5:02d}")
-    return Designation(
-        _normalised(kind, series, size, read), kind, series, size, bore / 1e3, read.high_capacity, read.cage, read.clearance, tuple(read.unmodelled)
+    plain = _plain(text)
+    found = _latin(plain)
+    if found is not None:
+        return _parse_latin(*found)
+    if (number := _DIGITS.match(plain)) is not None:
+        return _parse_number(plain, *number.groups(default=""))
+    raise DesignationError(
+        f"{text!r} is no designation of a cylindrical roller bearing; expected {', '.join(TYPES[:-1])} or {TYPES[-1]}, then series and bore "
+        "code, such as NU 210 ECP/C3"
     )
 
 
-def _normalised(kind: str, series: str, size: str, read: "_Suffixes") -> str:
-    written = f"{kind} {series}{size}"
-    if read.design:
-        written += f" {read.design}"
-    tail = [*read.unmodelled, *([read.clearance] if read.group_is_given else [])]
-    return "/".join([written, *tail])
+def _parse_latin(kind: str, digits: str, suffixes: str) -> Designation:
+    notes = []
+    if kind.endswith("SL") and " " in digits:
+        family, number = digits.split()
+        suffixes = re.sub(r"^[\s-]*[A-E](?=$|[\s-])", "", suffixes)
+        if kind != "SL" or family != "18":
+            raise DesignationError(f"{kind}{family}{number}: {_other_types()[kind][0]}{_nearest('NCF', *_series_and_bore_code(number))}")
+        kind, digits, notes = "NCF", number, [f"SL18{number} (INA) is NCF {number} V"]
+        suffixes = f"V {suffixes}"
+    if kind not in TYPES:
+        what, nearest = _other_types()[kind]
+        near = "; choose by its dimensions: bearing-sim catalog --bore 50mm" if nearest == "-" else _nearest(nearest, *_series_and_bore_code(digits))
+        raise DesignationError(f"{kind} {digits}{suffixes.rstrip()}: {what}{near}")
+    if re.search(r"\+?\s*HJ\s*\d", suffixes):
+        nearest = {"NU": "NJ", "NJ": "NUP"}.get(kind, kind)
+        raise DesignationError(
+            f"{kind} {digits}: with an angle ring HJ, which the tables do not have{_nearest(nearest, *_series_and_bore_code(digits))}"
+        )
+    if len(digits.split("/")[0]) < 3 and "/" not in digits:
+        raise DesignationError(
+            f"{kind} {digits}{suffixes}: expected series and bore code, at least three digits, such as {kind} {series_of_type(kind)[1]}10"
+        )
+    series, bore = _series_and_bore(kind, digits)
+    return _designation(kind, series, bore, _read_suffixes(kind, f"{kind} {_digits(series, bore)}", suffixes), notes)
+
+
+def _designation(kind: str, series: str, bore: int, read: "_Suffixes", notes: list[str]) -> Designation:
+    size = f"/{bore}" if bore >= 500 else _CODES.get(bore, f"{bore // 5:02d}")
+    written = read.written(f"{kind} {series}{size}")
+    try:
+        clearance_limits(read.clearance, 1e-3 * bore)
+    except ValueError as error:
+        raise DesignationError(f"{written}: {error}; take another group") from None
+    told = (*notes, *read.notes)
+    return Designation(written, kind, series, size, bore / 1e3, read.high_capacity, read.cage, read.clearance, tuple(read.unmodelled), told)
+
+
+def _parse_number(plain: str, gost: str, before: str, digits: str, bore: str, after: str) -> Designation:
+    """Return the bearing of a number by GOST 3189; raise `DesignationError` if it is another, or one of ISO by the same digits."""
+    suffixes = after.strip(" -.,/")
+    iso = next((what for form, what in _ISO_NUMBERS if re.fullmatch(form, digits)), None)
+    kind = _GOST_TYPES.get(digits[:-4].lstrip("0")) if len(digits) >= 4 and digits[-4] == "2" and len(digits) <= 6 else None
+    is_gost = bool(gost or before or re.search("[Б-ДЖЗИЙЛПУФЦ-Я]", suffixes))
+    if iso is not None and (kind is None or not is_gost):
+        size, name = int(digits[-2:]), f"{digits} {suffixes}".rstrip()
+        if isinstance(kind, str) and (series := _GOST_SERIES.get(digits[-3])) is not None:
+            raise DesignationError(
+                f"{name} is {iso} by ISO, and {kind} {series}{digits[-2:]} by GOST 8328; which one is meant? "
+                f"Write {kind} {series}{digits[-2:]}, or GOST {digits}"
+            )
+        other = f" by ISO, {kind[0]} by GOST" if isinstance(kind, tuple) else ", not a cylindrical roller bearing"
+        raise DesignationError(f"{name}: {iso}{other}{_nearest('NU', '', _bore_of_code(size))}")
+    if kind is None:
+        rows = len(digits) == 7 and digits[-4] == "2"
+        reason = "by GOST of another width series, or in two rows" if rows else "no number of ISO or GOST that can be read"
+        raise DesignationError(f"{plain}: {reason}; expected a designation such as NU 210 ECP/C3, or one by GOST such as 42210")
+    series = _GOST_SERIES.get(digits[-3])
+    if series is None or bore:
+        raise DesignationError(
+            f"{plain}: the tables have no diameter series {digits[-3]} of GOST; they have {', '.join(_GOST_SERIES)}"
+            f"{_nearest(kind if isinstance(kind, str) else kind[1], '', _bore_of_code(int(digits[-2:])))}"
+        )
+    if not isinstance(kind, str):
+        raise DesignationError(f"{plain}: by GOST {kind[0]}{_nearest(kind[1], series, _bore_of_code(int(digits[-2:])))}")
+    series, size = _series_and_bore(kind, series + digits[-2:])
+    what = f"{plain}, by GOST {kind} {_digits(series, size)}"
+    read = _read_gost(what, before, suffixes)
+    limits = clearance_limits(read.clearance, 1e-3 * size)
+    told = [f"{digits} is {kind} {_digits(series, size)} by GOST 8328"]
+    told.append(f"clearance of GOST 24810: {1e6 * limits.least:.0f} to {1e6 * limits.largest:.0f} µm, group {read.clearance}")
+    if not read.high_capacity:
+        told.append("rollers and ratings are those of other makers; without the letter А GOST bearings may carry less: give bearing.ratings")
+    return _designation(kind, series, size, read, told)
+
+
+def _read_gost(what: str, before: str, suffixes: str) -> "_Suffixes":
+    """Return what stands before and after the number of a bearing of GOST: precision class, group of clearance, moment, category; and letters."""
+    read = _Suffixes(group_is_given=True)
+    marks = re.fullmatch(r"(?:\d?[ABАВ])?(?:[\dMМ])??([\dHН]?)([0-8TТ])", before) if before else None
+    if before and marks is None:
+        raise DesignationError(
+            f"{what}: {before}- is none of the marks of GOST 3189; expected digits of clearance group and precision class, such as 76-"
+        )
+    group, precision = marks.groups() if marks is not None else ("", "")
+    if group not in _GOST_CLEARANCES:
+        raise DesignationError(f"{what}: clearance group {group} is not one of GOST 24810; give bearing.clearance in the scene")
+    read.clearance = _GOST_CLEARANCES[group]
+    if precision in ("2", "4", "5", "6"):
+        read.unmodelled.append(f"P{precision}")
+        read.notes.append(f"precision class {precision}, without effect here")
+    refused, unknown = [], []
+    for letter, number in re.findall(r"([^\d\s.,/-])(\d*)", suffixes.translate(_CYRILLIC)):
+        meaning, cage = _GOST_SUFFIXES.get(letter, ("", ""))
+        if not meaning:
+            unknown.append(letter + number)
+        elif cage is None:
+            refused.append(f"{letter}: {meaning}")
+        elif cage and read.cage:
+            raise DesignationError(f"{what}: two cages, {read.cage} and {cage}; give one")
+        else:
+            read.cage, read.design = cage or read.cage, read.design + cage
+            read.notes.append(f"{letter}{number}: {meaning}")
+        if letter == "А":
+            read.high_capacity, read.design = True, "E" + read.design
+    _refuse(what, read.written(what.rsplit(" GOST ")[-1]), refused, unknown)
+    return read
+
+
+def _bore_of_code(code: int) -> int:
+    """Return the bore of a two-digit code [mm]."""
+    return {0: 10, 1: 12, 2: 15, 3: 17}.get(code, 5 * code)
+
+
+def _series_and_bore_code(digits: str) -> tuple[str, int]:
+    """Return series and bore [mm] that digits spell, whether or not the tables have them."""
+    if "/" in digits:
+        return digits.split("/")[0], int(digits.split("/")[1])
+    return digits[:-2], _bore_of_code(int(digits[-2:] or 0))
+
+
+def _nearest(kind: str, series: str, bore: int) -> str:
+    """Return the end of a message: the bearing of a type and series with that bore, or all of the type with it; "" if there is none."""
+    kind = kind or "NU"
+    found = [of for of in series_of_type(kind) if (of, bore) in boundaries() and _exists(kind, of, bore)]
+    if series in found:
+        return f"; the nearest of the tables is {kind} {_digits(series, bore)}"
+    return f"; with a bore of {bore} mm the tables have {', '.join(f'{kind} {_digits(of, bore)}' for of in found)}" if found else ""
 
 
 def _series_and_bore(kind: str, digits: str) -> tuple[str, int]:
     """Return series and bore [mm] of the digits of a designation; raise `DesignationError` if the tables do not have them."""
-    if "/" in digits:
-        series, bore = digits.split("/")[0], int(digits.split("/")[1])
-    else:
-        series, code = digits[:-2], digits[-2:]
-        bore = {"00": 10, "01": 12, "02": 15, "03": 17}.get(code, 5 * int(code or 0))
-    what = f"{kind} {digits}"
-    offered = series_of_type(kind)
-    if series not in SERIES:
-        raise DesignationError(f"{what}: no dimension series {series!r}; {kind} has {', '.join(offered)}{_near(kind, digits)}")
+    series, bore = _series_and_bore_code(digits)
+    what, offered = f"{kind} {digits}", series_of_type(kind)
     if series not in offered:
-        reason = "of full-complement bearings (NCF)" if series in ("29", "30") else "not one of full-complement bearings"
-        raise DesignationError(f"{what}: series {series} is {reason}; {kind} has {', '.join(offered)}{_near(kind, digits)}")
+        if series not in SERIES:
+            reason = f"no dimension series {series!r} in the tables"
+        else:
+            reason = f"series {series} is " + (
+                "of full-complement bearings (NCF)" if series in ("29", "30") else "not one of full-complement bearings"
+            )
+        raise DesignationError(f"{what}: {reason}; {kind} has {', '.join(offered)}{_nearest(kind, series, bore)}")
     bores = [each for of, each in boundaries() if of == series and _exists(kind, of, each)]
     if bore not in bores:
         nearest = min(bores, key=lambda each: abs(each - bore))
@@ -297,12 +498,6 @@ def _digits(series: str, bore: int) -> str:
     return f"{series}/{bore}" if bore >= 500 else series + _CODES.get(bore, f"{bore // 5:02d}")
 
 
-def _near(kind: str, digits: str) -> str:
-    known = [f"{kind} {_digits(series, bore)}" for series, bore in boundaries() if series in series_of_type(kind) and _exists(kind, series, bore)]
-    close = difflib.get_close_matches(f"{kind} {digits}", known, n=_CLOSE)
-    return f"; near: {', '.join(close)}" if close else ""
-
-
 @dataclass
 class _Suffixes:
     """Suffixes as they are read."""
@@ -313,75 +508,105 @@ class _Suffixes:
     clearance: str = "CN"
     group_is_given: bool = False
     unmodelled: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def written(self, basic: str) -> str:
+        """Return a basic designation such as NU 210 with these suffixes."""
+        return "/".join([f"{basic} {self.design}".rstrip(), *self.unmodelled, *([self.clearance] if self.group_is_given else [])])
 
 
-def _read_suffixes(kind: str, digits: str, text: str) -> _Suffixes:
-    read = _Suffixes()
-    what = f"{kind} {digits}"
-    for token in re.split(r"[\s/.,+_-]+", text.strip().upper()):
-        if not token:
+_CLEARANCE_NAMES = frozenset(("C0", *CLEARANCE_GROUPS, *CLEARANCE_PARTS, *OTHER_CLEARANCES))
+_WITH_PRECISION = re.compile(r"^(P[0-6]|PN)([2345])$")  # such as P63: precision P6 and clearance C3
+
+
+def _meaning(piece: str) -> tuple[str, str, str] | None:
+    """Return kind, value and meaning of one suffix; None if it is not known."""
+    if piece in _CLEARANCE_NAMES:
+        return "clearance", "CN" if piece == "C0" else piece, ""
+    if found := _WITH_PRECISION.match(piece):
+        return "clearance", f"C{found[2]}", found[1]
+    return next((each for pattern, *each in _suffixes() if pattern.match(piece)), None)
+
+
+def _pieces(token: str, begins: bool = True) -> list[str] | None:
+    """Return the suffixes that are written together in a token; None if there is something else in it.
+
+    Single letters stand at its beginning, or after a design such as E: they are cages.
+    """
+    if not token:
+        return []
+    for end in range(len(token), 0, -1):
+        found = _meaning(token[:end])
+        if found is None or end == 1 and not (begins and (found[0] == "cage" or token[:1] in "KN")):
             continue
-        if not _WITHOUT_EFFECT.match(token) and (glued := re.match(r"^(.+)(C[2345N])$", token)) and _design_and_cage(glued[1]) is not None:
-            tokens = [glued[1], glued[2]]
+        rest = _pieces(token[end:], begins and token[:end] in ("K", "N", "NR"))
+        if rest is not None and not (found[0] == "clearance" and any((_meaning(each) or [""])[0] == "clearance" for each in rest)):
+            return [token[:end], *rest]
+    return None
+
+
+def _read_suffixes(kind: str, what: str, text: str) -> _Suffixes:
+    read, refused, unknown = _Suffixes(), [], []
+    for token in filter(None, re.split(r"[\s/.,;:+_()\[\]-]+", text)):
+        if _meaning(token) is not None:
+            design, pieces = "", [token]
         else:
-            tokens = [token]
-        for each in tokens:
-            _read_suffix(read, kind, what, each)
+            split = ((design, _pieces(token[len(design) :])) for design in (*_DESIGNS, "") if token.startswith(design))
+            known = [(design, found) for design, found in split if found is not None and (design != "C" or not found)]
+            design, pieces = min(known, key=lambda each: any(_meaning(one)[0] == "refused" for one in each[1]), default=("", None))
+        if pieces is None:
+            if re.match(r"^C[\dN]+$", token):
+                raise DesignationError(f"{what}: no clearance group {token}; expected {', '.join(CLEARANCE_GROUPS)} (ISO 5753-1), CM or CT")
+            unknown.append(token)
+            continue
+        if design:
+            read.design, read.high_capacity = read.design + design, read.high_capacity or _DESIGNS[design]
+            read.notes.append(f"{design}: {'high-capacity design' if _DESIGNS[design] else 'a design of its maker'}")
+        for piece in pieces:
+            _read_piece(read, kind, what, piece, refused)
     if kind == "NCF" and read.cage:
         raise DesignationError(f"{what}: a full-complement bearing has no cage, found cage {read.cage}; leave it out, or take another type")
+    _refuse(what, read.written(what), refused, unknown)
     return read
 
 
-def _read_suffix(read: _Suffixes, kind: str, what: str, token: str) -> None:
-    if _GROUP.match(token) or token == "C0":
+def _read_piece(read: _Suffixes, kind: str, what: str, piece: str, refused: list[str]) -> None:
+    """Enter one known suffix into what is read."""
+    group, value, meaning = _meaning(piece)
+    if group == "clearance":
         if read.group_is_given:
-            raise DesignationError(f"{what}: two clearance groups, {read.clearance} and {token}; give one")
-        read.clearance, read.group_is_given = ("CN" if token == "C0" else token), True
-    elif re.match(r"^C[\dN]+$", token):
-        raise DesignationError(f"{what}: no clearance group {token}; expected {', '.join(CLEARANCE_GROUPS)} (ISO 5753-1)")
-    elif _WITHOUT_EFFECT.match(token):
-        if token in ("V", "VH", "CV") and kind != "NCF":
-            raise DesignationError(f"{what}: suffix {token} is that of a full complement of rollers; this table has it as type NCF")
-        if kind == "NCF" and token in ("V", "CV"):
-            read.design = token
-        else:
-            read.unmodelled.append(token)
-    elif (found := _design_and_cage(token)) is not None:
-        design, cage = found
-        if cage and read.cage:
-            raise DesignationError(f"{what}: two cages, {read.cage} and {cage}; give one")
-        read.design += token
-        read.high_capacity, read.cage = read.high_capacity or design, cage or read.cage
+            raise DesignationError(f"{what}: two clearance groups, {read.clearance} and {value}; give one")
+        read.clearance, read.group_is_given = value, True
+        read.unmodelled += [meaning] if meaning else []
+        if value in OTHER_CLEARANCES:
+            read.notes.append(f"{value}: clearance of {OTHER_CLEARANCES[value]}")
+    elif group == "refused":
+        refused.append(f"{piece}: {meaning}")
+    elif group == "none":
+        read.unmodelled.append(piece)
+        read.notes.append(f"{piece}: {meaning}, without effect here")
+    elif not value:
+        if kind != "NCF":
+            raise DesignationError(f"{what}: suffix {piece} is that of a full complement of rollers; the tables have it as type NCF")
+        read.design += piece
     else:
-        _refuse(what, token)
+        if read.cage:
+            raise DesignationError(f"{what}: two cages, {read.cage} and {value}; give one")
+        read.design, read.cage = read.design + piece, value
+        read.notes.append(f"{piece}: {meaning}")
 
 
-def _refuse(what: str, token: str) -> None:
-    if token in ("K", "K30"):
-        raise DesignationError(f"{what}: suffix {token} is a tapered bore, which this model does not have; leave it out")
-    known = ["E", "EC", *_SYNONYMS, *(f"EC{cage}" for cage in CAGES), *CLEARANCE_GROUPS]
-    close = difflib.get_close_matches(token, known, n=1)
-    proposal = f" (did you mean {close[0]}?)" if close else ""
-    raise DesignationError(
-        f"{what}: unknown suffix {token!r}{proposal}; known: E and EC (high capacity), cages {', '.join(CAGES)}, "
-        f"clearance {', '.join(CLEARANCE_GROUPS)}, and without effect here S0 to S4, P5, P6, XL, VA..."
-    )
-
-
-def _design_and_cage(token: str) -> tuple[bool, str] | None:
-    """Return whether a suffix names the high-capacity design, and its cage; None if it is not such a suffix."""
-    for design in _DESIGNS:
-        rest = token.removeprefix(design) if token.startswith(design) else None
-        if rest is None:
-            continue
-        if design in ("ET", "EW", "EM"):
-            if rest == "":
-                return True, _SYNONYMS[design[1]]
-        elif rest == "" and design:
-            return design != "C", ""
-        elif rest in _SYNONYMS:
-            return design in ("EC", "E", "R"), _SYNONYMS[rest]
-    return None
+def _refuse(what: str, without: str, refused: list[str], unknown: list[str]) -> None:
+    """Raise `DesignationError` if there are suffixes that the model does not have, or that are not known."""
+    reasons = list(refused)
+    if unknown:  # never left out: a letter that is not known may be a cage or a clearance
+        known = ["E", "EC", *(f"EC{cage}" for cage in CAGES), *CLEARANCE_GROUPS]
+        close = difflib.get_close_matches(unknown[0], known, n=1) if len(unknown) == 1 else []
+        proposal = f" (did you mean {close[0]}?)" if close else ""
+        letters = ", ".join(repr(each) for each in unknown)
+        reasons.append(f"unknown suffix {letters}{proposal}: nothing here says what it changes")
+    if reasons:
+        raise DesignationError(f"{what}: {'; '.join(reasons)}. The nearest that can be read is {without}")
 
 
 def designations(*, kind: str | None = None, series: str | None = None, bore: float | None = None) -> Iterator[CatalogueBearing]:

@@ -427,7 +427,7 @@ def _cage_estimates(tree: dict, rule: CageRule) -> Iterator[dict]:
         yield _estimate("cage.guide_land_width", "what the cage overlaps with the flanges; assumption", 0.6, 1.2)
 
 
-def bearing_tree(designation: Designation | str) -> dict[str, Any]:
+def bearing_tree(designation: Designation | str | int) -> dict[str, Any]:
     """Return the block ``bearing`` that a preset file of this bearing would hold: lengths and masses in SI, the clearance as its group.
 
     Raises
@@ -435,7 +435,7 @@ def bearing_tree(designation: Designation | str) -> dict[str, Any]:
     DesignationError
         See `parse_designation` and `cage_of`.
     """
-    if isinstance(designation, str):
+    if not isinstance(designation, Designation):
         designation = parse_designation(designation)
     section, boundary = section_of(designation), designation.boundary
     if designation.is_full_complement:
@@ -519,7 +519,8 @@ def _source(section: Section, boundary, made: str, designation: Designation) -> 
     if section.count_source != "estimated":
         parts.append(f"number of rollers: {section.count_source}")
     estimates = [each["field"] for each in section.estimated] + ["cage"] * (not designation.is_full_complement)
-    return "; ".join([*parts, made]) + f". Estimates: {', '.join(estimates)}."
+    read = f" Read: {'; '.join(designation.notes)}." if designation.notes else ""
+    return "; ".join([*parts, made]) + f". Estimates: {', '.join(estimates)}.{read}"
 
 
 def _full_complement_tree() -> tuple[dict, list[dict], str]:

@@ -2,14 +2,19 @@
 """How a bearing is mounted: the fits of its rings on shaft and in housing, and the tables of the standards for them.
 
 Limits and fits: ISO 286-1 and ISO 286-2:2010, for diameters of 3 to 500 mm.  Bore and outside diameter of bearings: ISO 492:2014, class Normal.
-Radial internal clearance: ISO 5753-1:2009, cylindrical roller bearings with cylindrical bore.  Lengths in the tables are in micrometres, diameters
-in millimetres.
+Radial internal clearance: ISO 5753-1:2009, cylindrical roller bearings with cylindrical bore, and groups of makers and of GOST.  Lengths in the
+tables are in micrometres, diameters in millimetres.
 """
 
 import bisect
+import csv
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import field
+from functools import cache
+from importlib import resources
+from types import MappingProxyType
 from typing import NamedTuple
 
 from bearing_sim.scene.material import Material
@@ -59,6 +64,15 @@ _OUTSIDE_TOLERANCES = (8, 9, 11, 13, 15, 18, 25, 30, 35, 40, 45, 50)
 _FLATTENED = 0.4  # of the roughness of both surfaces, see `smoothed`
 
 CLEARANCE_GROUPS = ("C2", "CN", "C3", "C4", "C5")
+"""Groups of ISO 5753-1."""
+CLEARANCE_PARTS = tuple(f"{group}{part}" for group in CLEARANCE_GROUPS for part in "LMHP" if group + part != "C5P")
+"""Parts of groups (SKF): L and H the lower and the upper half, M the middle, P the upper half and the lower half of the next group."""
+OTHER_CLEARANCES = {
+    **{"CT": "electric motors, interchangeable rings; NSK", "CM": "electric motors, matched rings; NSK, NTN"},
+    **{name: "matched rings; NSK, GOST 24810" for name in ("CC1", "CC2", "CC", "CC3", "CC4", "CC5")},
+    **{name: "interchangeable rings; GOST 24810" for name in ("GOST1", "GOST6", "GOST2", "GOST3", "GOST4")},
+}
+"""Groups beside those of ISO 5753-1, and what they are for (``catalog/designations/clearances.csv``)."""
 _CLEARANCE_RANGES = (
     24,
     30,
@@ -140,20 +154,52 @@ def _row(ranges: tuple[int, ...], diameter: float, what: str) -> int:
     return row
 
 
+def clearance_source(group: str) -> str:
+    """Return who publishes a group of clearance."""
+    if group in CLEARANCE_GROUPS:
+        return "ISO 5753-1"
+    return f"part of {group[:-1]} of ISO 5753-1, SKF" if group in CLEARANCE_PARTS else OTHER_CLEARANCES[group]
+
+
+@cache
+def _other_clearances() -> Mapping[str, tuple[tuple[int, int, Limits], ...]]:
+    """Return bores, above and up to [mm], and limits [m] of the groups of `OTHER_CLEARANCES`."""
+    text = resources.files("bearing_sim.scene").joinpath("catalog/designations/clearances.csv").read_text(encoding="utf-8")
+    rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+    found = {
+        group: tuple((int(row["above"]), int(row["to"]), Limits(*(1e-6 * float(end) for end in row[group].split("-")))) for row in rows if row[group])
+        for group in OTHER_CLEARANCES
+    }
+    return MappingProxyType(found)
+
+
 def clearance_limits(group: str, bore: float) -> Limits:
-    """Return the limits of the radial internal clearance of a group by ISO 5753-1, diametral [m].
+    """Return the limits of the radial internal clearance of a group, diametral [m].
 
     Parameters
     ----------
-    group : of `CLEARANCE_GROUPS`.
+    group : of `CLEARANCE_GROUPS`, `CLEARANCE_PARTS` or `OTHER_CLEARANCES`.
     bore : bore diameter [m].
 
     Raises
     ------
     ValueError
-        The table ends below that bore.
+        The table does not have that bore.
     """
-    low, high = _CLEARANCES[_row(_CLEARANCE_RANGES, bore, "ISO 5753-1")][CLEARANCE_GROUPS.index(group)]
+    if group in OTHER_CLEARANCES:
+        rows = _other_clearances()[group]
+        for above, to, limits in rows:
+            if above < 1e3 * bore - 1e-9 <= to:
+                return limits
+        raise ValueError(f"clearance {group} ({OTHER_CLEARANCES[group]}) is published for bores above {rows[0][0]} to {rows[-1][1]} mm")
+    name, part = (group[:-1], group[-1]) if group in CLEARANCE_PARTS else (group, "")
+    row = _CLEARANCES[_row(_CLEARANCE_RANGES, bore, "ISO 5753-1")]
+    index = CLEARANCE_GROUPS.index(name)
+    low, high = row[index]
+    middle, quarter = 0.5 * (low + high), 0.25 * (high - low)
+    if part == "P":
+        return Limits(1e-6 * middle, 0.5e-6 * sum(row[index + 1]))
+    low, high = {"": (low, high), "L": (low, middle), "H": (middle, high), "M": (low + quarter, high - quarter)}[part]
     return Limits(1e-6 * low, 1e-6 * high)
 
 

@@ -4,7 +4,8 @@
 import math
 
 from bearing_sim.scene.bearing import Bearing
-from bearing_sim.scene.mounting import clearance_limits
+from bearing_sim.scene.display import force
+from bearing_sim.scene.mounting import clearance_limits, clearance_source
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.uncertainty import value_at
 
@@ -66,7 +67,7 @@ def rows(bearing: Bearing) -> list[tuple[str, str]]:
     raceways = f"F {mm('inner_raceway_diameter_mm')}, E {mm('outer_raceway_diameter_mm')}"
     cage_mass = marked(f"{known['cage_mass_g']:.4g} g", "cage.mass")
     symbols = {"C": "dynamic_rating", "C_0": "static_rating", "C_u": "fatigue_limit"}
-    ratings = ", ".join(f"{symbol} {1e-3 * known[name]:.4g} kN" for symbol, name in symbols.items())
+    ratings = ", ".join(f"{symbol} {force(known[name])}" for symbol, name in symbols.items())
     found = [
         ("boundary dimensions", f"d {mm('bore_diameter_mm')}, D {mm('outside_diameter_mm')}, B {mm('width_mm')}"),
         ("raceways", marked(raceways, "inner_raceway.radius", "outer_raceway.low_radius")),
@@ -76,11 +77,17 @@ def rows(bearing: Bearing) -> list[tuple[str, str]]:
             f"{marked(mm('roller_effective_length_mm'), 'roller.length')}",
         ),
         ("cage", GUIDES[known["cage_guidance"]] + ("" if bearing.cage.is_absent else f", {cage_mass}")),
-        ("load ratings", f"{ratings}; {rating}; C by ISO 281 {1e-3 * known['computed_dynamic_rating']:.4g} kN"),
+        ("load ratings", f"{ratings}; {rating}; C by ISO 281 {force(known['computed_dynamic_rating'])}"),
         ("source", bearing.source.strip()),
     ]
     if clearance is not None:
-        found.insert(3, ("clearance", f"{known['clearance_group']}: {clearance[0]:.0f} to {clearance[1]:.0f} um, diametral (ISO 5753-1)"))
+        found.insert(
+            3,
+            (
+                "clearance",
+                f"{known['clearance_group']}: {clearance[0]:.0f} to {clearance[1]:.0f} µm, diametral ({clearance_source(known['clearance_group'])})",
+            ),
+        )
     if speeds:
         found.insert(-1, ("speeds", ", ".join(speeds)))
     found += [(f"estimated {each['field']}", each["by"]) for each in known["estimated"]]

@@ -16,10 +16,11 @@ from bearing_sim.physics.film import DOWSON_TOYODA
 from bearing_sim.scene.designation import designations
 from bearing_sim.scene.loader import load_bearing, scene_from_mapping
 from bearing_sim.scene.ratings import rate
-from bearing_sim.studies.friction import SERIES, dimensions_of, series_of, skf_moment
+from bearing_sim.studies.friction import dimensions_of, series_of, skf_moment
 from bearing_sim.studies.operating_point import settle
 
 _BEARINGS, _LARGEST_BORE, _CLASSES = 60, 0.15, (32, 46, 68, 100, 150, 220, 320, 460)
+_SERIES = ("10", "2", "3", "22", "23")
 _ENDS = (0.0, 1.6e-10, 1e-9, math.inf)  # of 2 U: of the originals, of the range, and beyond
 
 
@@ -34,7 +35,7 @@ def skf_rolling_power(scene, viscosity: float) -> float:
 def rolling(generator: random.Random, known: list) -> tuple[float, float]:
     """Return the speed parameter 2 U of a random bearing and its rolling power over SKF's."""
     series = None
-    while series not in SERIES or not limit:
+    while series not in _SERIES or not limit:
         text = generator.choice(known).designation.text
         bearing, series = load_bearing(text), series_of(text)
         limit = bearing.ratings.limiting_speed
