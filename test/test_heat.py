@@ -83,7 +83,14 @@ def test_every_conductance_has_its_unit_when_it_is_run_with_units(name, with_uni
 
 def test_every_formula_of_heat_is_run_with_units():
     public = {name for name, value in vars(heat).items() if getattr(getattr(value, "py_func", value), "__module__", "") == heat.__name__}
-    assert {name for name in public if not name.startswith("_")} - {"Air", "air_at"} == set(FORMULAS)
+    assert {name for name in public if not name.startswith("_")} - {"Air", "air_at", "held_fin_conductances"} == set(FORMULAS)
+
+
+def test_both_conductances_of_a_fin_with_a_held_end_have_their_unit(with_units):
+    *arguments, unit = FORMULAS["fin_conductance"]
+    found = with_units.held_fin_conductances(*(of(*each) for each in arguments))
+    numbers = heat.held_fin_conductances(*(number for number, _ in arguments))
+    assert [each.to(unit).magnitude for each in found] == pytest.approx(numbers, rel=1e-12)
 
 
 def test_moving_air_is_that_of_the_standard_for_housings_within_a_third():

@@ -7,6 +7,7 @@ import types
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_bvp
 
 from bearing_sim import Inputs, Simulation, load_scene
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
@@ -15,6 +16,7 @@ from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.temperatures import given_temperatures, lubricate_scene, warm_cage
 from bearing_sim.model.thermal_network import POWERS, boundary_dimensions, oil_flow, thermal_network
 from bearing_sim.physics.growth import Temperatures
+from bearing_sim.physics.heat import fin_conductance, held_fin_conductances
 from bearing_sim.physics.thermal_filter import filter_gain, network_matrix
 from bearing_sim.physics.thermal_network import BOOK, LINK, LINKS, NODE, NODES, NetworkInputs, new_work, settle, step
 from bearing_sim.scene.loader import SceneError
@@ -141,7 +143,47 @@ def test_a_conductance_that_is_given_replaces_the_computed_one():
     of, network = network_of("heat.conductances.housing_oil=12.5")
     work = new_work()
     step(0.1, np.full(NODES, 393.15), np.zeros(len(POWERS)), loads_of(of), at(), network, work)
-    assert work.conductances[LINK.housing_oil] == 12.5 and (work.conductances > 0.0).all() and len(work.conductances) == LINKS
+    assert work.conductances[LINK.housing_oil] == 12.5 and len(work.conductances) == LINKS
+    free_ends = [LINK.shaft_front, LINK.shaft_back]
+    assert (np.delete(work.conductances, free_ends) > 0.0).all() and (work.conductances[free_ends] == 0.0).all()
+
+
+@pytest.mark.parametrize(("tip", "length"), [(30.0, 0.04), (-20.0, 0.15), (80.0, 0.5)])
+def test_a_shaft_end_of_given_temperature_conducts_as_the_fin_solved_numerically(tip, length):
+    """Against the boundary value problem k A T'' = h P (T - T_air) with both ends held, by SciPy's collocation."""
+    coefficient, perimeter, conductivity, section, root = 35.0, 0.157, 46.0, 1.96e-3, 50.0  # temperatures over the air's
+
+    def slopes(x, y):
+        return np.vstack([y[1], coefficient * perimeter / (conductivity * section) * y[0]])
+
+    grid = np.linspace(0.0, length, 60)
+    found = solve_bvp(slopes, lambda at, to: np.array([at[0] - root, to[0] - tip]), grid, np.zeros((2, grid.size)), tol=1e-8)
+    to_air, to_tip = held_fin_conductances(coefficient, perimeter, conductivity, section, length)
+    assert found.success and to_air * root + to_tip * (root - tip) == pytest.approx(-conductivity * section * found.sol(0.0)[1], rel=1e-5)
+
+
+def test_a_fin_without_air_is_a_conductor_and_a_long_one_does_not_feel_its_tip():
+    assert held_fin_conductances(0.0, 0.157, 46.0, 2e-3, 0.1) == (0.0, pytest.approx(46.0 * 2e-3 / 0.1))
+    to_air, to_tip = held_fin_conductances(35.0, 0.157, 46.0, 2e-3, 5.0)
+    assert to_tip < 1e-9 and to_air == pytest.approx(fin_conductance(35.0, 0.157, 46.0, 2e-3, 5.0))
+
+
+@pytest.mark.parametrize(("name", "hot"), [("NU 210/C3", 140.0), ("NJ 2308", 110.0), ("NU 232", 120.0)])
+def test_a_hot_shaft_warms_the_inner_ring_over_the_outer_and_the_books_close(name, hot):
+    heat = {"law": "network", "shaft": {"back": "20 mm"}}
+    lubricant = {"oil": "ISO VG 68", "supply": "oil_bath", "temperature": "40 degC"}
+    about = {"name": name, "bearing": name, "lubricant": lubricant, "operating": {"shaft_speed": "1500 rpm", "radial_load": "5 kN"}, "heat": heat}
+    cold = load_scene(about)
+    warm = load_scene(cold, [f"heat.shaft.back_temperature={hot} degC"])
+    free, held = (thermal_equilibrium(each, scene_inputs(each)) for each in (cold, warm))
+    excess = [each.temperatures[NODE.inner_ring] - each.temperatures[NODE.outer_ring] for each in (free, held)]
+    assert excess[1] > max(excess[0], 0.0) + 1.0
+    assert held.heat_to_oil + held.heat_to_ambient == pytest.approx(held.powers["shaft_power"], rel=1e-6)
+
+
+def test_a_shaft_end_of_given_temperature_needs_a_length():
+    with pytest.raises(SceneError, match="front: 0 mm, but front_temperature is given"):
+        scene("heat.shaft.front=0 mm", "heat.shaft.front_temperature=90 degC")
 
 
 def test_a_network_without_a_sink_is_refused():

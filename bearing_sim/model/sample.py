@@ -75,7 +75,7 @@ OBSERVABLES = (
     Observable("lnmr", "h", "modified reference rating life L_nmr, with a_ISO lamina by lamina (ISO/TS 16281)"),
     Observable("inner_load_maximum", "N", "largest normal force between any roller and the inner raceway since the sample before"),
     Observable("outer_load_maximum", "N", "largest normal force between any roller and the outer raceway since the sample before"),
-    Observable("equivalent_load", "N", "dynamic and static equivalent load of the bearing, P = P_0 = F_r"),
+    Observable("equivalent_load", "N", "dynamic equivalent load of the bearing, P: F_r, more under axial load (ISO 281)"),
     Observable("reference_load", "N", "dynamic equivalent reference load P_ref, under which L10 would be L10r (ISO/TS 16281)"),
     Observable("viscosity_ratio", "", "viscosity ratio kappa (ISO 281)"),
     Observable("contamination_factor", "", "contamination factor e_C (ISO 281); NaN where the scene names no cleanliness class"),
@@ -135,7 +135,7 @@ OBSERVABLES = (
     Observable("housing_temperature", "K", "temperature of the housing, likewise"),
     Observable("oil_outlet_temperature", "K", "temperature of the oil in the bearing, with which it leaves; NaN without a thermal network"),
     Observable("heat_to_oil", "W", "heat that the oil takes along as it flows through; NaN without a thermal network"),
-    Observable("heat_to_ambient", "W", "heat that housing and shaft give off to the air; NaN without a thermal network"),
+    Observable("heat_to_ambient", "W", "heat that housing and shaft give off, to the air and along the shaft; NaN without a thermal network"),
     *(
         Observable(f"{name}_uncorrected", "K", f"temperature of the {ring} ring by the network without the measured ones; NaN without a network")
         for name, ring in zip(RING_TEMPERATURES, ("inner", "outer"))

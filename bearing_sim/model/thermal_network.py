@@ -146,11 +146,13 @@ def thermal_network(scene: Scene, params: Params) -> Network:
         capacities=_capacities(scene, params, size, bore, 0.5 * (front + back)),
         partition=partition(bearing),
         ambient=heat.ambient_temperature,
+        front=_unless_given(shaft.front_temperature),
+        back=_unless_given(shaft.back_temperature),
     )
 
 
-def _unless_given(conductance: float | None) -> float:
-    return math.nan if conductance is None else conductance
+def _unless_given(number: float | None) -> float:
+    return math.nan if number is None else number
 
 
 def _capacities(scene: Scene, params: Params, size: Dimensions, bore: float, beside: float) -> np.ndarray:

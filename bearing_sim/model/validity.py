@@ -28,11 +28,14 @@ from bearing_sim.model.table_span import Span, span_of
 from bearing_sim.model.temperatures import film_temperatures, given_temperatures
 from bearing_sim.model.turning import turns
 from bearing_sim.physics.film import DOWSON_TOYODA
+from bearing_sim.scene.axial_load import heat_limits, strength_limit
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.crown import NoCrown
+from bearing_sim.scene.designation import is_designation, parse_designation
+from bearing_sim.scene.display import number, unit_sign
 from bearing_sim.scene.flanges import flange_geometry
 from bearing_sim.scene.lubricant import ConstantTraction, CustomOil, EyringTraction, KragelskiiTraction, Oil, Oil4109Traction
-from bearing_sim.scene.ratings import rate
+from bearing_sim.scene.ratings import minimum_load_law, rate
 from bearing_sim.scene.scene import Scene
 
 ZERO_CELSIUS = 273.15  # [K]
@@ -494,8 +497,8 @@ class Law(NamedTuple):
         """Return the warning for several shown values outside of the range."""
         said = self.quantity
         if not self.is_condition:
-            ends = dict.fromkeys(f"{value:.4g}" for value in (min(values), max(values)))
-            said = f"{self.quantity} is {' to '.join(ends)} {self.unit}".rstrip()
+            ends = dict.fromkeys(number(value) for value in (min(values), max(values)))
+            said = f"{self.quantity} is {' to '.join(ends)} {unit_sign(self.unit)}".rstrip()
         return f"{self.name}: {self.law}: {said}; expected {self.general_range} ({self.source}); {self.instead}"
 
     def shown(self, value: float) -> float:
@@ -506,10 +509,10 @@ class Law(NamedTuple):
         """Return a range in words."""
         if self.is_condition:
             return self.expected
-        unit, low, high = f" {self.unit}".rstrip(), self.shown(low), self.shown(high)
+        unit, low, high = f" {unit_sign(self.unit)}".rstrip(), self.shown(low), self.shown(high)
         if math.isinf(low):
-            return f"at most {high:.4g}{unit}"
-        return f"at least {low:.4g}{unit}" if math.isinf(high) else f"{low:.4g} to {high:.4g}{unit}"
+            return f"at most {number(high)}{unit}"
+        return f"at least {number(low)}{unit}" if math.isinf(high) else f"{number(low)} to {number(high)}{unit}"
 
 
 class Exceedance(NamedTuple):
@@ -544,7 +547,7 @@ class Exceedance(NamedTuple):
         law, expected = self.law, self.law.range_text(self.low, self.high)
         if law.is_condition:
             return f"{law.quantity}; expected {expected} ({law.source})"
-        return f"{law.quantity} is {law.shown(self.value):.4g}{f' {law.unit}'.rstrip()}; expected {expected} ({law.source})"
+        return f"{law.quantity} is {number(law.shown(self.value))}{f' {unit_sign(law.unit)}'.rstrip()}; expected {expected} ({law.source})"
 
     @property
     def text(self) -> str:
@@ -555,7 +558,7 @@ class Exceedance(NamedTuple):
     def note(self) -> str:
         """Grade, name, value, range and effect in a line."""
         law = self.law
-        value = "" if law.is_condition else f" is {law.shown(self.value):.4g}{f' {law.unit}'.rstrip()}"
+        value = "" if law.is_condition else f" is {number(law.shown(self.value))}{f' {unit_sign(law.unit)}'.rstrip()}"
         return f"{self.grade}: {law.name}: {law.quantity}{value}; expected {law.range_text(self.low, self.high)}; {self.said_effect}"
 
     @property
@@ -657,6 +660,31 @@ def _always(scene: Scene) -> bool:
 
 def _by_laminae(scene: Scene) -> bool:
     return scene.life.method == "iso16281"
+
+
+def _flange_load_share(at: "Conditions") -> np.ndarray:
+    """Return the axial load over the least that limits it all the time, while the shaft turns."""
+    scene, samples = at.scene, at.samples
+    heat = heat_limits(scene, samples["shaft_speed"], np.hypot(samples["load_y"], samples["load_z"]), samples["viscosity_ratio"])
+    return at.while_turning(abs(scene.operating.axial_load) / np.maximum(np.fmin(heat, strength_limit(scene.bearing)), 1e-9))
+
+
+def _share_of_minimum_load(at: "Conditions") -> np.ndarray:
+    law, samples = minimum_load_law(at.scene.bearing), at.samples
+    return np.hypot(samples["load_y"], samples["load_z"]) / (law.at_rest + law.by_speed * np.abs(samples["shaft_speed"]))
+
+
+def _has_polyamide_cage(scene: Scene) -> bool:
+    return not scene.bearing.cage.is_absent and scene.bearing.cage.material.name.startswith("polyamide")
+
+
+def _stabilised_to(scene: Scene) -> float:
+    """Return the temperature to which the rings keep their dimensions [K], by the suffix of the designation (DIN 623-1)."""
+    suffixes = parse_designation(scene.bearing.designation).unmodelled
+    return _STABILISED.get(next((each for each in suffixes if each in _STABILISED), "SN"), math.inf)
+
+
+_STABILISED = {name: celsius + ZERO_CELSIUS for name, celsius in {"SN": 120, "S0": 150, "S1": 200, "S2": 250, "S3": 300, "S4": 350}.items()}
 
 
 def _class_viscosity(scene: Scene) -> float:
@@ -1376,6 +1404,46 @@ LAWS = (
         expected="at most the highest temperature of a catalogue oil's table; 160 degC of a custom oil",
     ),
     Law(
+        "polyamide_cage",
+        "validity.heat",
+        "cage of polyamide",
+        "the temperature of cage and rollers",
+        "degC",
+        -40.0 + ZERO_CELSIUS,
+        120.0 + ZERO_CELSIUS,
+        "SKF, Rolling bearings, polymer cages: PA66 from -40 to 120 degC, less in oils with EP additives",
+        "take a cage of steel or brass (bearing.cage, suffix J or M)",
+        _has_polyamide_cage,
+        lambda at: part_temperature(at.samples, "roller_temperature"),
+    ),
+    Law(
+        "ring_stabilisation",
+        "validity.heat",
+        "dimensions of heat-stabilised rings",
+        "the temperature of the warmer ring",
+        "degC",
+        -math.inf,
+        _stabilised_to,
+        "DIN 623-1: rings without a suffix keep their dimensions to 120 degC (many makers': 150 degC), S0 to 150, S1 to 200, S2 to 250, S3 to 300",
+        "take a bearing with a suffix of stabilisation that reaches this temperature",
+        lambda scene: is_designation(scene.bearing.designation),
+        lambda at: np.fmax(part_temperature(at.samples, "inner_ring_temperature"), part_temperature(at.samples, "outer_ring_temperature")),
+        expected="at most 120 degC, or what the suffix S0 to S4 says",
+    ),
+    Law(
+        "mineral_oil",
+        "validity.oil",
+        "a filling of mineral oil",
+        "the temperature of the oil in the bearing",
+        "degC",
+        -math.inf,
+        100.0 + ZERO_CELSIUS,
+        "SKF, Rolling bearings, oil change: once a year up to 50 degC, every three months at about 100 degC",
+        "take a synthetic oil, or more cooling: heat.oil_flow, heat.housing; or change the oil more often",
+        lambda scene: scene.lubricant.oil.base == "mineral" and scene.lubricant.grease is None,
+        lambda at: part_temperature(at.samples, "oil_outlet_temperature"),
+    ),
+    Law(
         "shaft_in_air",
         "validity.heat",
         "convection of the rotating shaft",
@@ -1556,17 +1624,16 @@ LAWS = (
     Law(
         "flange_axial_load",
         "validity.axial_load",
-        "friction of roller ends on flanges",
-        "the axial load F_a",
-        "N",
+        "flanges under an axial load that acts all the time",
+        "the axial load F_a over what SKF permits by strength and heat",
+        "",
         -math.inf,
-        lambda scene: 2.3 * (1e3 * scene.bearing.outside_diameter) ** 1.7,
-        "SKF, Dynamic axial load carrying capacity: F_ap max = 0.0023 D^1.7 kN, D in mm, of flanges that carry it all the time",
+        1.0,
+        "SKF, Dynamic axial load carrying capacity: 0.0045 D^1.5 kN in series 2, 0.0023 D^1.7 in the others, D in mm; by heat "
+        "k_1 C_0 10^4/(n (d + D)) - k_2 F_r",
         "lower operating.axial_load, or use a larger bearing",
         lambda scene: scene.operating.axial_load != 0.0,
-        lambda scene: abs(scene.operating.axial_load),
-        of_scene=True,
-        expected="at most 0.0023 D^1.7 kN, D the outside diameter in mm",
+        _flange_load_share,
     ),
     Law(
         "flange_gap",
@@ -1647,6 +1714,21 @@ UNWATCHED = (
 )
 """Laws with constants for which no range is known or none is needed, and why."""
 
+MINIMUM_LOAD = Law(
+    "minimum_load",
+    "validity.load",
+    "rollers driven by their load",
+    "the radial load over the makers' minimum",
+    "",
+    1.0,
+    math.inf,
+    "SKF, LYC: k_r (6 + 4 n/n_r)(d_m/100 mm)^2; 0.02 C_r where the maker gives no factor",
+    "raise the load, take a smaller bearing or one with less clearance, or study the slip",
+    lambda scene: scene.bearing.radial_clearance_at_low_points >= 0.0,
+    lambda at: at.while_turning(_share_of_minimum_load(at)),
+)
+"""Of no law but of the bearing's use, so that tables of many points judge it and runs do not: those tell it before they start."""
+
 BY_NAME = {law.name: law for law in LAWS}
 _PLACE = {name: place for place, name in enumerate(BY_NAME)}
 
@@ -1691,6 +1773,12 @@ def outside(scene: Scene, samples: np.ndarray, names: Sequence[str] = (), laws: 
     return in_order(each for each in found if not names or each.law.name in names)
 
 
+def below_minimum_load(scene: Scene, samples: np.ndarray) -> list[Exceedance]:
+    """Return the makers' minimum load if any sample of a scene is below it, the least of them; see `MINIMUM_LOAD`."""
+    law = MINIMUM_LOAD
+    return worst(law, law.low, law.high, law.value(Conditions(scene, samples))) if law.applies(scene) else []
+
+
 def in_order(exceedances: Iterable[Exceedance]) -> list[Exceedance]:
     """Return exceedances in the order of `LAWS`."""
     return sorted(exceedances, key=lambda each: _PLACE[each.law.name])
@@ -1719,8 +1807,9 @@ def counted(cells: Iterable[str], with_assumptions: bool = False) -> list[str]:
     for each in (each for text in cells for each in text.split(_SEPARATOR) if each):
         name, *number = each.split(" ")[:2]
         values.setdefault(name, []).append(float(number[0]) if number else math.nan)
-    told = {name: found for name, found in values.items() if with_assumptions or not BY_NAME[name].is_assumed}
-    return [f"{len(found)} x {BY_NAME[name].counted_text(found)}" for name, found in told.items()]
+    known = BY_NAME | {MINIMUM_LOAD.name: MINIMUM_LOAD}
+    told = {name: found for name, found in values.items() if with_assumptions or not known[name].is_assumed}
+    return [f"{len(found)} x {known[name].counted_text(found)}" for name, found in told.items()]
 
 
 def worst(law: Law, low: float, high: float, values: np.ndarray) -> list[Exceedance]:

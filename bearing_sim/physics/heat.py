@@ -274,6 +274,23 @@ def fin_conductance(coefficient, perimeter, conductivity, section, length):
 
 
 @kernel
+def held_fin_conductances(coefficient, perimeter, conductivity, section, length):
+    """Return the conductances from the root of a fin to the air and to its tip [W/K], where the tip's temperature is given.
+
+    Closed form of the fin of `fin_conductance`: the heat through the root is (h P k A)^(1/2) [tanh(m L/2) (T - T_air) + (T - T_tip)/sinh(m L)].
+
+    Parameters
+    ----------
+    coefficient, perimeter, conductivity, section, length : as of `fin_conductance`; L above 0.
+    """
+    scale = (coefficient * perimeter * conductivity * section) ** 0.5
+    reach = (coefficient * perimeter / (conductivity * section)) ** 0.5 * length
+    if reach < 1e-9:  # no air: conduction alone
+        return 0.0, conductivity * section / length
+    return scale * math.tanh(0.5 * reach), scale / math.sinh(reach)
+
+
+@kernel
 def flow_conductance(density, specific_heat, flow):
     """Return the heat capacity of a flow of oil [W/K], rho c Q: the heat that it takes along for each kelvin that it leaves warmer than it came.
 

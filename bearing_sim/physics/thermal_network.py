@@ -4,8 +4,8 @@
     C_i dT_i/dt = P_i + sum_j G_ij (T_j - T_i) + G_io (T_boundary - T_i)
 
 Nodes: shaft, inner ring, rollers with cage, outer ring, housing, and the oil in the bearing, which is mixed, so that it leaves with
-its temperature.  Boundaries: the oil that comes in, and the ambient air.  Conductances follow `bearing_sim.physics.heat`; those of contacts,
-convection and air change with speeds, loads and temperatures and are held within a step.
+its temperature.  Boundaries: the oil that comes in, the ambient air, and the ends of the shaft whose temperatures are given.  Conductances follow
+`bearing_sim.physics.heat`; those of contacts, convection and air change with speeds, loads and temperatures and are held within a step.
 """
 
 import math
@@ -22,6 +22,7 @@ from bearing_sim.physics.heat import (
     fin_conductance,
     fit_coefficient,
     flow_conductance,
+    held_fin_conductances,
     hertz_half_width,
     in_series,
     mean_radius,
@@ -68,12 +69,15 @@ class Link(NamedTuple):
     oil_flow: int = 8  # from here on to a boundary
     housing_ambient: int = 9
     shaft_ambient: int = 10
+    shaft_front: int = 11  # to an end of given temperature; 0 where the end is free
+    shaft_back: int = 12
 
 
 LINK = Link()
 LINKS = len(LINK)
-# The nodes that each link joins; a boundary is -1, the oil that comes in, or -2, the ambient air.
-ENDS = np.array([(0, 1), (1, 2), (2, 3), (3, 4), (1, 5), (2, 5), (3, 5), (4, 5), (5, -1), (4, -2), (0, -2)], np.int64)
+# The nodes that each link joins; a boundary is -1, the oil that comes in, -2, the ambient air, -3 or -4, the front or the back end of the shaft.
+ENDS = np.array([(0, 1), (1, 2), (2, 3), (3, 4), (1, 5), (2, 5), (3, 5), (4, 5), (5, -1), (4, -2), (0, -2), (0, -3), (0, -4)], np.int64)
+BOUNDARIES = 4
 
 
 class Contacts(NamedTuple):
@@ -145,6 +149,8 @@ class Network(NamedTuple):
     capacities: np.ndarray  # heat capacities of the nodes [J/K], shape (NODES,)
     partition: np.ndarray  # fraction of each power, in the order of the observables, that goes to each node, shape (powers, NODES)
     ambient: float  # temperature of the air [K]
+    front: float  # temperature of the front end of the shaft [K]; NaN: a free end
+    back: float
 
 
 class NetworkInputs(NamedTuple):
@@ -167,6 +173,7 @@ class Work(NamedTuple):
     balance: np.ndarray  # the same before it is decomposed [W/K], shape (NODES, NODES)
     order: np.ndarray  # int64, shape (NODES,)
     source: np.ndarray  # heat and what comes from the boundaries [W], shape (NODES,)
+    boundaries: np.ndarray  # temperatures of the boundaries [K], shape (BOUNDARIES,)
     stages: np.ndarray  # flows of heat into each node at both stages [W], shape (2, NODES)
     between: np.ndarray  # temperatures [K], shape (NODES,)
     heat: np.ndarray  # into each node [W], shape (NODES,)
@@ -178,7 +185,7 @@ class Book(NamedTuple):
 
     losses: int = 0  # heat from the losses
     to_oil: int = 1  # taken along by the oil that flows through
-    to_ambient: int = 2  # given off to the air
+    to_ambient: int = 2  # given off through housing and shaft
     stored: int = 3  # in the nodes
 
 
@@ -193,6 +200,7 @@ def new_work() -> Work:
         np.zeros((NODES, NODES)),
         np.zeros(NODES, np.int64),
         np.zeros(NODES),
+        np.zeros(BOUNDARIES),
         np.zeros((2, NODES)),
         np.zeros(NODES),
         np.zeros(NODES),
@@ -257,6 +265,15 @@ def _fit_conductance(outer, inner, seat, wall, core, coefficient, width):
     """
     touching = coefficient * 2.0 * math.pi * seat * width
     return in_series(in_series(cylinder_conductance(outer, seat, wall, width), touching), cylinder_conductance(seat, inner, core, width))
+
+
+@kernel
+def _shaft_end(fin, length, temperature):
+    """Return the conductances of one end of the shaft to the air and to its tip [W/K], whose temperature is NaN if it is free."""
+    coefficient, perimeter, conductivity, section = fin
+    if math.isnan(temperature):
+        return fin_conductance(coefficient, perimeter, conductivity, section, length), 0.0
+    return held_fin_conductances(coefficient, perimeter, conductivity, section, length)
 
 
 @kernel
@@ -326,8 +343,9 @@ def write_conductances(temperatures, loads, inputs, network, conductances):
     coefficient = rotating_shaft_coefficient(shaft, air, 2.0 * bodies.bore_radius, inputs.shaft_speed)
     coefficient += radiation_coefficient(shaft, air, surfaces.shaft_emissivity)
     perimeter, section = 2.0 * math.pi * bodies.bore_radius, math.pi * (bodies.bore_radius**2 - bodies.shaft_bore**2)
-    front = fin_conductance(coefficient, perimeter, bodies.shaft_conductivity, section, surfaces.front)
-    back = fin_conductance(coefficient, perimeter, bodies.shaft_conductivity, section, surfaces.back)
+    fin = coefficient, perimeter, bodies.shaft_conductivity, section
+    front, conductances[LINK.shaft_front] = _shaft_end(fin, surfaces.front, network.front)
+    back, conductances[LINK.shaft_back] = _shaft_end(fin, surfaces.back, network.back)
     conductances[LINK.shaft_ambient] = front + back
     for link in range(LINKS):
         if not math.isnan(given[link]):
@@ -335,7 +353,16 @@ def write_conductances(temperatures, loads, inputs, network, conductances):
 
 
 @kernel
-def _write_balance(conductances, inlet, ambient, heat, balance, source):
+def _write_boundaries(inlet, network, boundaries):
+    """Write the temperatures of the boundaries [K]; a free end of the shaft, to which no heat flows, has that of the air."""
+    boundaries[0] = inlet
+    boundaries[1] = network.ambient
+    boundaries[2] = network.ambient if math.isnan(network.front) else network.front
+    boundaries[3] = network.ambient if math.isnan(network.back) else network.back
+
+
+@kernel
+def _write_balance(conductances, boundaries, heat, balance, source):
     """Write G and s of the flows into the nodes, s - G T [W]."""
     for i in range(NODES):
         source[i] = heat[i]
@@ -345,7 +372,7 @@ def _write_balance(conductances, inlet, ambient, heat, balance, source):
         conductance, one, other = conductances[link], ENDS[link, 0], ENDS[link, 1]
         balance[one, one] += conductance
         if other < 0:
-            source[one] += conductance * (inlet if other == -1 else ambient)
+            source[one] += conductance * boundaries[-1 - other]
         else:
             balance[other, other] += conductance
             balance[one, other] -= conductance
@@ -362,13 +389,18 @@ def write_heat(powers, partition, heat):
 
 
 @kernel
-def _heat_to(boundary, conductances, reached, temperature):
-    """Return the heat that flows to a boundary at node temperatures [W]."""
-    total = 0.0
+def _heat_given_off(conductances, reached, boundaries):
+    """Return the heat at node temperatures that the oil takes along, and that leaves through housing and shaft [W]."""
+    to_oil, elsewhere = 0.0, 0.0
     for link in range(LINKS):
-        if ENDS[link, 1] == boundary:
-            total += conductances[link] * (reached[ENDS[link, 0]] - temperature)
-    return total
+        other = ENDS[link, 1]
+        if other < 0:
+            flow = conductances[link] * (reached[ENDS[link, 0]] - boundaries[-1 - other])
+            if other == -1:
+                to_oil += flow
+            else:
+                elsewhere += flow
+    return to_oil, elsewhere
 
 
 @kernel
@@ -391,13 +423,14 @@ def step(duration, temperatures, powers, loads, inputs, network, work):
     """
     write_conductances(temperatures, loads, inputs, network, work.conductances)
     write_heat(powers, network.partition, work.heat)
-    advance_held(duration, temperatures, inputs.inlet, network.ambient, network.capacities, work)
+    _write_boundaries(inputs.inlet, network, work.boundaries)
+    advance_held(duration, temperatures, network.capacities, work)
 
 
 @kernel
-def advance_held(duration, temperatures, inlet, ambient, capacities, work):
-    """Advance the temperatures by `step`'s method with the conductances and the heat that ``work`` holds."""
-    _write_balance(work.conductances, inlet, ambient, work.heat, work.balance, work.source)
+def advance_held(duration, temperatures, capacities, work):
+    """Advance the temperatures by `step`'s method with the conductances, the boundaries and the heat that ``work`` holds."""
+    _write_balance(work.conductances, work.boundaries, work.heat, work.balance, work.source)
     for i in range(NODES):
         for j in range(NODES):
             work.matrix[i, j] = _STAGE * duration * work.balance[i, j]
@@ -421,8 +454,9 @@ def advance_held(duration, temperatures, inlet, ambient, capacities, work):
             work.between[i] += _STAGE * duration * work.stages[stage, i]
             work.stages[stage, i] *= capacities[i]
         weight = duration * (1.0 - _STAGE if stage == 0 else _STAGE)
-        to_oil += weight * _heat_to(-1, work.conductances, work.between, inlet)
-        to_ambient += weight * _heat_to(-2, work.conductances, work.between, ambient)
+        flows = _heat_given_off(work.conductances, work.between, work.boundaries)
+        to_oil += weight * flows[0]
+        to_ambient += weight * flows[1]
     work.books[BOOK.losses] = 0.0
     work.books[BOOK.stored] = 0.0
     for i in range(NODES):
@@ -447,9 +481,10 @@ def settle(temperatures, powers, loads, inputs, network, held, work):
     held : 1 for nodes whose temperature stays, else 0, shape (NODES,).
     """
     write_heat(powers, network.partition, work.heat)
+    _write_boundaries(inputs.inlet, network, work.boundaries)
     for _ in range(_ROUNDS):
         write_conductances(temperatures, loads, inputs, network, work.conductances)
-        _write_balance(work.conductances, inputs.inlet, network.ambient, work.heat, work.balance, work.source)
+        _write_balance(work.conductances, work.boundaries, work.heat, work.balance, work.source)
         for i in range(NODES):
             work.between[i] = work.source[i]
             for j in range(NODES):
@@ -473,5 +508,6 @@ def settle(temperatures, powers, loads, inputs, network, held, work):
 
 @kernel
 def heat_flows(temperatures, inputs, network, work):
-    """Return the heat that the oil takes along and the heat to the air [W] with the conductances that ``work`` holds."""
-    return _heat_to(-1, work.conductances, temperatures, inputs.inlet), _heat_to(-2, work.conductances, temperatures, network.ambient)
+    """Return the heat that the oil takes along, and that leaves through housing and shaft [W], with the conductances that ``work`` holds."""
+    _write_boundaries(inputs.inlet, network, work.boundaries)
+    return _heat_given_off(work.conductances, temperatures, work.boundaries)

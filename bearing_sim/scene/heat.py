@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from bearing_sim.scene.quantity import quantity, record
+from bearing_sim.scene.quantity import check, quantity, record
 
 
 @record
@@ -45,11 +45,24 @@ class Housing:
 
 @record
 class ShaftEnds:
-    """The shaft outside of the bearing, two fins in the air; its bore and material are those of `mounting.shaft`."""
+    """The shaft outside of the bearing, two fins in the air; its bore and material are those of `mounting.shaft`.
+
+    A free end gives off heat only.  One of given temperature brings or takes heat: a motor's rotor, a gear, a pump's cold impeller.
+    """
 
     front: quantity("m", "length before the bearing; None: 2.5 times its bore diameter; 0: no heat leaves there", 0.0, 100.0, "mm") | None = None
     back: quantity("m", "length behind the bearing, likewise", 0.0, 100.0, "mm") | None = None
+    front_temperature: quantity("K", "temperature that the front end is held at; None: a free end", 200.0, 600.0, "degC") | None = None
+    back_temperature: quantity("K", "temperature that the back end is held at, likewise", 200.0, 600.0, "degC") | None = None
     emissivity: quantity("", "emissivity of its surface, 0.3: machined steel", 0.0, 1.0) = 0.3
+
+    @check
+    def _held_ends_have_a_length(self) -> list[str]:
+        return [
+            f"{end}: 0 mm, but {end}_temperature is given; give the length from the bearing to where the shaft has that temperature"
+            for end in ("front", "back")
+            if getattr(self, end) == 0.0 and getattr(self, f"{end}_temperature") is not None
+        ]
 
 
 def _conductance(between: str):
@@ -71,6 +84,8 @@ class Conductances:
     oil_flow: _conductance("heat capacity of the oil that flows through, density x specific heat x flow") = None
     housing_ambient: _conductance("housing to ambient") = None
     shaft_ambient: _conductance("shaft to ambient, both ends") = None
+    shaft_front: _conductance("shaft to its front end, where that has a given temperature") = None
+    shaft_back: _conductance("shaft to its back end, likewise") = None
 
 
 @record
@@ -130,7 +145,8 @@ def sink_errors(heat, lubricant) -> list[str]:
     no_flow = given.oil_flow == 0.0 if given.oil_flow is not None else flow == 0.0
     no_housing = given.housing_ambient == 0.0 if given.housing_ambient is not None else heat.housing.area == 0.0
     no_shaft = given.shaft_ambient == 0.0 if given.shaft_ambient is not None else heat.shaft.front == heat.shaft.back == 0.0
-    if no_flow and no_housing and no_shaft:
+    held = any(getattr(heat.shaft, f"{end}_temperature") is not None and getattr(given, f"shaft_{end}") != 0.0 for end in ("front", "back"))
+    if no_flow and no_housing and no_shaft and not held:
         return ["heat.oil_flow: no oil flows through, and housing and shaft give off no heat: the network has no sink; open one of the three"]
     return []
 

@@ -33,6 +33,23 @@ _STEEL = 7850.0  # kg/m^3
 _SHAFT_WIDTHS = (3.0, 1.0, 10.0)  # lengths of a shaft that moves with the inner ring, usual, least and most, over the bearing's width; assumptions
 
 
+class ShaftEnd(NamedTuple):
+    """What a shaft leads to: its temperature and distance, each usual, least and most; all of them assumptions."""
+
+    what: str
+    temperatures: tuple[float, float, float]  # [degC]
+    distances: tuple[float, float, float]  # from the bearing, over its bore diameter
+
+
+SHAFTS = {
+    # Windings of thermal classes B to F reach 120 to 145 degC (IEC 60034-1); the rotor's core is about as warm.
+    "motor": ShaftEnd("the rotor of an electric motor", (120.0, 80.0, 145.0), (0.5, 0.25, 1.5)),
+    "gear": ShaftEnd("a gear, whose teeth and oil heat it", (90.0, 70.0, 110.0), (0.75, 0.25, 1.5)),
+    "cold": ShaftEnd("what is cold, such as the impeller of a water pump", (15.0, 0.0, 40.0), (1.5, 0.5, 3.0)),
+}
+"""What the choices of ``new --shaft`` are; ``free``: ends in the air that only give off heat."""
+
+
 class Wish(NamedTuple):
     """What somebody wants to know about a bearing; texts as a scene file has them.
 
@@ -44,6 +61,7 @@ class Wish(NamedTuple):
     temperature : of lubricant and bearing; None: a thermal network computes the temperatures.
     level : of fidelity.
     mass : of shaft and rotor that moves with the inner ring; None: estimated, with a range.  Levels steady and slip have no use for it.
+    shaft : what heats or cools the shaft, a name of `SHAFTS`, or ``free``; None: nobody said, which a run tells where it is unsafe.
     """
 
     bearing: str
@@ -53,6 +71,7 @@ class Wish(NamedTuple):
     temperature: str | None = None
     level: str = "slip"
     mass: str | None = None
+    shaft: str | None = None
 
 
 def new_scene(wish: Wish, name: str, command: str) -> tuple[str, Scene]:
@@ -78,10 +97,7 @@ def new_scene(wish: Wish, name: str, command: str) -> tuple[str, Scene]:
         "bearing": _about_bearing(scene),
         "mounting": ["Assumption: a shaft that turns under a load that stands still, usual classes by Schaeffler's table; materials are steel."],
         "lubricant": _about_lubricant(scene, wish),
-        "heat": [
-            "The temperatures follow from the losses. Assumptions: a plummer block of usual size, in air that a machine stirs.",
-            "Where temperatures are known, give them: heat: {law: given, inner_ring: 70 degC, outer_ring: 60 degC}.",
-        ],
+        "heat": [*_about_heat(wish)],
         "support": [] if wish.mass is not None else _about_mass(),
         "life": ["Assumption: normal cleanliness, for a_ISO of ISO 281; none: a_ISO = 1."],
     }
@@ -126,7 +142,7 @@ def _choose(tree: dict, scene: Scene, wish: Wish) -> None:
     if wish.temperature is None:
         law = "grease" if is_grease else lubricant["supply"]
         lubricant["temperature"] = _TEMPERATURES.get(law, _TEMPERATURES["oil_jet"])
-        tree["heat"] = {"law": "network", "ambient_temperature": "20 degC"}
+        tree["heat"] = {"law": "network", "ambient_temperature": "20 degC", **_shaft_block(tree, scene, wish)}
     tree["life"] = {"a_iso": _CLEANLINESS["grease" if is_grease else "oil"]}
     if wish.mass is not None:
         tree["support"] = {"shaft": {"mass": wish.mass}}
@@ -134,9 +150,32 @@ def _choose(tree: dict, scene: Scene, wish: Wish) -> None:
         usual, low, high = (f"{_shaft_mass(scene, widths):.3g} kg" for widths in _SHAFT_WIDTHS)
         tree["support"] = {"shaft": {"mass": usual}}
         source = "how much of shaft and rotor moves with the inner ring (assumption)"
-        tree["uncertainty"] = {"support.shaft.mass": {"low": low, "high": high, "distribution": "log_uniform", "source": source}}
+        tree.setdefault("uncertainty", {})["support.shaft.mass"] = {"low": low, "high": high, "distribution": "log_uniform", "source": source}
     if scene.bearing.dimensions_at == "cold":
         tree["mounting"] = {"shaft": {"fit": shaft_fit(scene)}, "housing": {"fit": _HOUSING_FIT}}
+
+
+def _shaft_block(tree: dict, scene: Scene, wish: Wish) -> dict:
+    """Return the part of the block ``heat`` on what the shaft leads to, and write the ranges of it into the tree."""
+    if wish.shaft in (None, "free"):
+        return {}
+    end, bore = SHAFTS[wish.shaft], 1e3 * scene.bearing.bore_diameter
+    usual, *ends = (f"{celsius:g} degC" for celsius in end.temperatures)
+    distance, *places = (f"{round(share * bore, 1):g} mm" for share in end.distances)
+    for name, (low, high) in (("temperature", ends), ("distance", places)):
+        field = "heat.shaft.back_temperature" if name == "temperature" else "heat.shaft.back"
+        source = f"{name} of {end.what} (assumption)"
+        tree.setdefault("uncertainty", {})[field] = {"low": low, "high": high, "distribution": "uniform", "source": source}
+    return {"shaft": {"back": distance, "back_temperature": usual}}
+
+
+def _about_heat(wish: Wish) -> Iterator[str]:
+    yield "The temperatures follow from the losses. Assumptions: a plummer block of usual size, in air that a machine stirs."
+    if wish.shaft in SHAFTS:
+        yield f"Behind the bearing the shaft leads to {SHAFTS[wish.shaft].what}: assumptions, with ranges in the block uncertainty."
+    else:
+        yield "Both ends of the shaft only give off heat. Where something heats or cools the shaft, say so: new --shaft motor, gear or cold."
+    yield "Where temperatures are known, give them: heat: {law: given, inner_ring: 70 degC, outer_ring: 60 degC}."
 
 
 def _shaft_mass(scene: Scene, widths: float) -> float:
@@ -156,7 +195,8 @@ def _about_mass() -> list[str]:
 def _title(scene: Scene, wish: Wish, command: str) -> list[str]:
     lubricant = wish.lubricant.get("oil") or wish.lubricant.get("grease")
     about = f"{scene.bearing.designation or scene.bearing.name} in {lubricant}, {wish.speed}, {wish.load}."
-    return [*_comments([about, f"Written by: {command}", "Every field, its unit and its range: the page Scene fields of the documentation."]), ""]
+    fields = "Every field, its unit, range and meaning: bearing-sim fields, such as bearing-sim fields lubricant."
+    return [*_comments([about, f"Written by: {command}", fields]), ""]
 
 
 def _about_bearing(scene: Scene) -> Iterator[str]:
