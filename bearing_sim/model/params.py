@@ -22,6 +22,7 @@ from bearing_sim.physics.rating_life import METHODS, cleanliness, reliability_fa
 from bearing_sim.physics.squeeze_film import SqueezeFilm, new_squeeze_film
 from bearing_sim.physics.starvation import MinimumLoad, Starvation, starvation_rate
 from bearing_sim.physics.traction import TractionConstants, constant_constants, kragelskii_constants, oil_4109_constants, thermal_eyring_constants
+from bearing_sim.scene.axial_load import equivalent_load_law
 from bearing_sim.scene.bearing import Roller
 from bearing_sim.scene.contour import outer_contour
 from bearing_sim.scene.crown import IsoLogCrown, NoCrown, StraightArcCrown, crown_drops, log_scale, slice_middles
@@ -179,6 +180,10 @@ class Life(NamedTuple):
     cleanliness_slope: float  # of e_C, see `bearing_sim.physics.rating_life.CLEANLINESS`
     cleanliness_loss: float
     laminae: Laminae
+    axial_load: float  # |F_a| [N], which flanges carry
+    axial_limit: float  # e: up to F_a = e F_r the axial load does not count
+    radial_factor: float  # X and Y of P = X F_r + Y F_a above, see `bearing_sim.scene.axial_load`
+    axial_factor: float
 
 
 class Variants(NamedTuple):
@@ -468,6 +473,7 @@ def _life(scene: Scene) -> Life:
     roller, rated = bearing.roller, rate(bearing)
     slope, loss = cleanliness(choice.a_iso, bearing.pitch_diameter)
     inner_rating, outer_rating = ring_ratings(rated.dynamic, roller.count, bearing.diameter_ratio)
+    law = equivalent_load_law(bearing)
     return Life(
         method=METHODS[choice.method],
         dynamic_rating=rated.dynamic,
@@ -480,6 +486,10 @@ def _life(scene: Scene) -> Life:
         cleanliness_slope=slope,
         cleanliness_loss=loss,
         laminae=_laminae(roller, choice.laminae, contact_stiffness(bearing), inner_rating, outer_rating),
+        axial_load=abs(scene.operating.axial_load),
+        axial_limit=law.limit,
+        radial_factor=law.radial_factor,
+        axial_factor=law.axial_factor,
     )
 
 

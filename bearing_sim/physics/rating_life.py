@@ -205,10 +205,24 @@ class Lives(NamedTuple):
 
 
 @kernel
+def equivalent_load(load, life):
+    """Return the dynamic equivalent load P [N] of a cylindrical roller bearing: F_r up to F_a = e F_r, X F_r + Y F_a above (makers' rule).
+
+    Parameters
+    ----------
+    load : radial load on the bearing, F_r [N].
+    life : `bearing_sim.model.params.Life`.
+    """
+    if life.axial_load <= life.axial_limit * load:
+        return load
+    return max(load, life.radial_factor * load + life.axial_factor * life.axial_load)
+
+
+@kernel
 def rate_lives(load, equivalent, oil, life):
     """Return the `Lives` of one condition; infinite without load.
 
-    P = P_0 = F_r, as for every bearing that carries no axial load.
+    The static equivalent load is P_0 = F_r: flanges, not raceways, carry the axial load.
 
     Parameters
     ----------
@@ -217,7 +231,8 @@ def rate_lives(load, equivalent, oil, life):
     oil : `OilFactors`.
     life : `bearing_sim.model.params.Life`.
     """
-    l10 = 1e6 * (life.dynamic_rating / load) ** (10.0 / 3.0) if load > 0.0 else math.inf
+    dynamic = equivalent_load(load, life)
+    l10 = 1e6 * (life.dynamic_rating / dynamic) ** (10.0 / 3.0) if dynamic > 0.0 else math.inf
     l10r = rating_life_revolutions(equivalent.inner_lamina, equivalent.outer_lamina, life)
     at_load, of_laminae = modified_by_oil(l10, oil, life), equivalent.reference_modification_factor
     lnm, lnmr = life.reliability_factor * at_load * l10, life.reliability_factor * of_laminae * l10r
@@ -234,7 +249,7 @@ def rate_lives(load, equivalent, oil, life):
         lnm,
         l10r,
         lnmr,
-        load,
+        dynamic,
         life.dynamic_rating * (1e-6 * l10r) ** -0.3,
         oil.viscosity_ratio,
         oil.contamination_factor,

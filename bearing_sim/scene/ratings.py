@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Load ratings of a bearing: by the standards from its dimensions (ISO 281:2007, ISO 76:2006), or its maker's."""
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from bearing_sim.scene.quantity import check, quantity, record
 
@@ -19,6 +19,7 @@ class Ratings:
     minimum_load_factor: quantity("N", "minimum load factor, k_r; makers print 0.15 for 0.15 kN or 150 for 150 N", 10.0, 1e4, "kN") | None = None
     reference_speed: quantity("rad/s", "reference speed, n_r", 1.0, 12000.0, "rpm") | None = None
     limiting_speed: quantity("rad/s", "limiting speed", 1.0, 12000.0, "rpm") | None = None
+    axial_load: Literal["skf", "krw", "none"] = "skf"  # whose rule counts an axial load in the equivalent load, see `bearing_sim.scene.axial_load`
 
     @check
     def _are_of_one_bearing(self) -> list[str]:
