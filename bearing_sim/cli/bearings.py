@@ -5,7 +5,6 @@ import math
 
 import click
 
-from bearing_sim.cli.lives import life_rows, temperature_report, temperature_rows
 from bearing_sim.cli.options import json_option, picture_option, scene_argument, set_option, verbose_option
 from bearing_sim.cli.outputs import OutputFile, WritingCommand
 from bearing_sim.cli.reporting import (
@@ -16,6 +15,7 @@ from bearing_sim.cli.reporting import (
     as_usage_error,
     print_json,
     print_table,
+    refuse_idle_temperature,
     warn_of_limits,
     warn_of_scene,
     warnings_report,
@@ -58,6 +58,7 @@ def loads(scene_name, overrides, slices, picture, verbose, as_json):
 
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
+    refuse_idle_temperature(scene, overrides)
     warn_of_scene(scene)
     announce_compilation()
     from bearing_sim.model.validity import outside
@@ -68,11 +69,12 @@ def loads(scene_name, overrides, slices, picture, verbose, as_json):
     with as_failed_run(IntegrationError, ArithmeticError):
         found = statics(scene, slices)
     if picture is not None:
+        from bearing_sim.scene.display import quantity_text
         from bearing_sim.studies.statics import draw
 
-        operating = scene.operating
+        operating = (quantity_text(name, getattr(scene.operating, name)) for name in ("radial_load", "shaft_speed"))
         with as_file_error(), picture.draft() as draft:
-            draw(draft, f"{scene.name}: {operating.radial_load:g} N, {operating.shaft_speed * 30 / math.pi:.6g} rpm", found)
+            draw(draft, f"{scene.name}: {' at '.join(operating)}", found)
     warnings = graded(scene, outside(scene, found.sample), found.sample[0])
     if as_json:
         print_json({**_report_loads(scene, slices, found), **warnings_report(scene, warnings), "picture": picture and str(picture)})
@@ -82,6 +84,8 @@ def loads(scene_name, overrides, slices, picture, verbose, as_json):
 
 
 def _report_loads(scene, slices, found) -> dict:
+    from bearing_sim.studies.sheet import temperatures
+
     return {
         "scene": scene.name,
         "slices": slices,
@@ -97,7 +101,7 @@ def _report_loads(scene, slices, found) -> dict:
         "outer_pressure_maximum_mpa": 1e-6 * found.outer_pressure,
         "equivalent_loads": list(found.equivalent_loads),
         **_clearance(scene, found),
-        **temperature_report(found.sample[0]),
+        **temperatures(found.sample[0]),
         **_lives(scene, slices, found),
         "azimuths_deg": [math.degrees(azimuth) for azimuth in found.azimuths],
         "inner_loads": found.inner.tolist(),
@@ -126,32 +130,37 @@ def _clearance(scene, found) -> dict:
 def _print_loads(scene, slices, found) -> None:
     import numpy as np
 
-    from bearing_sim.studies.clearance import clearance_row
+    from bearing_sim.scene.display import force, number
+    from bearing_sim.studies.clearance import clearance_text
+    from bearing_sim.studies.sheet import life_rows, temperatures, temperatures_text
 
     def lean(amount, azimuth, unit):
-        return f"{amount:.6g} {unit}, +x end towards {round(math.degrees(azimuth), 1) + 0.0:g} deg" if amount > 1e-9 else "none"
+        return f"{number(amount)} {unit}, +x end towards {number(round(math.degrees(azimuth), 1))}°" if amount > 1e-9 else "none"
 
-    operating = scene.operating
+    operating, pressures = scene.operating, (found.inner_pressure, found.outer_pressure)
+    lives = _lives(scene, slices, found)
     held = "free" if operating.moment is not None else "held"
     print_table(
-        f"{scene.name}: {operating.radial_load:g} N at {operating.shaft_speed * 30 / math.pi:.6g} rpm, {slices} slices",
+        f"{scene.name}: {force(operating.radial_load)} at {number(operating.shaft_speed * 30 / math.pi, 6)} rpm, {slices} slices",
         [
             ("loaded rollers", f"{int((found.inner > 0).sum())} of {len(found.inner)}"),
-            ("largest roller load", f"inner {found.inner.max():.6g} N, outer {found.outer.max():.6g} N"),
-            ("largest slice pressure", f"inner {1e-6 * found.inner_pressure:.4g} MPa, outer {1e-6 * found.outer_pressure:.4g} MPa"),
-            ("ring displacement", "y {:.6g} um, z {:.6g} um".format(*(round(1e6 * place, 6) + 0.0 for place in found.ring))),
+            ("largest roller load", f"inner raceway {force(found.inner.max())}, outer raceway {force(found.outer.max())}"),
+            ("largest slice pressure", "inner raceway {} MPa, outer raceway {} MPa".format(*(number(1e-6 * each) for each in pressures))),
+            ("ring displacement", "y {} µm, z {} µm".format(*(number(round(1e6 * place, 6)) for place in found.ring))),
             (f"ring tilt ({held})", lean(1e3 * found.tilt[0], found.tilt[1], "mrad")),
             ("moment on the ring", lean(found.moment[0], found.moment[1], "N m")),
-            clearance_row(scene, _clearance(scene, found)),
-            *temperature_rows(temperature_report(found.sample[0])),
-            *life_rows(scene, _lives(scene, slices, found)),
+            ("running clearance", clearance_text(scene, _clearance(scene, found))),
+            *([("temperatures", warmth)] if (warmth := temperatures_text(temperatures(found.sample[0]))) else []),
+            *life_rows(scene, lives),
+            ("static safety", f"S_0 {number(lives['static_safety'], 3)}"),
+            ("lubrication", f"kappa {number(lives['viscosity_ratio'], 3)}, least film {number(lives['film_um'], 3)} µm"),
         ],
     )
     rows = []
     for j in np.flatnonzero(found.inner > 0):
         along, tilt = found.inner_slices[j], round(1e3 * found.tilts[j], 6) + 0.0
-        carried = f"inner {found.inner[j]:.6g} N (slices {along.min():.4g} to {along.max():.4g} N), outer {found.outer[j]:.6g} N"
-        rows.append((f"{j}: {math.degrees(found.azimuths[j]):.0f} deg", f"{carried}, tilt {tilt:.3g} mrad"))
+        carried = f"inner {force(found.inner[j])} (slices {number(along.min(), 3)} to {number(along.max(), 3)} N), outer {force(found.outer[j])}"
+        rows.append((f"{j}: {math.degrees(found.azimuths[j]):.0f}°", f"{carried}, tilt {number(tilt, 3)} mrad"))
     print_table("rollers between both rings", rows)
 
 
@@ -165,8 +174,11 @@ def _quantity(unit, meaning, minimum, maximum, shown_in):
 
         if text is None:
             return None
+        declared = Quantity(unit, meaning, minimum, maximum, shown_in)
         try:
-            return Quantity(unit, meaning, minimum, maximum, shown_in).read(text)
+            if reason := declared.why_unit_is_needed(text):
+                raise UsageError(f"--{option.name.replace('_', '-')}: {reason}")
+            return declared.read(text)
         except PydanticCustomError as error:
             raise UsageError(f"--{option.name.replace('_', '-')} {text}: {error.message()}") from None
 

@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import click
 
-from bearing_sim.cli.estimation import band_numbers, estimation_with_progress, live_band_rows
-from bearing_sim.cli.lives import life_rows, temperature_report, temperature_rows
+from bearing_sim.cli.estimation import estimation_with_progress, live_band_numbers, live_band_rows
 from bearing_sim.cli.options import json_option, scene_argument, set_option, verbose_option
 from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
 from bearing_sim.cli.reporting import (
@@ -21,21 +20,22 @@ from bearing_sim.cli.reporting import (
     as_file_error,
     as_usage_error,
     command_line,
+    print_groups,
     print_json,
-    print_table,
     progress_bar,
+    refuse_idle_temperature,
     seconds_of,
     suggest_level,
     warn_of_limits,
     warn_of_scene,
     warnings_report,
 )
+from bearing_sim.scene.display import number
 
 _BLOCK = 10  # samples
 _SAMPLES = 10_000  # of a long run, by default
 _RATE = 1000.0  # [Hz] of a short run
 _LEAST_SAMPLES = 100  # of the shortest run that can be judged
-_FLOWS = ("heat_to_oil", "heat_to_ambient")
 
 
 @click.command("run", cls=WritingCommand)
@@ -51,7 +51,7 @@ _FLOWS = ("heat_to_oil", "heat_to_ambient")
     metavar="HZ",
     help="Samples per simulated second [default: 1000, fewer if the run takes more than 10 s at least].",
 )
-@click.option("--out", type=OutputRecording(), metavar="RUN.mcap", help="Record the run.")
+@click.option("-o", "--out", type=OutputRecording(), metavar="RUN.mcap", help="Record the run.")
 @click.option("--rrd", type=OutputFile(), metavar="RUN.rrd", help="Also write a view for rerun.")
 @click.option(
     "--uncertainty", type=click.IntRange(2, 65536), metavar="N", help="Also compute ranges of slip and life from N samples of uncertain fields."
@@ -87,6 +87,7 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
     most = seconds_of(at_most, "--at-most") if at_most is not None else None
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
+    refuse_idle_temperature(scene, overrides)
     suggest_level(scene)
     warn_of_scene(scene)
     plan = _plan(scene, seconds, most, rate)
@@ -114,12 +115,12 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
             for each in warnings:
                 sink.write_event(validity_event(outcome.simulated, each))
     report = {**_report(simulation, outcome, wall, first - started), **warnings_report(scene, warnings), **_states_report(others, start)}
-    report |= band_numbers(estimation.newest) if estimation is not None else {}
+    report |= live_band_numbers(estimation.newest) if estimation is not None else {}
     bands = bands_of(scene, uncertainty)[1] if uncertainty else None
     if as_json:
         print_json({**report, "uncertainty": bands} if bands else report)
     else:
-        _print(report, scene, bands, estimation, state_rows(others, start) if math.isfinite(outcome.slip) else [])
+        _print(report, scene, bands, estimation, state_rows(others, start) if math.isfinite(outcome.slip) else [], verbose)
     warn_of_limits(scene, warnings, verbose)
     if seconds is None and not outcome.settled:
         raise Unsettled(f"not settled: {outcome.reason}; give more time with --at-most")
@@ -200,40 +201,15 @@ def _advance(simulation, plan, sinks, progress, estimation):
 
 
 def _report(simulation, outcome, wall, start_up) -> dict:
-    from bearing_sim.model.characteristic_frequencies import mean_frequencies
-    from bearing_sim.model.losses import loss_report
-    from bearing_sim.studies.clearance import clearance_report
-    from bearing_sim.studies.rating import life_report
-
-    window, last = outcome.window, outcome.window[-1]
-    tilts = simulation.scene.bodies_tilt
-
-    def pressure(name):
-        return 1e-6 * float(window[name].max()) if tilts else None
+    """Return the numbers of the sheet, and how the run went."""
+    from bearing_sim.studies.sheet import results
 
     return {
-        "scene": simulation.scene.name,
-        "level": simulation.scene.level,
-        "estimated": [each.field for each in simulation.scene.bearing.estimated],
+        **results(simulation.scene, outcome.window),
+        "cage_slip": outcome.slip,
         "settled": outcome.settled,
         "settling_seconds": outcome.settling_time,
         "unsettled_reason": outcome.reason,
-        "cage_slip": outcome.slip,
-        "cage_slip_minimum": float(window["cage_slip"].min()),
-        "cage_slip_maximum": float(window["cage_slip"].max()),
-        **clearance_report(simulation.scene, window),
-        **_thermal_report(window),
-        **life_report(simulation.scene, window),
-        "damage": float(last["damage"]),
-        "cage_speed_rpm": float(window["cage_speed"].mean()) * 30 / math.pi,
-        "characteristic_frequencies_hz": mean_frequencies(window),
-        **loss_report(window),
-        "inner_load_maximum": float(window["inner_load_maximum"].max()),
-        "outer_load_maximum": float(window["outer_load_maximum"].max()),
-        "inner_pressure_maximum_mpa": pressure("inner_pressure"),
-        "outer_pressure_maximum_mpa": pressure("outer_pressure"),
-        "inner_edge_pressure_maximum_mpa": pressure("inner_edge_pressure"),
-        "outer_edge_pressure_maximum_mpa": pressure("outer_edge_pressure"),
         "sim_seconds": outcome.simulated,
         "wall_seconds": wall,
         "start_up_seconds": start_up,
@@ -250,52 +226,31 @@ def _states_report(others, start) -> dict:
     return {"start": start, "other_states": states, "skid_load": others.skid_load, "ring_resonance": ring or None}
 
 
-def _thermal_report(window) -> dict:
-    """Return temperatures [degC] and flows of heat [W] at the end, where the scene has a law of heat."""
-    last = window[-1]
-    return temperature_report(last) | {f"{name}_w": float(last[name]) for name in _FLOWS if not math.isnan(last[name])}
-
-
-def _thermal_rows(report) -> list[tuple[str, str]]:
-    rows = temperature_rows(report)
-    if "heat_to_oil_w" in report:
-        rows.append(("heat", f"{report['heat_to_oil_w']:.4g} W to the oil that flows through, {report['heat_to_ambient_w']:.4g} W to the air"))
-    return rows
-
-
-def _print(report, scene, bands, estimation, states) -> None:
+def _print(report, scene, bands, estimation, states, verbose) -> None:
     from bearing_sim.cli.uncertainty import band_rows
-    from bearing_sim.model.losses import loss_text
-    from bearing_sim.studies.clearance import clearance_row
+    from bearing_sim.studies.sheet import sheet
 
+    ranges = list(live_band_rows(estimation.newest, scene)) if estimation is not None else []
+    if bands:
+        ranges += band_rows(bands)
+        source = f"{bands['evaluations']} runs of level {bands['level']}, seed {bands['seed']}; in parentheses the sampling error"
+        ranges.append(("uncertainty", source))
+    print_groups(f"{report['scene']} at level {report['level']}", [*sheet(scene, report, states), ranges, _run_rows(report, scene, verbose)])
+
+
+def _run_rows(report, scene, verbose) -> list[tuple[str, str]]:
+    """Return rows on how the run went; the work of the solver for those who ask."""
+    rows = [("settled", _settled(report)), *_estimates(scene)]
+    if not verbose:
+        return rows
     rejected = f"{report['rejected_steps']} rejected, {report['non_finite_steps']} of which not finite"
-    print_table(
-        f"{report['scene']} at level {report['level']}",
-        [
-            ("cage slip", _slip(report)),
-            ("settled", _settled(report)),
-            *states,
-            ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
-            ("characteristic frequencies", _frequencies(report)),
-            clearance_row(scene, report),
-            *_thermal_rows(report),
-            *life_rows(scene, report),
-            *(live_band_rows(estimation.newest, scene) if estimation is not None else []),
-            ("friction", loss_text(report)),
-            *_pressures(report, scene),
-            ("largest roller load", f"inner {report['inner_load_maximum']:.4g} N, outer {report['outer_load_maximum']:.4g} N"),
-            ("simulated", f"{report['sim_seconds']:.4g} s in {report['wall_seconds']:.3g} s, {report['real_time_factor']:.3g} times real time"),
-            *_estimates(scene),
-            ("steps", f"{report['steps']}, {rejected}"),
-            ("work", f"{report['right_hand_sides']} right-hand sides, {report['jacobians']} Jacobians, {report['factorisations']} factorisations"),
-            *(band_rows(bands) if bands else []),
-            *(
-                [("uncertainty", f"{bands['evaluations']} runs of level {bands['level']}, seed {bands['seed']}; in parentheses the sampling error")]
-                if bands
-                else []
-            ),
-        ],
-    )
+    seconds = f"{number(report['sim_seconds'])} s in {number(report['wall_seconds'], 3)} s"
+    return [
+        *rows,
+        ("simulated", f"{seconds}, {number(report['real_time_factor'], 3)} times real time"),
+        ("steps", f"{number(report['steps'], 9)}, {rejected}"),
+        ("work", f"{report['right_hand_sides']} right-hand sides, {report['jacobians']} Jacobians, {report['factorisations']} factorisations"),
+    ]
 
 
 def _estimates(scene) -> list[tuple[str, str]]:
@@ -307,30 +262,8 @@ def _estimates(scene) -> list[tuple[str, str]]:
     return [("estimated", f"{', '.join(each.field for each in bearing.estimated)}{rules}")]
 
 
-def _slip(report) -> str:
-    if math.isnan(report["cage_slip"]):
-        return "none, the shaft is at rest"
-    return f"{100 * report['cage_slip']:.2f} % ({100 * report['cage_slip_minimum']:.2f} to {100 * report['cage_slip_maximum']:.2f} %)"
-
-
-def _frequencies(report) -> str:
-    from bearing_sim.model.characteristic_frequencies import frequencies_text
-
-    return "none, the shaft is at rest" if math.isnan(report["cage_slip"]) else frequencies_text(report["characteristic_frequencies_hz"])
-
-
 def _settled(report) -> str:
     if not report["settled"]:
         return f"no: {report['unsettled_reason']}"
     seconds = report["settling_seconds"]
-    return f"yes, after {seconds:.3g} s" if seconds > 0.0 else "yes, from the start"
-
-
-def _pressures(report, scene) -> list[tuple[str, str]]:
-    """Return the rows of pressures by slices, where the level has them."""
-    rows = []
-    if scene.bodies_tilt:
-        for ring in ("inner", "outer"):
-            whole, edge = report[f"{ring}_pressure_maximum_mpa"], report[f"{ring}_edge_pressure_maximum_mpa"]
-            rows.append((f"largest pressure, {ring} raceway", f"{whole:.4g} MPa, end laminae {edge:.4g} MPa"))
-    return rows
+    return f"yes, after {number(seconds, 3)} s" if seconds > 0.0 else "yes, from the start"

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from bearing_sim.scene.display import number
+
 CAUSES = {
     "rolling": ("inner_rolling_power", "outer_rolling_power"),
     "sliding": ("inner_sliding_power", "outer_sliding_power"),
@@ -35,8 +37,10 @@ def loss_report(samples: np.ndarray) -> dict:
 
 
 def loss_text(report: Mapping) -> str:
-    """Return the friction in words, from `loss_report`."""
+    """Return the friction in words, from `loss_report`; its parts have the decimals of the sum, so that they add up as far as they can."""
     if math.isnan(report["friction_moment"]):
         return "none, the shaft is at rest"
-    shown = ", ".join(f"{cause} {report[f'{cause}_loss']:.4g}" for cause in CAUSES if report[f"{cause}_loss"])
-    return f"{report['friction_moment']:.4g} N m, {report['shaft_power']:.4g} W: {shown}"
+    total = report["shaft_power"]
+    decimals = max(3 - math.floor(math.log10(abs(total))), 0) if total else 0
+    shown = ", ".join(f"{cause} {report[f'{cause}_loss']:,.{decimals}f}" for cause in CAUSES if round(report[f"{cause}_loss"], decimals))
+    return f"{number(report['friction_moment'])} N m, {total:,.{decimals}f} W: {shown}"

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from bearing_sim.messages.topics import ARRAYS
+from bearing_sim.scene.display import with_sign
 from bearing_sim.scene.scene import Scene
 
 PARTS = ARRAYS["running_clearance"].fields
@@ -22,11 +23,6 @@ def clearance_of(scene: Scene, values: Mapping[str, float]) -> dict:
     return {"dimensions_at": scene.bearing.dimensions_at, **{f"{name}_um": 1e6 * values[name] for name in PARTS}}
 
 
-def clearance_row(scene: Scene, report: Mapping) -> tuple[str, str]:
-    """Return a row of a table from `clearance_report`, in words."""
-    return "running clearance", clearance_text(scene, report)
-
-
 def clearance_text(scene: Scene, report: Mapping) -> str:
     """Return the running clearance with its parts in words, from `clearance_report`."""
     shown = {name.removesuffix("_clearance"): report[f"{name}_um"] for name in PARTS}
@@ -38,11 +34,11 @@ def clearance_text(scene: Scene, report: Mapping) -> str:
         text = "; the dimensions are those of the running bearing: fits, rotation and heat change nothing"
     parts = ", ".join(f"{name} {_signed(value)}" for name, value in shown.items())
     side = "preload" if running < 0.0 else "play"
-    return f"{_signed(running)} um ({side}): {parts}{text or _unsaid(scene)}"
+    return f"{_signed(running)} µm ({side}): {parts}{text or _unsaid(scene)}"
 
 
 def _signed(micrometres: float) -> str:
-    return f"{round(micrometres, 2) + 0.0:+.3g}" if abs(micrometres) >= 0.005 else "0"
+    return with_sign(round(micrometres, 2))
 
 
 def _unsaid(scene: Scene) -> str:
