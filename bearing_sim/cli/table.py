@@ -2,14 +2,28 @@
 """``bearing-sim table``: the table of operating points of level ``steady``."""
 
 import math
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import click
 
-from bearing_sim.cli.lives import temperature_report, temperature_rows
 from bearing_sim.cli.options import json_option, scene_argument, set_option
 from bearing_sim.cli.outputs import OutputFile, WritingCommand
-from bearing_sim.cli.reporting import UsageError, announce_compilation, as_failed_run, as_usage_error, print_json, print_table, progress_bar
+from bearing_sim.cli.reporting import (
+    UsageError,
+    announce_compilation,
+    as_failed_run,
+    as_usage_error,
+    print_json,
+    print_table,
+    progress_bar,
+)
+from bearing_sim.scene.display import SHOWN, force, number, quantity_text, shown
+
+_LINE_EVERY = 10.0  # [s], of progress where nothing can change a line
 
 
 @click.command("table", cls=WritingCommand)
@@ -96,9 +110,9 @@ def _show_response(scene, rebuild, workers, dask, as_json) -> None:
     rpm, celsius = [speed * 30 / math.pi for speed in domain.speeds], [kelvin - 273.15 for kelvin in domain.temperatures]
     rows = [
         ("uncertain fields", ", ".join(found.names)),
-        ("shaft speed", f"up to {rpm[1]:.6g} rpm"),
-        ("radial load", f"up to {domain.loads[1]:.6g} N"),
-        ("oil temperature", f"{celsius[0]:.6g} to {celsius[1]:.6g} degC"),
+        ("shaft speed", f"up to {number(rpm[1], 6)} rpm"),
+        ("radial load", f"up to {force(domain.loads[1])}"),
+        ("oil temperature", f"{number(celsius[0])} to {number(celsius[1])} °C"),
         ("built", f"from {found.points} settled points in {found.seconds:.3g} s; {path}"),
     ]
     print_table(f"response of {scene.name} to its uncertain fields", rows)
@@ -127,11 +141,32 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
     if (level := scene.table.correction) != "none":
         with as_usage_error(SceneError, ValueError, JournalInUse), progress_bar(f"operating points at level {level}", 1.0) as show:
             correction = obtain_correction(scene, temperatures, workers, lambda done, most: show(done / most), rebuild)
-    # The number of points is not known in advance; the bar approaches 100 % as a typical number is reached.
-    with progress_bar("operating points", 1.0) as show:
-        return obtain_table(
-            scene, temperatures, workers, lambda solved: show(1.0 - math.exp(-solved / 15_000)), rebuild, correction and (lambda: correction)
-        )
+    with _points_solved() as show:
+        return obtain_table(scene, temperatures, workers, show, rebuild, correction and (lambda: correction))
+
+
+@contextmanager
+def _points_solved() -> Iterator[Callable[[int, int], None]]:
+    """Tell on stderr how many operating points are solved, of how many, and how long the rest takes; yields the function that takes both numbers.
+
+    The grid is refined in rounds until it is good enough: the rest is that of the present round.  A terminal gets one line that changes, anything
+    else a line every ten seconds.
+    """
+    begun = told = time.monotonic()
+    is_terminal = sys.stderr.isatty()
+
+    def show(solved: int, wanted: int) -> None:
+        nonlocal told
+        if (now := time.monotonic()) - told >= (1.0 if is_terminal else _LINE_EVERY):
+            told = now
+            left = (wanted - solved) * (now - begun) / max(solved, 1)
+            done = f"operating points: {number(solved, 9)} of {number(wanted, 9)} after {now - begun:.0f} s"
+            line = f"{done}, about {number(left, 2)} s left in this round of refinement"
+            click.echo(f"\r{line}\033[K" if is_terminal else line, err=True, nl=not is_terminal)
+
+    yield show
+    if is_terminal and told > begun:
+        click.echo("\r\033[K", err=True, nl=False)
 
 
 def _taken(path, scene):
@@ -162,6 +197,7 @@ def _answers(scene, table, condition) -> dict:
     from bearing_sim.levels.steady.table_builder import holds, look_up
     from bearing_sim.model.sample import NODE_OBSERVABLES
     from bearing_sim.simulation import Inputs, IntegrationError
+    from bearing_sim.studies.sheet import temperatures
     from bearing_sim.sweep.thermal import operating_state, solved_answer, table_condition
 
     speed, load, kelvin, angle = condition
@@ -173,7 +209,7 @@ def _answers(scene, table, condition) -> dict:
     named = {name: [float(interpolated[column]), float(solved[column])] for name, column in ANSWER._asdict().items()}
     rpm, degrees = speed * 30 / math.pi, math.degrees(angle)
     where = {"speed_rpm": rpm, "load": load, "oil_temperature_c": kelvin - 273.15, "load_angle_deg": degrees}
-    where |= temperature_report(dict(zip(NODE_OBSERVABLES, state.temperatures.tolist())))
+    where |= temperatures(dict(zip(NODE_OBSERVABLES, state.temperatures.tolist())))
     return {**where, "held": holds(table, *place[:3], growth=place[4]), "table_and_solution": named}
 
 
@@ -240,22 +276,28 @@ def _compare(scene, count, seed, as_json) -> None:
     for row in rows:
         slip = f"slip {100 * row['marched_slip']:8.4f} % simulated, {100 * row['solved_slip']:8.4f} % solved"
         life = f"life {row['marched_life']:9.4g} h, {100 * (row['solved_life'] / row['marched_life'] - 1):+.2f} %"
-        where = f"{row['speed_rpm']:7.0f} rpm {row['load']:6.0f} N {row['load_angle_deg']:5.0f} deg {row['oil_temperature_c']:4.0f} degC"
+        where = f"{row['speed_rpm']:7.0f} rpm {row['load']:6.0f} N {row['load_angle_deg']:5.0f} deg {row['oil_temperature_c']:4.0f} °C"
         click.echo(f"{where}: {slip}; {life}{'' if row['agrees'] else '; differs'}")
     click.echo(f"{sum(row['agrees'] for row in rows)} of {count} agree: slip within 2 % or 0.05 points, and life within 2 %")
 
 
+def _row_of(name, of_table, solved) -> tuple[str, str]:
+    """Return the row of a quantity that the table and the solver answer."""
+    return shown(name).name, f"{quantity_text(name, of_table)} (solved: {quantity_text(name, solved)})"
+
+
 def _print(report) -> None:
     def spanned(values, unit):
-        return f"{values[0]:.6g} to {values[-1]:.6g} {unit}, {len(values)} knots" if len(values) > 1 else f"{values[0]:.6g} {unit} only"
+        ends = f"{number(values[0], 6)} to {number(values[-1], 6)} {unit}, {len(values)} knots"
+        return ends if len(values) > 1 else f"{number(values[0], 6)} {unit} only"
 
     print_table(
         f"operating points of {report['scene']}",
         [
             ("shaft speed", spanned(report["speeds_rpm"], "rpm") + (", both directions" if report["both_senses"] else ", forward only")),
             ("radial load", spanned(report["loads"], "N")),
-            ("oil temperature", spanned(report["oil_temperatures_c"], "degC")),
-            ("load direction", f"all; {len(report['load_angles_deg'])} knots on {report['period_deg']:.6g} deg"),
+            ("oil temperature", spanned(report["oil_temperatures_c"], "°C")),
+            ("load direction", f"all; {len(report['load_angles_deg'])} knots on {number(report['period_deg'], 6)}°"),
             ("nodes", f"{report['nodes']}, {report['missing']} without a solution; {report['megabytes']:.3g} MB; {report['file']}"),
             ("built", f"from {report['solved']} operating points in {report['seconds']:.3g} s"),
             ("requested tolerance", f"{100 * report['tolerance']:.3g} % of life, and of slip plus 0.025 points"),
@@ -267,9 +309,10 @@ def _print(report) -> None:
     if report["correction"] is not None:
         _print_correction(report["correction"])
     for point in report["points"]:
-        rows = [(name, f"{of_table:.6g} (solved: {solved:.6g})") for name, (of_table, solved) in point["table_and_solution"].items()]
-        rows += temperature_rows(point)
-        where = f"{point['speed_rpm']:.6g} rpm, {point['load']:.6g} N, {point['oil_temperature_c']:.6g} degC, {point['load_angle_deg']:.6g} deg"
+        rows = [_row_of(name, *both) for name, both in point["table_and_solution"].items() if name in SHOWN]
+        rows += [("temperatures", warmth)] if (warmth := temperatures_text(point)) else []
+        where = f"{number(point['speed_rpm'], 6)} rpm, {force(point['load'])}, {number(point['oil_temperature_c'], 4)} °C, "
+        where += f"load towards {number(point['load_angle_deg'], 4)}°"
         print_table(where + ("" if point["held"] else ": outside the table"), rows)
 
 
@@ -283,12 +326,16 @@ def _print_correction(report) -> None:
     if states := report["two_states"]:
         speeds, loads = ([state[name] for state in states] for name in ("speed_rpm", "load"))
         example = states[len(states) // 2]
+        spans = f"{number(min(speeds), 5)} to {number(max(speeds), 5)} rpm and {force(min(loads), 3)} to {force(max(loads), 3)}"
         rows += [
-            ("two states", f"at {len(states)} points, {min(speeds):.5g} to {max(speeds):.5g} rpm and {min(loads):.3g} to {max(loads):.3g} N"),
+            (
+                "two states",
+                f"at {len(states)} points, {spans}",
+            ),
             (
                 "",
                 f"such as {100 * example['slip']:.1f} % from ideal rolling, which the table has, and {100 * example['slip_from_more']:.1f} % from "
-                f"more slip at {example['speed_rpm']:.5g} rpm and {example['load']:.3g} N",
+                f"more slip at {number(example['speed_rpm'], 5)} rpm and {force(example['load'], 3)}",
             ),
         ]
     print_table(f"correction by level {report['level']}", rows)

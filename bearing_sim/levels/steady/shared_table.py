@@ -14,7 +14,17 @@ from bearing_sim.files.kept_arrays import packed, read_arrays
 from bearing_sim.files.limits import KEPT_TABLE_FILE, FileError
 from bearing_sim.files.reading import printable
 from bearing_sim.levels.steady.table import Table
-from bearing_sim.levels.steady.table_builder import Quality, corrected_by, read_table, table_arrays, table_numbers, table_path, write_table
+from bearing_sim.levels.steady.table_builder import (
+    Quality,
+    corrected_by,
+    read_table,
+    reference_of,
+    shifted,
+    table_arrays,
+    table_numbers,
+    table_path,
+    write_table,
+)
 from bearing_sim.model.table_span import span_of
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.scene import Scene
@@ -31,7 +41,8 @@ def shared_table(scene: Scene, table: Table, quality: Quality) -> bytes:
         "corrected_by": np.array(corrected_by(scene)),
         "program": np.array(sources_hash()),
     }
-    return packed(table_arrays(table, quality) | about)
+    kept = shifted(table, -reference_of(scene, span_of(scene)).offset)
+    return packed(table_arrays(kept, quality) | about)
 
 
 def take_table(path: Path, scene: Scene) -> tuple[Table, Quality]:
@@ -62,7 +73,7 @@ def take_table(path: Path, scene: Scene) -> tuple[Table, Quality]:
     if found is None:
         raise FileError("it holds no whole table; build it again", where)
     write_table(table_path(scene, span), *found)
-    return found
+    return shifted(found[0], reference_of(scene, span).offset), found[1]
 
 
 def _agree(own: list[np.ndarray], theirs: np.ndarray) -> bool:
