@@ -16,7 +16,8 @@ from bearing_sim.studies.deng2017.design import radii_within
 from bearing_sim.studies.design import D_VALUE, END_OF_MAP, LOW, NOMINAL, WORST, Border, Limits, default_axes, design
 from bearing_sim.sweep.conditions import Conditions
 from bearing_sim.sweep.grid import read_axis
-from bearing_sim.sweep.table import new_figure, read_table
+from bearing_sim.sweep.pictures import new_figure
+from bearing_sim.sweep.table import read_table
 from bearing_sim.sweep.tasks import Journal
 
 LIMITS = Limits(10.0, 300.0, Conditions(0.02, 0.1))

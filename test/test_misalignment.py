@@ -12,7 +12,7 @@ from bearing_sim.cli.main import main
 from bearing_sim.studies import misalignment
 from bearing_sim.studies.misalignment import misalign
 from bearing_sim.studies.slices import by_slices
-from bearing_sim.sweep.table import new_figure
+from bearing_sim.sweep.pictures import new_figure
 
 SLOW = ["operating.shaft_speed=5000 rpm", "operating.radial_load=2 kN"]
 QUIET = {"progress": lambda text: None}
@@ -80,7 +80,7 @@ def test_the_picture_says_what_each_curve_is_drawn_over(found, tmp_path, monkeyp
 def test_command_prints_and_draws(tmp_path):
     picture, table = tmp_path / "m.png", tmp_path / "m.csv"
     words = ["study", "misalignment", *(word for item in SLOW for word in ("--set", item)), "--points", "2", "--slices", "10", "--json"]
-    result = CliRunner().invoke(main, [*words, "--picture", str(picture), "--csv", str(table)])
+    result = CliRunner().invoke(main, [*words, "--picture", str(picture), "--out", str(table)])
     assert result.exit_code == 0, result.output
     assert [point["crown"] for point in json.loads(result.stdout)["points"]] == ["none", "none", "iso_log", "iso_log"]
     assert picture.stat().st_size > 10_000

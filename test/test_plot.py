@@ -14,6 +14,7 @@ from synthetic_run import synthetic_block
 
 from bearing_sim.cli.main import main
 from bearing_sim.messages.bands import BANDS, ESTIMATES, Bands
+from bearing_sim.model.losses import CAUSES
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies import run_plot
 from bearing_sim.studies.run_plot import (
@@ -120,17 +121,43 @@ def test_units_are_those_that_users_say(tmp_path):
     labels = [axes.get_ylabel() for axes in figure.axes]
     assert labels == [
         "shaft speed [rpm]",
-        "radial load [kN]",
+        "radial load [N]",
         "cage slip [%]",
-        "rating life [h]",
+        f"rating life {SCENE.life.symbols[0]} [h]",
         "temperature [°C]",
         "running clearance [µm]",
     ]
     lines = {axes.get_ylabel(): axes.lines[0].get_ydata() for axes in figure.axes}
-    assert lines["shaft speed [rpm]"][-1] == pytest.approx(4700 * 30 / math.pi) and lines["radial load [kN]"][0] == pytest.approx(0.8)
+    assert lines["shaft speed [rpm]"][-1] == pytest.approx(4700 * 30 / math.pi) and lines["radial load [N]"][0] == pytest.approx(800.0)
     assert lines["cage slip [%]"][-1] == pytest.approx(16.0) and lines["temperature [°C]"][0] == pytest.approx(120.0)
     assert lines["running clearance [µm]"][0] == pytest.approx(30.0)
     assert figure.axes[3].get_yscale() == "log"
+
+
+def test_the_power_is_what_is_lost_without_the_state_from_which_the_solver_starts():
+    """The power of the shaft is less than nothing while the cage slows down, and at time 0 pockets are hit that a run in motion never hits."""
+    block = run_of(LINEAR, shaft_power=-964.0, **{name: 0.0 for names in CAUSES.values() for name in names})
+    block["churning_power"], block["seal_power"], block["pocket_power"][0] = 60.0, 15.0, 65.0
+    _, values = course(block, panels=("power",)).lines["power", 0]
+    assert np.isnan(values[0]) and np.all(values[1:] == 75.0)
+    cut = course_of(iter([block[:100], block[100:]]), SCENE, "cut", len(block), ("power",)).lines["power", 0][1]
+    assert np.isnan(cut).sum() == 1, "only a run has a start, not each block of it"
+
+
+def test_axes_of_lives_name_the_life_of_the_scene_and_runs_that_differ_name_their_own(tmp_path):
+    basic, modified = (course(RUNS["usual"], f"{name}.mcap", ("life",), scene) for name, scene in (("a", SCENE), ("b", MODIFIED)))
+    labels = [draw_over_time(tmp_path / "a.png", runs).axes[0].get_ylabel() for runs in ([basic], [modified], [basic, modified])]
+    assert labels == [f"rating life {SCENE.life.symbols[0]} [h]", f"modified rating life {MODIFIED.life.symbols[1]} [h]", "life [h]"]
+    names = [text.get_text() for text in draw_over_time(tmp_path / "a.png", [basic, modified]).legends[0].get_texts()]
+    assert "a.mcap: rating life" in names[0] and "b.mcap: modified rating life" in names[1]
+
+
+def test_where_colours_tell_runs_apart_no_two_lines_of_a_panel_look_alike(tmp_path):
+    warm = run_of(LINEAR, roller_temperature=400.0, housing_temperature=350.0, inner_ring_temperature_measured=401.0)
+    axes = draw_over_time(tmp_path / "a.png", [course(warm, name, ("temperature",)) for name in ("a", "b")]).axes[0]
+    drawn = [(line.get_color(), line._dash_pattern[1] and tuple(line._dash_pattern[1])) for line in axes.lines]
+    assert len(set(drawn)) == len(drawn) == 12
+    assert len({line.get_color() for line in axes.get_legend().get_lines()}) == 1, "the legend of quantities has no colour of a run"
 
 
 @pytest.mark.parametrize("seconds, unit, last", [(100, "s", 100), (1000, "min", 1000 / 60), (36000, "h", 10), (31 * 86400, "d", 31)])
@@ -178,7 +205,8 @@ def test_a_band_is_drawn_only_where_there_is_one(tmp_path):
     assert not figure.axes[2].collections and not figure.legends
     shown.band = SlipBand(np.array([0.0, 0.5, 1.0]), np.array([0.0, 0.1, 0.2]), np.array([0.1, 0.3, 0.5]))
     figure = draw_over_time(tmp_path / "b.png", [shown])
-    assert len(figure.axes[2].collections) == 1 and "5 to 95 %" in figure.legends[0].get_texts()[0].get_text()
+    assert len(figure.axes[2].collections) == 1 and len(figure.axes[2].collections[0].get_paths()) == 1, "one area, without seams"
+    assert "5 to 95 %" in figure.legends[0].get_texts()[0].get_text()
     assert figure.axes[2].get_ylim()[1] >= 50.0
     assert_readable(figure)
 
@@ -217,18 +245,18 @@ def test_the_minimum_load_is_the_makers_at_the_speed_of_the_run(tmp_path):
     turning = run_of(LINEAR, shaft_speed=np.array([0.0, *np.linspace(1000, 3000, 299)]) * math.pi / 30)
     figure = draw_over_load(tmp_path / "a.png", [course(turning, scene=scene)])
     marks = [line for line in figure.axes[0].lines if line.get_linestyle() == "--"]
-    assert marks[0].get_xdata()[0] == pytest.approx(by_hand[0] / 1e3)
-    assert "1000 to 3000 rpm" in figure.legends[0].get_texts()[0].get_text()
+    assert marks[0].get_xdata()[0] == pytest.approx(by_hand[0])
+    assert "1,000 to 3,000 rpm" in figure.legends[0].get_texts()[0].get_text()
 
 
 def test_a_sweep_over_load_has_a_line_for_each_speed_and_the_minimum_load(tmp_path):
     points = [
-        {"load": load, "slip": slip / load, "life": life * load**-3, "speed": speed, "family": f"shaft speed [rpm] {speed}"}
+        {"load": load, "slip": slip / load, "life": life * load**-3, "speed": speed, "family": f"shaft speed {speed:,.0f} rpm"}
         for speed, slip, life in ((1000.0, 100.0, 1e12), (45000.0, 4000.0, 1e9))
         for load in (100.0, 300.0, 1000.0, 3000.0)
     ]
     points[0]["slip"], points[1]["life"] = math.nan, math.inf
-    figure = draw_table_over_load(tmp_path / "a.png", points, SCENE, "a sweep")
+    figure = draw_table_over_load(tmp_path / "a.png", points, SCENE, "a sweep", "rating life [h]")
     assert_readable(figure)
     assert len(figure.axes[0].lines) == 3 and figure.axes[1].get_yscale() == "log" and figure.axes[0].get_xlabel() == "radial load [kN]"
 

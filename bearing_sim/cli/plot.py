@@ -74,8 +74,10 @@ def _plot_recordings(paths, picture, over, panels, band) -> None:
         if band:
             course.band = SlipBand(*_band_of(course, band))
         courses.append(course)
-    scene, names = courses[0].scene, ", ".join(course.name for course in courses)
-    title = f"{scene.name} at level {scene.level}: {names}" if len(courses) == 1 else f"{scene.name}: {names}"
+    simulated: dict[str, list[str]] = {}
+    for course in courses:
+        simulated.setdefault(f"{course.scene.name} at level {course.scene.level}", []).append(course.name)
+    title = "; ".join(f"{scene}: {', '.join(names)}" for scene, names in simulated.items())
     with picture.draft() as draft:
         (draw_over_load if over == "load" else draw_over_time)(draft, courses, title)
 
@@ -109,7 +111,8 @@ def _band_of(course, samples):
 
 
 def _plot_table(path, picture, over, quantities) -> None:
-    from bearing_sim.sweep.table import QUANTITIES, NotDrawable, draw, read_any_table, written_by_us
+    from bearing_sim.sweep.pictures import NotDrawable, draw
+    from bearing_sim.sweep.table import read_any_table, written_by_us
 
     with as_usage_error(NotDrawable, ValueError), written_by_us(path):
         table = read_any_table(path)
@@ -125,7 +128,7 @@ def _plot_table(path, picture, over, quantities) -> None:
             raise UsageError(f"{path}: there is no .parquet beside it, so what was varied is not known; give --over load, or the .parquet")
         else:
             with picture.draft() as draft:
-                draw(draft, table, quantities or QUANTITIES)
+                draw(draft, table, quantities)
 
 
 _LOAD, _SPEED = "operating.radial_load", "operating.shaft_speed"
@@ -133,11 +136,13 @@ _LOAD, _SPEED = "operating.radial_load", "operating.shaft_speed"
 
 def _plot_over_load(path, picture, table) -> None:
     """Draw slip and life of a table over its column of loads."""
+    from bearing_sim.scene.display import heading
     from bearing_sim.scene.loader import SceneError, scene_from_yaml
     from bearing_sim.studies.run_plot import draw_table_over_load
-    from bearing_sim.sweep.table import label
+    from bearing_sim.sweep.pictures import condition_title, value_text
+    from bearing_sim.sweep.table import life_column
 
-    columns = {column.name: column for column in table.columns}
+    columns, life = {column.name: column for column in table.columns}, life_column(table)
     missing = [name for name in (_LOAD, "cage_slip", "rating_life") if name not in columns]
     if missing:
         raise UsageError(f"{path}: no column {missing[0]}; vary the load with --vary {_LOAD}=0.5kN:20kN:9")
@@ -149,7 +154,7 @@ def _plot_over_load(path, picture, table) -> None:
     if not text:
         click.echo(f"{path}: a CSV table has no scene, so there is no minimum load; draw the .parquet", err=True)
     operating = scene.operating.shaft_speed * 30 / math.pi if scene is not None else math.nan
-    results = {"cage_slip", "rating_life"}
+    results = {"cage_slip", life}
     varied = [axis["field"] for axis in table.about.get("axes", ()) if axis["field"] != _LOAD and len(axis["values"]) > 1]
     if not table.about:
         varied = [name for name in columns if "." in name and name != _LOAD and name not in results]
@@ -157,14 +162,14 @@ def _plot_over_load(path, picture, table) -> None:
         {
             "load": float(row[_LOAD]) * (1e3 if columns[_LOAD].unit == "kN" else 1.0),
             "slip": float(row["cage_slip"]),
-            "life": float(row["rating_life"]),
+            "life": float(row[life]),
             "speed": float(row.get(_SPEED, operating)),
-            "family": ", ".join(f"{label(columns[name])} {row[name]:.6g}" if isinstance(row[name], float) else str(row[name]) for name in varied),
+            "family": ", ".join(value_text(name, columns[name].unit, row[name]) for name in varied),
         }
         for row in table.rows
-        if all(isinstance(row[name], (int, float)) for name in (_LOAD, "cage_slip", "rating_life"))
+        if all(isinstance(row[name], (int, float)) for name in (_LOAD, "cage_slip", life))
     ]
     about = table.about
-    where = f"{about['scene']} {' '.join(about.get('overrides', ()))} at level {about['level']}" if "scene" in about else path.name
+    where = condition_title(about) if "scene" in about else path.name
     with picture.draft() as draft:
-        draw_table_over_load(draft, points, scene, where)
+        draw_table_over_load(draft, points, scene, where, heading(life))

@@ -14,14 +14,13 @@ from bearing_sim.cli.reporting import (
     announce_compilation,
     as_file_error,
     as_usage_error,
+    column_texts,
     command_line,
     print_json,
     print_rows,
     seconds_of,
     warn,
 )
-
-_SHOWN = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum", "shaft_power", "status")
 
 
 @click.command("sweep", cls=WritingCommand)
@@ -57,9 +56,13 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
 
     seconds = seconds_of(duration)
     with as_usage_error(FieldError):
-        varied = [read_axis(text) for text in axes]
+        varied = [read_axis(text, written=True) for text in axes]
         count = point_count(varied)
     _check_sweep(varied, level)
+    from bearing_sim.sweep.pictures import NotDrawable, draw, require_drawable
+
+    with as_usage_error(NotDrawable):
+        require_drawable([axis.values for axis in varied]) if picture is not None else None
     with suppress(SceneError):  # what varies may be what makes the scene valid
         warn(plausibility(load_scene(scene_name, overrides)))
     announce_compilation()
@@ -74,17 +77,18 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
             table = plan.table(run_tasks(plan.tasks, journal, workers, dask, points.update))
         require_same_study(out, study)
         files = write_table(out.path, table._replace(about=table.about | {"command": command_line(), "study": study}))
+    drawn = None
+    try:
         if picture is not None:
-            from bearing_sim.sweep.table import NotDrawable, draw
-
-            with as_usage_error(NotDrawable):
-                with picture.draft() as draft:
-                    draw(draft, table)
-    report = _report_sweep(table, points, files, picture)
-    if as_json:
-        print_json(report | {"points": table.rows})
-    else:
-        _print_sweep(table, report)
+            with as_file_error(), as_usage_error(NotDrawable), picture.draft() as draft:
+                draw(draft, table)
+            drawn = picture
+    finally:  # what was computed is told, also where the picture cannot be written
+        report = _report_sweep(table, points, files, drawn)
+        if as_json:
+            print_json(report | {"points": table.rows})
+        else:
+            _print_sweep(table, report)
 
 
 def _defined(scene):
@@ -119,15 +123,12 @@ def _report_sweep(table, points, files, picture) -> dict:
 
 
 def _print_sweep(table, report) -> None:
-    varied = [axis["field"] for axis in table.about["axes"]]
-    columns = [table.column(name) for name in (*varied, *_SHOWN)]
-    names = [column.name.rpartition(".")[2] + (f", {column.unit}" if column.unit else "") for column in columns]
+    from bearing_sim.sweep.pictures import default_quantities
+
+    names = (*(axis["field"] for axis in table.about["axes"]), *default_quantities(table), "shaft_power", "status")
     shown = table.rows if len(table.rows) <= 60 else table.rows[:50]
-    rows = [
-        [f"{row[name]:.{8 if name in varied else 5}g}" if isinstance(row[name], float) else str(row[name]) for name in (*varied, *_SHOWN)]
-        for row in shown
-    ]
-    print_rows(f"{report['scene']} at level {report['level']}", names, rows, words=("status",))
+    headings, columns = zip(*(column_texts(table.column(name), [row[name] for row in shown]) for name in names))
+    print_rows(f"{report['scene']} at level {report['level']}", headings, zip(*columns), words=("status",), keys=len(table.about["axes"]))
     if len(shown) < len(table.rows):
         click.echo(f"... and {len(table.rows) - len(shown)} more points; all are in the files")
     reasons = Counter(f"{row['status']}: {row['reason']}" for row in table.rows if row["reason"])

@@ -9,7 +9,7 @@ import numpy as np
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.flanges import flange_geometry
 from bearing_sim.studies.bearing_facts import GUIDES
-from bearing_sim.sweep.table import new_figure
+from bearing_sim.sweep.pictures import new_figure
 
 _RING, _ROLLER, _CAGE, _LINE = "#c9d3de", "#f0d9b5", "#7a9a6b", "#444444"
 _INK = {"edgecolor": _LINE, "linewidth": 0.8}
@@ -27,9 +27,13 @@ def draw(path: Path, bearing: Bearing) -> None:
     figure.savefig(path, dpi=130)
 
 
+def _mark(bearing: Bearing, field: str) -> str:
+    """Return the mark of a field that is estimated, or of a part with such a field; ``""`` if a source prints it."""
+    return "~" if any(each.field == field or each.field.startswith(f"{field}.") for each in bearing.estimated) else ""
+
+
 def _shown(bearing: Bearing, symbol: str, metres: float, field: str = "") -> str:
-    mark = "~" if any(each.field == field for each in bearing.estimated) else ""
-    return f"{symbol} {mark}{1e3 * metres:.5g}"
+    return f"{symbol} {_mark(bearing, field)}{1e3 * metres:.5g}"
 
 
 def _draw_section(axes, bearing: Bearing) -> None:
@@ -68,9 +72,8 @@ def _draw_section(axes, bearing: Bearing) -> None:
         axes.text(right + 0.13 * reach, 1e3 * radius, _shown(bearing, f"⌀ {symbol}", 2 * radius, field), va="center", fontsize=9)
     _span(axes, -half, half, 1e3 * outside + 0.12 * reach, _shown(bearing, "B", width, "width"))
     _span(axes, -5e2 * roller.length, 5e2 * roller.length, 1e3 * bore - 0.12 * reach, _shown(bearing, "L", roller.length, "roller.length"))
-    axes.text(
-        0, 1e3 * middle, f"{roller.count} rollers\n" + _shown(bearing, "⌀", roller.diameter, "roller.diameter"), ha="center", va="center", fontsize=9
-    )
+    rollers = f"{_mark(bearing, 'roller.count')}{roller.count} rollers\n" + _shown(bearing, "⌀", roller.diameter, "roller.diameter")
+    axes.text(0, 1e3 * middle, rollers, ha="center", va="center", fontsize=9)
     axes.set_xlim(-half - 0.25 * reach, right + 0.75 * reach)
     axes.set_ylim(1e3 * bore - 0.3 * reach, 1e3 * outside + 0.3 * reach)
     axes.set_aspect("equal")
@@ -108,4 +111,4 @@ def _draw_side(axes, bearing: Bearing) -> None:
     axes.set_ylim(-1.05 * outside, 1.05 * outside)
     axes.set_aspect("equal")
     axes.set_axis_off()
-    axes.set_title(f"cage: {GUIDES[cage.guidance]}", fontsize=10)
+    axes.set_title(f"{_mark(bearing, 'cage')} cage: {GUIDES[cage.guidance]}".strip(), fontsize=10)

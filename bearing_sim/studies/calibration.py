@@ -20,9 +20,9 @@ from scipy import optimize, stats
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table_builder import solve_points
 from bearing_sim.scene.scene import Scene
-from bearing_sim.scene.uncertainty import Range, messages, nearest, quantities, value_at, with_values
+from bearing_sim.scene.uncertainty import Range, messages, nearest, number_at, quantities, with_values
 from bearing_sim.simulation import Inputs
-from bearing_sim.sweep.table import new_figure
+from bearing_sim.sweep.pictures import new_figure
 
 SPEED_CHANGE, LOAD_CHANGE = 0.02, 0.25  # relative, over a block and the settling time before it
 _SETTLING = 0.5  # s; lags of settled cages are below a third of it
@@ -448,7 +448,7 @@ def calibrate(
     ranges = check_fields(scene, fields, blocks)
     points = shared_points(blocks.conditions)
     model = _Model(scene, ranges, blocks, points, progress)
-    own = np.array([one.position(value_at(scene, one.range.field)) for one in model.scales])
+    own = np.array([one.position(number_at(scene, one.range.field)) for one in model.scales])
     start = _start(model, np.clip(own, _EDGE, 1.0 - _EDGE), blocks.slip)
     check_before(ranges, model.slopes(start), points)
     found = optimize.least_squares(
@@ -465,7 +465,7 @@ def calibrate(
     ends = np.array([positions - reach, positions + reach])
     check_interval(ranges, ends, confidence, blocks, tau)
     fitted = tuple(
-        Fitted(one.range, one.value(positions[k]), one.value(ends[0, k]), one.value(ends[1, k]), value_at(scene, one.range.field))
+        Fitted(one.range, one.value(positions[k]), one.value(ends[0, k]), one.value(ends[1, k]), number_at(scene, one.range.field))
         for k, one in enumerate(model.scales)
     )
     before = model.slip({})

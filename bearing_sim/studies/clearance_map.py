@@ -21,10 +21,12 @@ from bearing_sim.model.running_clearance import mounted, seat_pressure
 from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.thermal_network import POWERS
 from bearing_sim.recording.provenance import git_hash, package_version
+from bearing_sim.scene.display import force, hours
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+from bearing_sim.sweep.pictures import as_shown, draw_map, new_figure, no_result_patch, on_grid, plain_numbers, set_limits
 from bearing_sim.sweep.point import FAILED, OK, Column
-from bearing_sim.sweep.table import Table, new_figure, on_grid
+from bearing_sim.sweep.table import Table
 
 NO_EQUILIBRIUM = "no_equilibrium"
 SPEED, LOAD = "operating.shaft_speed", "operating.radial_load"
@@ -199,7 +201,7 @@ def in_words(found: ClearanceMap) -> list[str]:
             said.append(f"at {row[SPEED]:,.0f} rpm {_state(row)}")
         elif not said:
             said.append(f"at {row[SPEED]:,.0f} rpm {row['reason']}")
-        lines.append(f"at {load:.4g} N: {'; '.join(said)}")
+        lines.append(f"at {force(load)}: {'; '.join(said)}")
     return lines
 
 
@@ -208,22 +210,22 @@ def _said(loss: Loss, least_life: float) -> str:
     if loss.kind in ("runaway", "limit"):
         side = "below" if loss.regained else "above"
         text = f"thermal runaway {side} {speed}" if loss.kind == "runaway" else f"too hot {side} {speed}"
-        warmth = f"inner ring {row['inner_ring_temperature']:.0f} degC, outer ring {row['outer_ring_temperature']:.0f} degC"
+        warmth = f"inner ring {row['inner_ring_temperature']:.0f} °C, outer ring {row['outer_ring_temperature']:.0f} °C"
         return f"{text}: {loss.reason.partition(';')[0]}; next to it {_state(row)}, {warmth}"
     if loss.kind == "clearance":
         return f"clearance is {'back above' if loss.regained else 'gone at'} {speed}"
     if loss.kind == "fit":
         return f"the fit of the shaft {'holds above' if loss.regained else 'is lost at'} {speed}"
-    return f"life {'is above' if loss.regained else 'falls below'} {least_life:g} h at {speed}{_left(row)}"
+    return f"life {'is above' if loss.regained else 'falls below'} {hours(least_life)} at {speed}{_left(row)}"
 
 
 def _left(row: dict) -> str:
     clearance = row["running_clearance"]
-    return f" with {clearance:.1f} um left" if clearance > 0.0 else f" with a preload of {-clearance:.1f} um"
+    return f" with {clearance:.1f} µm left" if clearance > 0.0 else f" with a preload of {-clearance:.1f} µm"
 
 
 def _state(row: dict) -> str:
-    return f"life is {row['life']:.3g} h and slip {row['cage_slip']:.2f} %{_left(row)}"
+    return f"life is {hours(row['life'], 3)} and slip {row['cage_slip']:.2f} %{_left(row)}"
 
 
 def _about(scene: Scene, speeds: Sequence[float], loads: Sequence[float]) -> dict:
@@ -239,12 +241,7 @@ def _about(scene: Scene, speeds: Sequence[float], loads: Sequence[float]) -> dic
     }
 
 
-_DRAWN = (
-    ("running_clearance", "running clearance [um]", "RdBu"),
-    ("inner_ring_temperature", "inner ring [degC]", "inferno"),
-    ("cage_slip", "cage slip [%]", "viridis"),
-    ("life", "life [h]", "viridis"),
-)
+_DRAWN = (("running_clearance", "RdBu"), ("inner_ring_temperature", "inferno"), ("cage_slip", "viridis"), ("life", "viridis"))
 _LINES = {
     "clearance": ("clearance gone", "-"),
     "fit": ("fit of the shaft lost", ":"),
@@ -252,6 +249,7 @@ _LINES = {
     "runaway": ("thermal runaway", "-."),
     "limit": ("too hot", "-."),
 }
+_NEAR_LEAST = 100.0  # times the least life, below which a life is shown beside it
 _STACKED = (("initial_clearance", "#7a7a7a"), ("fit_clearance", "#0072b2"), ("rotation_clearance", "#e69f00"), ("heat_clearance", "#d55e00"))
 _NODE_COLOURS = ("#000000", "#d55e00", "#e69f00", "#009e73", "#0072b2", "#cc79a7")
 
@@ -261,50 +259,34 @@ def draw(path: Path, title: str, found: ClearanceMap) -> None:
     figure = new_figure(11.5, 8.4)
     axes = figure.subplots(2, 2)
     if len(set(found.table.values(LOAD))) > 1:
-        for each, (name, text, colours) in zip(axes.flat, _DRAWN):
-            _draw_map(each, found, name, text, colours)
-        axes.flat[0].legend(loc="upper right", fontsize=8) if axes.flat[0].get_legend_handles_labels()[0] else None
+        for each, (name, colours) in zip(axes.flat, _DRAWN):
+            _draw_map(each, found, name, colours)
+        handles = axes.flat[0].get_legend_handles_labels()[0]
+        if any(row["status"] != OK for row in found.table.rows):
+            handles.append(no_result_patch())
+        if handles:
+            figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False)
     else:
         _draw_lines(list(axes.flat), found)
     figure.suptitle(title, fontsize=11)
     figure.savefig(path, dpi=130)
 
 
-def _draw_map(axes, found, name, text, colours) -> None:
-    from matplotlib.colors import TwoSlopeNorm
+def _draw_map(axes, found, name, colours) -> None:
+    from matplotlib.patheffects import withStroke
 
-    across, up, field = on_grid(found.table, SPEED, LOAD, name)
-    is_life, finite = name == "life", field[np.isfinite(field)]
-    axes.set(xlabel="shaft speed [rpm]", ylabel="radial load [N]", facecolor="#dddddd")
-    if not finite.size:
-        axes.text(0.5, 0.5, f"{text}: no law of heat computes it", ha="center", va="center", transform=axes.transAxes)
-        return
-    ends = {}
+    table = found.table
+    across, up, field = on_grid(table, SPEED, LOAD, name)
     if name == "running_clearance":
-        field = np.where(_has_result(found, across, up), field, np.nan)
-        least, most = (float(end(field)) for end in (np.nanmin, np.nanmax)) if np.isfinite(field).any() else (-1.0, 1.0)
-        if least < 0.0 < most:
-            ends = {"norm": TwoSlopeNorm(0.0, least, most)}
-        else:
-            colours = "Blues" if most > 0.0 else "Reds_r"
-    shown = np.log10(np.clip(field, 1e-3, 1e9)) if is_life else field
-    mesh = axes.pcolormesh(across, up, shown, cmap=colours, shading="nearest", **ends)
-    if np.ptp(shown[np.isfinite(shown)]) > 0.0:
-        lines = axes.contour(across, up, shown, 6, colors="black" if name == "running_clearance" else "white", linewidths=0.8)
-        axes.clabel(lines, fontsize=8, fmt=(lambda value: f"{10**value:.3g}") if is_life else "%g")
-    axes.figure.colorbar(mesh, ax=axes, label=f"log10 of {text}" if is_life else text)
+        field = np.where(np.isnan(on_grid(table, SPEED, LOAD, "life")[2]), np.nan, field)  # without equilibrium it is that of the last trial
+        colours = colours if (field < 0.0).any() and (field > 0.0).any() else "Reds_r" if (field < 0.0).any() else "Blues"
+    x, y, quantity = (as_shown(each, table.column(each).unit, values) for each, values in ((SPEED, across), (LOAD, up), (name, field)))
+    draw_map(axes, x, y, quantity, colours, centre=0.0 if name == "running_clearance" else None)
     for kind, (label, style) in _LINES.items():
-        at = [(each.shaft_speed * _RPM, each.radial_load) for each in found.losses if each.kind == kind]
+        at = [(each.shaft_speed * _RPM, each.radial_load * y.values[-1] / up[-1]) for each in found.losses if each.kind == kind]
         if at:
-            axes.plot(*zip(*at), style, marker="o", ms=3, color="#7b1fa2", lw=1.8, label=label)
-
-
-def _has_result(found: ClearanceMap, across: np.ndarray, up: np.ndarray) -> np.ndarray:
-    """Return at which speeds and loads of a grid there is a result, shape (loads, speeds)."""
-    ok = np.zeros((len(up), len(across)), bool)
-    for row in found.table.rows:
-        ok[np.searchsorted(up, row[LOAD]), np.searchsorted(across, row[SPEED])] = row["status"] == OK
-    return ok
+            line, *_ = axes.plot(*zip(*at), style, marker="o", ms=3, color="#7b1fa2", lw=1.8, label=label)
+            line.set_path_effects([withStroke(linewidth=3.6, foreground="white")])
 
 
 def _draw_lines(axes, found) -> None:
@@ -315,17 +297,21 @@ def _draw_lines(axes, found) -> None:
     for name, colour in _STACKED:
         clearance.plot(speeds, [row[name] for row in rows], color=colour, lw=1.2, label=name.removesuffix("_clearance"))
     clearance.axhline(0.0, color="0.5", lw=0.8)
-    clearance.set_ylabel("clearance and its parts [um]")
+    clearance.set_ylabel("clearance and its parts [µm]")
     for name, colour in zip(NODE_OBSERVABLES, _NODE_COLOURS):
         warmth.plot(speeds, [row[name] for row in rows], color=colour, lw=1.4, label=name.removesuffix("_temperature").replace("_", " "))
-    warmth.set_ylabel("temperature [degC]")
+    warmth.set_ylabel("temperature [°C]")
     slip.plot(speeds, [row["cage_slip"] for row in rows], "-o", ms=4, color="#0072b2")
     slip.set(ylabel="cage slip [%]", ylim=(0.0, None))
-    life.semilogy(speeds, [row["life"] for row in rows], "-o", ms=4, color="#009e73")
+    lives = np.array([row["life"] for row in rows])
+    life.plot(speeds, np.where(np.isfinite(lives), lives, np.nan), "-o", ms=4, color="#009e73")
     life.set_ylabel("life [h]")
+    finite = lives[np.isfinite(lives)]
+    set_limits(life, np.append(finite, found.least_life) if (finite < _NEAR_LEAST * found.least_life).any() else finite, True)
     life.axhline(found.least_life, color="0.5", lw=0.8)
     for each in axes:
         each.set(xlabel="shaft speed [rpm]", xlim=(min(table.values(SPEED)), max(table.values(SPEED))))
+        plain_numbers(each.xaxis)
         each.grid(alpha=0.3)
         for loss in found.losses:
             label, style = _LINES[loss.kind]

@@ -19,9 +19,9 @@ from bearing_sim.model.plausibility import minimum_load
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation, scene_inputs
+from bearing_sim.sweep.pictures import new_figure, plain_numbers
 from bearing_sim.sweep.settling import advance_until_settled, longest_run, shortest_run
 from bearing_sim.sweep.states import states
-from bearing_sim.sweep.table import new_figure
 
 SUPPLIES = ("oil_bath", "circulating", "oil_jet")
 TEMPERATURES = (0.0, 10.0, 20.0, 40.0, 60.0, 80.0)  # degC
@@ -196,6 +196,7 @@ def draw_map(found: SkidMap, path: Path, title: str, before: SkidMap | None = No
             axis.grid(alpha=0.3)
         axes[0, column].set(xscale="log", yscale="log", xlabel="radial load [kN]", title=supply.replace("_", " "))
         axes[1, column].set(xlabel="oil temperature [°C]")
+        plain_numbers(axes[0, column].xaxis, axes[0, column].yaxis)
     axes[0, 0].set_ylabel("cage slip [%]")
     axes[1, 0].set_ylabel("skid load [kN]")
     figure.legend(loc="outside lower center", ncols=len(shades), frameon=False)

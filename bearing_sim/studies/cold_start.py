@@ -26,9 +26,9 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation, scene_inputs, thermal_nodes
+from bearing_sim.sweep.pictures import new_figure, plain_numbers
 from bearing_sim.sweep.settling import advance_until_settled, longest_run, shortest_run
 from bearing_sim.sweep.states import ROLLING, SKID, at_level_slip, standing_cage
-from bearing_sim.sweep.table import new_figure
 from bearing_sim.sweep.thermal import SKIDS, equilibrium_temperatures, simulation_held_at
 
 DEFAULT_SCENE = "nu232_wind_gearbox"
@@ -301,6 +301,8 @@ def draw_courses(found: ColdStart, path: Path, title: str) -> None:
         axes[0].set(xscale="log", title=f"idling under {load / 1e3:.3g} kN, {100 * load / found.minimum_load:.2g} % of the minimum load")
         for axis in axes[1:4]:
             axis.set_yscale("log")
+            plain_numbers(axis.yaxis)
+        plain_numbers(axes[0].xaxis)
         axes[4].set_xlabel("time [min]")
     words = ("cage slip [%]", "sliding, all contacts [W]", "sliding, worst contact [W]", "least film [µm]", "temperature [°C]")
     for axis, text in zip(rows[:, 0], words):

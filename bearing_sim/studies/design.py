@@ -20,14 +20,16 @@ import numpy as np
 
 from bearing_sim.model.validity import merged
 from bearing_sim.recording.provenance import git_hash, package_version
+from bearing_sim.scene.display import hours, number
 from bearing_sim.scene.loader import SceneError, load_scene, scene_to_yaml
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import with_values
 from bearing_sim.studies.rating import loads_text
 from bearing_sim.sweep.conditions import Conditions, OperatingPoint, PointError, combined_life, scene_at_point
 from bearing_sim.sweep.grid import Axis, axis, one_line, scene_at
+from bearing_sim.sweep.pictures import new_figure, on_grid, plain_numbers
 from bearing_sim.sweep.point import OK, REFUSED, UNSETTLED, Column, point_row
-from bearing_sim.sweep.table import Table, new_figure, on_grid, read_table, write_table
+from bearing_sim.sweep.table import Table, read_table, write_table
 from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
 
 LOW, D_VALUE = "bearing.outer_raceway.low_radius", "bearing.outer_raceway.d_value"
@@ -741,11 +743,11 @@ def draw(path: Path | BinaryIO, designed: Designed, beside: tuple[str, tuple[flo
     axes.plot([], [], color=_SLIP, label=f"cage slip at {about['level']} [%]")
     axes.plot([], [], color=_LIFE, label=f"life at {about['level']} [h]")
     axes.set(xlabel="D value [mm]", ylabel="low-point radius R_low [mm]")
-    axes.ticklabel_format(useOffset=False)
+    plain_numbers(axes.xaxis, axes.yaxis)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     verified = f", verified at {verify_level}" if verify_level else ""
     points = f"{len(limits['points'])} operating points, " if limits["points"] else ""
-    title = f"{about['name']} at level {about['level']}{verified}: slip below {limits['slip_below']:g} %, life above {limits['life_above']:g} h"
+    title = f"{about['name']} at level {about['level']}{verified}: slip below {limits['slip_below']:g} %, life above {hours(limits['life_above'])}"
     figure.suptitle("\n".join([title, *textwrap.wrap(f"{about['life']}; {points}{STATE}", 120)]), fontsize=10)
     if beyond:
         texts = [ends if len(conditions) == len(KINDS) else f"{conditions[0]} {ends}" for ends, conditions in beyond.items()]
@@ -795,6 +797,7 @@ def _outline(axes, borders, d_values, look) -> None:
 
 def _isolines(axes, designed, quantity, colour, limit, unit) -> None:
     across, up, field = on_grid(designed.grid, D_VALUE, LOW, quantity)
+    field = np.where(np.isfinite(field), field, np.nan)
     finite = field[np.isfinite(field)]
     if min(field.shape) < 2 or not finite.size or not np.ptp(finite) > 0:
         return
@@ -806,4 +809,4 @@ def _isolines(axes, designed, quantity, colour, limit, unit) -> None:
         inside = [level for level in each if np.nanmin(field[:, column]) < level < np.nanmax(field[:, column])]
         positions = [(across[column], np.interp(level, field[order, column], up[order])) for level in inside]
         if positions:
-            axes.clabel(lines, inside, fontsize=9, fmt={level: f"{level:g} {unit}" for level in inside}, manual=positions)
+            axes.clabel(lines, inside, fontsize=9, fmt={level: f"{number(level)} {unit}" for level in inside}, manual=positions)

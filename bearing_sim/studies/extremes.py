@@ -12,7 +12,7 @@ from bearing_sim.studies.extremes_cases import corner_cases, sampled_cases
 from bearing_sim.studies.extremes_long import LONG_RUNS, LongRun, long_run_result
 from bearing_sim.studies.extremes_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Outcome, case_result
 from bearing_sim.studies.extremes_stock import StockOutcome, at_stock, stock_result
-from bearing_sim.sweep.table import new_figure
+from bearing_sim.sweep.pictures import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
 # The field in an error message: at its start, or after the name of the record.

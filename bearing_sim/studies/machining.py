@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.sweep.table import new_figure
+from bearing_sim.scene.display import number
+from bearing_sim.sweep.pictures import new_figure, plain_numbers
 
 HARMONICS = 120  # w_n falls with the fifth power of n
 POINTS = 720
@@ -141,10 +142,11 @@ def draw(path: Path, section: RingSection, pressing: Pressing, machined: Machine
     shape, radius = figure.subplots(1, 2, width_ratios=(1, 1.35))
     _draw_shape(shape, pressing, machined)
     _draw_radius(radius, pressing, machined)
-    pressed = f"{pressing.arcs} arcs of {math.degrees(pressing.arc_width):g}°, {1e-6 * pressing.pressure:g} MPa"
-    ring = f"ring R {1e3 * section.mean_radius:g} mm, thickness {1e3 * section.thickness:g} mm"
-    made = f"D {1e6 * machined.d_value:.1f} µm, roundness {1e6 * machined.roundness:.1f} µm"
-    figure.suptitle(f"{pressed}, arc rotation {math.degrees(pressing.arc_turn):g}°, {ring}: {made}")
+    pressed = f"{pressing.arcs} arcs of {math.degrees(pressing.arc_width):g}° pressed with {1e-6 * pressing.pressure:g} MPa"
+    ring = f"ring of mean radius {1e3 * section.mean_radius:g} mm and thickness {1e3 * section.thickness:g} mm"
+    made = f"D value {number(1e6 * machined.d_value)} µm, roundness of the low points {number(round(1e6 * machined.roundness, 3))} µm"
+    turn = f", one of them turned by {math.degrees(pressing.arc_turn):g}°" if pressing.arc_turn else ""
+    figure.suptitle(f"{pressed}{turn}, {ring}\n{made}", fontsize=11)
     figure.savefig(path, dpi=130)
 
 
@@ -196,7 +198,7 @@ def _draw_radius(axes, pressing, machined):
                 va="bottom" if side > 0 else "top",
                 fontsize=9,
             )
-    axes.set(xlim=(0, 360), ylim=(radii.min() - 0.14 * span, radii.max() + 0.14 * span), xlabel="azimuth [deg]", ylabel="raceway radius [mm]")
+    axes.set(xlim=(0, 360), ylim=(radii.min() - 0.14 * span, radii.max() + 0.14 * span), xlabel="azimuth [°]", ylabel="raceway radius [mm]")
     axes.set_xticks(range(0, 361, 60))
-    axes.ticklabel_format(axis="y", useOffset=False)
+    plain_numbers(axes.yaxis)
     axes.set_title("pressed arcs shaded", fontsize=10, color=_ROUND)

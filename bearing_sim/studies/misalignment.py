@@ -12,8 +12,8 @@ import numpy as np
 
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.statics import Statics, statics
+from bearing_sim.sweep.pictures import COLOURS, MARKERS, new_figure, plain_numbers
 from bearing_sim.sweep.settling import mean_life
-from bearing_sim.sweep.table import COLOURS, MARKERS, new_figure
 from bearing_sim.sweep.thermal import simulation_in_equilibrium
 
 CROWNS = ("none", "iso_log")
@@ -104,7 +104,9 @@ def draw(path: Path, title: str, found: list[Misaligned]) -> None:
     )
     for each, (label, moving, still) in zip(axes, panels):
         _over_misalignment(each, found, moving, still)
-        each.set(xlabel="misalignment of the inner ring [mrad]", ylabel=label, ylim=(0, None))
+        each.set(xlabel="misalignment of the inner ring [mrad]", ylabel=label)
+        each.set_ylim(-0.02 * each.dataLim.y1, 1.05 * each.dataLim.y1)  # marks at 0 are whole
+        plain_numbers(each.yaxis)
         each.grid(alpha=0.3)
     _along(axes[-1], found)
     handles, labels = axes[0].get_legend_handles_labels()

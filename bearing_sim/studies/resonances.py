@@ -10,10 +10,10 @@ import numpy as np
 
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError
+from bearing_sim.sweep.pictures import COLOURS, new_figure, plain_numbers, set_limits
 from bearing_sim.sweep.point import run_until_settled
 from bearing_sim.sweep.ring_resonance import Resonance, ring_resonance
 from bearing_sim.sweep.states import State, other_states, state_of
-from bearing_sim.sweep.table import COLOURS, new_figure
 
 _SHORTEST = 0.1  # s of a run
 
@@ -77,7 +77,10 @@ def draw(path: Path, title: str, found: Sequence[Speed]) -> None:
             axes.plot(*np.array(rest).T, color=COLOURS[1], marker="s", ms=5, ls="none", label="another state under the same conditions")
         axes.legend(frameon=False, fontsize=8)
     slips.set(ylabel="cage slip [%]")
-    lives.set(ylabel="rating life [h]", yscale="log", xlabel="shaft speed [rpm]")
+    lives.set(ylabel="rating life [h]", xlabel="shaft speed [rpm]")
+    shown = np.array([state.rating_life for each in found for state in each.states])
+    set_limits(lives, shown[np.isfinite(shown)], True)
+    plain_numbers(lives.xaxis)
     excited = [each.resonance.excited for each in known]
     for axes in (ratios, growth, slips, lives):
         axes.grid(alpha=0.3)

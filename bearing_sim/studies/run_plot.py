@@ -14,18 +14,18 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 
 from bearing_sim.messages.bands import BANDS, ESTIMATES, Bands
-from bearing_sim.messages.topics import ZERO_CELSIUS
 from bearing_sim.model.loads import largest_loads
+from bearing_sim.model.losses import CAUSES
 from bearing_sim.model.plausibility import minimum_load
 from bearing_sim.model.sample import RING_TEMPERATURES
 from bearing_sim.model.turning import stands_text, turns
 from bearing_sim.recording.reader import Recording
+from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, larger_unit, number
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import ranges_of, without_dimensions
 from bearing_sim.simulation import Inputs
-from bearing_sim.sweep.table import COLOURS, MARKERS, NotDrawable, new_figure, set_limits
+from bearing_sim.sweep.pictures import COLOURS, MARKERS, NotDrawable, new_figure, plain_numbers, set_limits
 
-_RPM = 30.0 / math.pi
 _LIFE = "modified_rating_life"
 _MOST_POINTS = 4000  # of a line; each stretch of a longer one keeps its least and its largest value
 _FEW_POINTS = 3  # of a line that is drawn with marks, too
@@ -33,6 +33,7 @@ _BREAK = 10.0  # usual spacings of samples above which a line is interrupted
 _LEGEND_WIDTH, _HANDLE_WIDTH = 150, 8  # of a legend below a picture and of the mark before a name, in characters
 _LONGEST_TITLE = 110
 _DATED = 3600.0  # [s] runs from this long on have the date of their start beside the axis
+_STYLES = ("-", "--", "-.", ":", (0, (8, 2)), (0, (1, 3)), (0, (6, 2, 1, 2, 1, 2)))  # of the lines of a panel where colours tell runs apart
 _CELLS = (240, 160)  # of a picture of slip over load, of each of which one sample is drawn
 _MOST_SLIP = 200.0  # [%] beyond which these cells do not tell slips apart
 _INSTANTS = 200  # of a run, at which the range of the slip may be computed
@@ -49,11 +50,22 @@ class Line(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """A panel of a picture: label with unit, lines, and whether its axis is logarithmic."""
+    """A panel of a picture.
+
+    Attributes
+    ----------
+    label : name of what it shows, without the unit.
+    unit : of its lines; the axis has a larger one where the values are large (`bearing_sim.scene.display.larger_unit`).
+    lines : of one quantity.
+    is_logarithmic : whether its axis is.
+    has_start : whether the first sample of a run is shown: it is the state from which the solver starts, no result.
+    """
 
     label: str
+    unit: str
     lines: tuple[Line, ...]
     is_logarithmic: bool = False
+    has_start: bool = True
 
 
 def _observable(name: str, scale: float = 1.0, offset: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
@@ -65,16 +77,21 @@ def _temperature(shown: str, name: str) -> Line:
 
 
 def _load(block: np.ndarray) -> np.ndarray:
-    return np.hypot(block["load_y"], block["load_z"]) / 1e3
+    return np.hypot(block["load_y"], block["load_z"])
+
+
+def _losses(block: np.ndarray) -> np.ndarray:
+    return sum(block[name] for names in CAUSES.values() for name in names)
 
 
 PANELS = {
-    "speed": Panel("shaft speed [rpm]", (Line("", _observable("shaft_speed", _RPM)),)),
-    "load": Panel("radial load [kN]", (Line("", _load),)),
-    "slip": Panel("cage slip [%]", (Line("", _observable("cage_slip", 100.0)),)),
-    "life": Panel("rating life [h]", (Line("", _observable(_LIFE)),), is_logarithmic=True),
+    "speed": Panel("shaft speed", "rpm", (Line("", _observable("shaft_speed", RPM)),)),
+    "load": Panel("radial load", "N", (Line("", _load),)),
+    "slip": Panel("cage slip", "%", (Line("", _observable("cage_slip", 100.0)),)),
+    "life": Panel("rating life", "h", (Line("", _observable(_LIFE)),), is_logarithmic=True),
     "temperature": Panel(
-        "temperature [°C]",
+        "temperature",
+        "°C",
         (
             _temperature("oil", "oil_temperature"),
             _temperature("inner ring", "inner_ring_temperature"),
@@ -85,13 +102,14 @@ PANELS = {
             _temperature("outer ring, measured", "outer_ring_temperature_measured"),
         ),
     ),
-    "clearance": Panel("running clearance [µm]", (Line("", _observable("running_clearance", 1e6)),)),
-    "damage": Panel("life used [%]", (Line("", _observable("damage", 100.0)),)),
+    "clearance": Panel("running clearance", "µm", (Line("", _observable("running_clearance", 1e6)),)),
+    "damage": Panel("life used", "%", (Line("", _observable("damage", 100.0)),)),
     "roller_load": Panel(
-        "largest roller load [N]",
+        "largest roller load",
+        "N",
         (Line("inner raceway", lambda block: largest_loads(block, "inner")), Line("outer raceway", lambda block: largest_loads(block, "outer"))),
     ),
-    "power": Panel("power loss [W]", (Line("", _observable("shaft_power")),)),
+    "power": Panel("power loss", "W", (Line("", _losses),), has_start=False),
 }
 """Panels by name, in the order in which they are drawn."""
 
@@ -139,7 +157,7 @@ class Course:
     scene : what was simulated.
     panels : names of the panels.
     lines : by panel and number of the line, the times [s] and the values, thinned out.
-    loaded : speed [rpm], load [kN], slip [%] and life [h] of each sample that shows in a picture over the load, shape (n, 4).
+    loaded : speed [rpm], load [N], slip [%] and life [h] of each sample that shows in a picture over the load, shape (n, 4).
     conditions : time [s] and inputs (`bearing_sim.simulation.Inputs`) at some instants, evenly spaced in samples, shape (m, 7).
     samples : number of samples of the run.
     first, last : simulated times of its ends [s].
@@ -228,14 +246,18 @@ def course_of(
         if not len(times):
             continue
         block = _without_slip_at_rest(block, scene)
+        begins = not course.samples and samples > 1  # with the state of rolling without slip, which is no result
         spacings = np.diff(times, prepend=before if math.isfinite(before) else times[0])
         usual = usual or float(np.median(spacings[spacings > 0])) if (spacings > 0).any() else usual
         breaks = np.flatnonzero(spacings > max(_BREAK * usual, _BREAK * np.quantile(spacings, 0.9))) if len(times) > 2 else np.zeros(0, int)
         for panel in panels:
             for k, line in enumerate(PANELS[panel].lines):
-                parts.setdefault((panel, k), []).append(thinned(times, line.values(block), window, breaks))
-        results = block[1:] if not course.samples and samples > 1 else block  # a recording begins with the state of rolling without slip
-        loaded.append(_one_per_cell(np.stack([results["shaft_speed"] * _RPM, _load(results), 100 * results["cage_slip"], results[_LIFE]], -1)))
+                values = line.values(block)
+                if begins and not PANELS[panel].has_start:
+                    values = np.append(np.nan, values[1:])
+                parts.setdefault((panel, k), []).append(thinned(times, values, window, breaks))
+        results = block[1:] if begins else block
+        loaded.append(_one_per_cell(np.stack([results["shaft_speed"] * RPM, _load(results), 100 * results["cage_slip"], results[_LIFE]], -1)))
         chosen = block[-course.samples % every :: every]
         instants.append(np.stack([chosen["time"], *(chosen[name] for name in _CONDITIONS)], -1))
         course.samples += len(times)
@@ -258,7 +280,7 @@ def _without_slip_at_rest(block: np.ndarray, scene: Scene) -> np.ndarray:
 
 
 def _turning(course: Course) -> np.ndarray:
-    return turns(course.loaded[:, 0] / _RPM, course.scene.thresholds.slip_from_speed)
+    return turns(course.loaded[:, 0] / RPM, course.scene.thresholds.slip_from_speed)
 
 
 def thinned(times: np.ndarray, values: np.ndarray, window: int, breaks: Sequence[int] = ()) -> tuple[np.ndarray, np.ndarray]:
@@ -308,7 +330,7 @@ def _one_per_cell(rows: np.ndarray) -> np.ndarray:
 def draw_over_time(path: Path | BinaryIO, courses: Sequence[Course], title: str = "", form: str | None = None) -> "object":
     """Draw runs over time into a file, one panel below the other, and return the figure.
 
-    A life has a logarithmic axis; what exceeds the shortest by more than eight decades is cut off.
+    A life has a logarithmic axis; what exceeds the shortest by more than six decades is cut off.
 
     Parameters
     ----------
@@ -332,7 +354,7 @@ def draw_over_time(path: Path | BinaryIO, courses: Sequence[Course], title: str 
     else:
         begin, end = (min(course.first - start for course, start in zip(courses, starts)), max(c.last - s for c, s in zip(courses, starts)))
         axes[-1].set_xlim(begin / divisor, end / divisor)
-    axes[-1].ticklabel_format(axis="x", useOffset=False)
+    plain_numbers(axes[-1].xaxis)
     _name_courses(figure, courses)
     _entitle(figure, title)
     figure.align_ylabels(axes)
@@ -351,36 +373,64 @@ def _time_label(courses: Sequence[Course], span: float, unit: str) -> str:
 
 def _draw_panel(axes, name: str, panel: Panel, courses: Sequence[Course], starts: Sequence[float], divisor: float) -> None:
     shown = [k for k in range(len(panel.lines)) if any(np.isfinite(course.lines[name, k][1]).any() for course in courses)]
+    unit, factor = larger_unit(panel.unit, np.concatenate([course.lines[name, k][1] for course in courses for k in shown] or [np.zeros(0)]))
     every = []
-    for number, course in enumerate(courses):
+    for place, course in enumerate(courses):
         for k in shown:
             times, values = course.lines[name, k]
             several = len(courses) > 1
-            look = {"color": COLOURS[(number if several else k) % len(COLOURS)], "ls": ("-", "--", "-.", ":")[k % 4] if several else "-"}
-            label = panel.lines[k].name if number == 0 else None
-            if np.isfinite(values).sum() <= _FEW_POINTS:
+            look = {"color": COLOURS[(place if several else k) % len(COLOURS)], "ls": _STYLES[k % len(_STYLES)] if several else "-"}
+            if 0 < np.isfinite(values).sum() <= _FEW_POINTS:
                 look |= {"marker": "o", "ms": 4}
-            axes.plot((times - starts[number]) / divisor, values, lw=1.1, label=label, **look)
-            every.append(values[np.isfinite(values)])
+            axes.plot((times - starts[place]) / divisor, values / factor, lw=1.1, **look)
+            every.append(values[np.isfinite(values)] / factor)
         if name in course.recorded:
-            every += _draw_recorded(axes, course.recorded[name], starts[number], divisor, COLOURS[number % len(COLOURS)])
+            every += _draw_recorded(axes, course.recorded[name], starts[place], divisor, COLOURS[place % len(COLOURS)])
         if name == "slip" and course.band is not None:
-            band, colour = course.band, COLOURS[number % len(COLOURS)]
-            width = max(1.0, 550.0 / max(len(band.times), 1))  # [pt] so that bars at every instant make a band
-            axes.vlines((band.times - starts[number]) / divisor, 100 * band.low, 100 * band.high, color=colour, alpha=0.22, lw=width)
+            band = course.band
+            begins, low, high = _joined(band)
+            axes.fill_between((begins - starts[place]) / divisor, 100 * low, 100 * high, color=COLOURS[place % len(COLOURS)], alpha=0.22, lw=0.0)
             every += [100 * band.low[np.isfinite(band.low)], 100 * band.high[np.isfinite(band.high)]]
     only = panel.lines[shown[0]].name if len(shown) == 1 else ""
-    axes.set_ylabel(f"{only} {panel.label}".strip(), fontsize=9)
+    label = life_label([course.scene for course in courses]) if name == "life" else panel.label
+    axes.set_ylabel(f"{only} {label} [{unit}]".strip(), fontsize=9)
     axes.grid(alpha=0.3)
     axes.tick_params(labelsize=8)
     values = np.concatenate(every) if every else np.zeros(0)
     set_limits(axes, values, panel.is_logarithmic)
     if len(shown) > 1:
-        axes.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
+        from matplotlib.lines import Line2D
+
+        several = len(courses) > 1  # then the colour tells the runs apart, and the line what it is of
+        looks = [{"color": "0.25", "ls": _STYLES[k % len(_STYLES)]} if several else {"color": COLOURS[k % len(COLOURS)]} for k in shown]
+        handles = [Line2D([], [], lw=1.1, label=panel.lines[k].name, **look) for k, look in zip(shown, looks)]
+        axes.legend(handles=handles, frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=3.2)
     if not len(values[values > 0]) and panel.is_logarithmic or not len(values):
         slowest = max(course.scene.thresholds.slip_from_speed for course in courses)
         why = stands_text(slowest) if name == "slip" else "no values that are finite"
         axes.text(0.5, 0.5, why, ha="center", va="center", transform=axes.transAxes, fontsize=9, color="0.4")
+
+
+def life_label(scenes: Sequence[Scene]) -> str:
+    """Return the name of the life that scenes count as damage, with its symbol by their method; ``life`` if they differ in it."""
+    named = ("rating life", "modified rating life")
+    names = {f"{named[not each.life.is_basic]} {each.life.symbols[not each.life.is_basic]}" for each in scenes}
+    return names.pop() if len(names) == 1 else "life"
+
+
+def _course_names(courses: Sequence[Course], shows_life: bool) -> list[str]:
+    """Return the names of runs in a legend, with that of their life where it is shown and they differ in it."""
+    names = [_shortened(course.name, 40) for course in courses]
+    if not shows_life or life_label([course.scene for course in courses]) != "life":
+        return names
+    return [f"{name}: {life_label([course.scene])}" for name, course in zip(names, courses)]
+
+
+def _joined(band: SlipBand) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return times and ends of a band without seams, with a gap where the shaft stood between two instants."""
+    steps = np.diff(band.times)
+    gaps = np.flatnonzero(steps > 2.5 * np.median(steps)) + 1 if len(steps) else []
+    return tuple(np.insert(each, gaps, np.nan) for each in band)
 
 
 def _draw_recorded(axes, band: RecordedBand, start: float, divisor: float, colour: str) -> list[np.ndarray]:
@@ -399,7 +449,8 @@ def _name_courses(figure, courses: Sequence[Course]) -> None:
 
     handles = []
     if len(courses) > 1:
-        handles += [Line2D([], [], color=COLOURS[k % len(COLOURS)], label=_shortened(course.name, 40)) for k, course in enumerate(courses)]
+        names = _course_names(courses, "life" in courses[0].panels)
+        handles += [Line2D([], [], color=COLOURS[k % len(COLOURS)], label=name) for k, name in enumerate(names)]
     if any(course.recorded for course in courses):
         calibrated = any(each.is_calibrated for course in courses for each in course.recorded.values())
         text = "5 to 95 % as the run published it" + (", dashed: as measurements calibrated it" if calibrated else "")
@@ -431,7 +482,7 @@ def _shortened(text: str, most: int) -> str:
 
 def minimum_loads(scene: Scene, speeds: np.ndarray) -> np.ndarray:
     """Return the minimum load of makers [N] at shaft speeds [rpm] (see `bearing_sim.model.plausibility.minimum_load`)."""
-    return np.broadcast_to(minimum_load(scene, np.asarray(speeds, float) / _RPM)[0], np.shape(speeds))
+    return np.broadcast_to(minimum_load(scene, np.asarray(speeds, float) / RPM)[0], np.shape(speeds))
 
 
 def draw_over_load(path: Path | BinaryIO, courses: Sequence[Course], title: str = "", form: str | None = None) -> "object":
@@ -445,23 +496,25 @@ def draw_over_load(path: Path | BinaryIO, courses: Sequence[Course], title: str 
     """
     figure = new_figure(10, 4.6)
     slip, life = figure.subplots(1, 2)
+    unit, newtons = larger_unit("N", np.concatenate([course.loaded[:, 1] for course in courses]))
     for k, course in enumerate(courses):
         rows = course.loaded
         look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ms": 3, "ls": "", "alpha": 0.6, "mew": 0}
-        slip.plot(rows[:, 1], np.where(np.isfinite(rows[:, 2]), rows[:, 2], np.nan), **look)
-        life.plot(rows[:, 1], np.where(np.isfinite(rows[:, 3]), rows[:, 3], np.nan), **look)
+        slip.plot(rows[:, 1] / newtons, np.where(np.isfinite(rows[:, 2]), rows[:, 2], np.nan), **look)
+        life.plot(rows[:, 1] / newtons, np.where(np.isfinite(rows[:, 3]), rows[:, 3], np.nan), **look)
     rows = np.concatenate([course.loaded for course in courses])
-    handles = _draw_minimum_loads((slip, life), [(course.scene, course.loaded[_turning(course), 0], course.name) for course in courses])
-    _finish_over_load(figure, (slip, life), rows[:, 1], rows[:, 2], rows[:, 3], handles, courses)
+    handles = _draw_minimum_loads((slip, life), [(course.scene, course.loaded[_turning(course), 0], course.name) for course in courses], newtons)
+    labels = f"radial load [{unit}]", f"{life_label([course.scene for course in courses])} [h]"
+    _finish_over_load(figure, (slip, life), labels, rows[:, 1] / newtons, rows[:, 2], rows[:, 3], handles, courses)
     _entitle(figure, title)
     figure.savefig(path, dpi=_DPI, format=form)
     return figure
 
 
-def _finish_over_load(figure, axes, loads, slips, lives, handles, courses=()) -> None:
+def _finish_over_load(figure, axes, labels, loads, slips, lives, handles, courses=()) -> None:
     slip, life = axes
-    for each, values, label, is_logarithmic in ((slip, slips, "cage slip [%]", False), (life, lives, "rating life [h]", True)):
-        each.set(xlabel="radial load [kN]", ylabel=label)
+    for each, values, label, is_logarithmic in ((slip, slips, "cage slip [%]", False), (life, lives, labels[1], True)):
+        each.set(xlabel=labels[0], ylabel=label)
         each.grid(alpha=0.3)
         reached = [float(mark.get_xdata()[0]) for mark in each.lines if len(mark.get_xdata()) == 2 and mark.get_xdata()[0] == mark.get_xdata()[1]]
         set_limits(each, np.append(loads[np.isfinite(loads)], reached), False, "x")
@@ -470,35 +523,41 @@ def _finish_over_load(figure, axes, loads, slips, lives, handles, courses=()) ->
         from matplotlib.lines import Line2D
 
         looks = [{"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ls": ""} for k in range(len(courses))]
-        handles = [*(Line2D([], [], label=_shortened(course.name, 40), **look) for course, look in zip(courses, looks)), *handles]
+        handles = [*(Line2D([], [], label=name, **look) for name, look in zip(_course_names(courses, True), looks)), *handles]
     if handles:
         _add_legend(figure, handles)
 
 
-def _draw_minimum_loads(axes, runs: Sequence[tuple[Scene, np.ndarray, str]]) -> list:
-    """Draw the minimum load of each run, as a line or, where it depends on a speed that changes, as a strip; return the legend's entries."""
+def _draw_minimum_loads(axes, runs: Sequence[tuple[Scene, np.ndarray, str]], newtons: float) -> list:
+    """Draw the minimum load of each run, as a line or, where it depends on a speed that changes, as a strip; return the legend's entries.
+
+    The unit of the axes has so many ``newtons``.
+    """
     found: dict[tuple[str, str], tuple[float, float, int, list[str]]] = {}
     for k, (scene, speeds, name) in enumerate(runs):
         turning = np.abs(speeds[np.abs(speeds) > 0.0])
         if not len(turning):
             continue
-        least, most = (minimum_loads(scene, np.array([turning.min(), turning.max()])) / 1e3).tolist()
+        least, most = minimum_loads(scene, np.array([turning.min(), turning.max()])).tolist()
         rule = minimum_load(scene)[1].partition(";")[0].replace("^2", "²")
-        at = f"{least:.3g} kN" if most < 1.02 * least else f"{least:.3g} to {most:.3g} kN at {turning.min():.0f} to {turning.max():.0f} rpm"
+        speeds = f"{number(turning.min())} to {number(turning.max())} rpm"
+        at = force(least, 3) if most < 1.02 * least else f"{force(least, 3)} to {force(most, 3)} at {speeds}"
         found.setdefault((at, rule), (least, most, k, []))[-1].append(name)
     handles = []
     for (at, rule), (least, most, k, names) in found.items():
         of = f" of {', '.join(_shortened(name, 40) for name in names)}" if len(found) > 1 else ""
         colour = COLOURS[-1] if len(found) == 1 else COLOURS[k % len(COLOURS)]
         for each in axes:
-            line = each.axvline(most, color=colour, ls="--", lw=1.2, label=f"minimum load{of}: {at} ({rule})")
+            line = each.axvline(most / newtons, color=colour, ls="--", lw=1.2, label=f"minimum load{of}: {at} ({rule})")
             if most >= 1.02 * least:
-                each.axvspan(least, most, color=colour, alpha=0.10, lw=0)
+                each.axvspan(least / newtons, most / newtons, color=colour, alpha=0.10, lw=0)
         handles.append(line)
     return handles
 
 
-def draw_table_over_load(path: Path, points: Sequence[Mapping], scene: Scene | None, title: str, form: str | None = None) -> "object":
+def draw_table_over_load(
+    path: Path, points: Sequence[Mapping], scene: Scene | None, title: str, life_heading: str, form: str | None = None
+) -> "object":
     """Draw slip and life of the points of a table over the radial load, a line for each speed, with the minimum load; return the figure.
 
     Parameters
@@ -506,27 +565,30 @@ def draw_table_over_load(path: Path, points: Sequence[Mapping], scene: Scene | N
     path, title, form : see `draw_over_time`.
     points : each with ``load`` [N], ``slip`` [%], ``life`` [h], ``speed`` [rpm] and ``family``, what else was varied, in words.
     scene : whose minimum load is drawn; None if it is not known.
+    life_heading : label of the axis of the life.
     """
     if not points:
         raise NotDrawable("no point of the table has a load and a slip")
     figure = new_figure(10, 4.8)
     slip, life = figure.subplots(1, 2)
+    unit, newtons = larger_unit("N", [float(point["load"]) for point in points])
     families = list(dict.fromkeys(point["family"] for point in points))
     for k, family in enumerate(families):
         own = sorted((point for point in points if point["family"] == family), key=lambda point: point["load"])
         look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ms": 4, "lw": 1.2}
-        loads = [point["load"] / 1e3 for point in own]
+        loads = [point["load"] / newtons for point in own]
         for each, name in ((slip, "slip"), (life, "life")):
             each.plot(loads, [point[name] if math.isfinite(point[name]) else math.nan for point in own], **look)
     columns = {name: np.array([float(point[name]) for point in points]) for name in ("load", "slip", "life", "speed")}
     speeds = sorted({float(speed) for speed in columns["speed"] if math.isfinite(speed)})
-    handles = _draw_minimum_loads((slip, life), [(scene, np.array(speeds), "")]) if scene is not None and speeds else []
+    handles = _draw_minimum_loads((slip, life), [(scene, np.array(speeds), "")], newtons) if scene is not None and speeds else []
     if len(families) > 1:
         from matplotlib.lines import Line2D
 
         looks = [{"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)]} for k in range(len(families))]
         handles = [*(Line2D([], [], label=_shortened(family, 60), **look) for family, look in zip(families, looks)), *handles]
-    _finish_over_load(figure, (slip, life), columns["load"] / 1e3, columns["slip"], columns["life"], handles)
+    labels = f"radial load [{unit}]", life_heading
+    _finish_over_load(figure, (slip, life), labels, columns["load"] / newtons, columns["slip"], columns["life"], handles)
     _entitle(figure, title)
     figure.savefig(path, dpi=_DPI, format=form)
     return figure

@@ -17,8 +17,9 @@ from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.physics.growth import Clearance, clearance_at, total_growth
 from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, OilFactors, oil_factors, rate_lives
+from bearing_sim.scene.display import hours, larger_unit
 from bearing_sim.scene.scene import Scene
-from bearing_sim.sweep.table import new_figure
+from bearing_sim.sweep.pictures import new_figure
 from bearing_sim.sweep.thermal import operating_state
 
 _PITCH_POSITIONS, _MOST_PITCH_POSITIONS = 20, 320  # cage angles over one roller pitch for the lives, at first and at most
@@ -164,21 +165,18 @@ def draw(path: Path, title: str, found: Statics) -> None:
     for row, (name, slices) in enumerate((("inner", found.inner_slices), ("outer", found.outer_slices))):
         _draw_along(figure, figure.add_subplot(grid[row, 1]), name, slices, found)
     tilt = f"tilt {1e3 * found.tilt[0]:.3g} mrad, " if found.tilt[0] > 1e-9 else ""
-    figure.suptitle(f"{title}\n{tilt}L10 {_hours(found.lives.l10)} by the load on the bearing, L10r {_hours(found.lives.l10r)} by slices")
+    figure.suptitle(f"{title}\n{tilt}L10 {hours(found.lives.l10)} by the load on the bearing, L10r {hours(found.lives.l10r)} by slices")
     figure.savefig(path, dpi=130)
-
-
-def _hours(life):
-    return f"{life:.4g} h" if np.isfinite(life) else "infinite"
 
 
 def _draw_around(axes, found):
     """Draw the loads as bars over the azimuth, y to the right and z up."""
     width = 2 * np.pi / len(found.azimuths)
-    axes.bar(found.azimuths, found.outer, width=0.8 * width, color=_OUTER, alpha=0.45, label="on the outer raceway")
-    axes.bar(found.azimuths, found.inner, width=0.5 * width, color=_INNER, label="on the inner raceway")
-    axes.set_ylim(0, 1.08 * max(found.outer.max(), 1.0))
-    axes.set_title("roller loads [N] by azimuth", fontsize=10)
+    unit, newtons = larger_unit("N", found.outer)
+    axes.bar(found.azimuths, found.outer / newtons, width=0.8 * width, color=_OUTER, alpha=0.45, label="on the outer raceway")
+    axes.bar(found.azimuths, found.inner / newtons, width=0.5 * width, color=_INNER, label="on the inner raceway")
+    axes.set_ylim(0, 1.08 * max(found.outer.max(), 1.0) / newtons)
+    axes.set_title(f"roller loads [{unit}] by azimuth", fontsize=10)
     axes.tick_params(labelsize=8)
     axes.set_rlabel_position(100)
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, -0.16), frameon=False, fontsize=9, ncols=2)

@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.scene.display import heading, larger_unit
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.sweep.table import COLOURS, MARKERS, new_figure
+from bearing_sim.sweep.pictures import COLOURS, MARKERS, new_figure, plain_numbers
 from bearing_sim.sweep.thermal import simulation_in_equilibrium
 
 STILL, HELD, CARRIED = "slip", "rigid support", "support"
@@ -97,10 +98,12 @@ def draw(path: Path, title: str, found: Sequence[Response]) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     figure, relative = new_figure(13, 8), relative_damage(found)
     axes = figure.subplots(2, 2).ravel()
+    unit, factor = larger_unit("N", [one.largest_load for one in found])
+    label = heading("inner_load_maximum", unit)
     panels = (
-        ("largest inner load [N]", lambda one: one.largest_load),
+        (label, lambda one: one.largest_load / factor),
         ("damage rate over that of level slip", lambda one: relative[one.model, one.shaft_speed]),
-        ("motion of the inner ring against the outer [um]", lambda one: 1e6 * one.ring_swing),
+        ("motion of the inner ring against the outer [µm]", lambda one: 1e6 * one.ring_swing),
         ("cage slip [%]", lambda one: 100 * one.slip),
     )
     for each, (label, value) in zip(axes, panels):
@@ -109,6 +112,7 @@ def draw(path: Path, title: str, found: Sequence[Response]) -> None:
             speeds = [one.shaft_speed * 30 / np.pi for one in mine]
             each.plot(speeds, [value(one) for one in mine], marker=marker, ms=4, color=colour, label=model)
         each.set(xlabel="shaft speed [rpm]", ylabel=label, ylim=(0, None))
+        plain_numbers(each.xaxis, each.yaxis)
         each.grid(alpha=0.3)
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)

@@ -28,7 +28,7 @@ from bearing_sim.scene.scene import Integration, Scene, tolerance_overrides
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies.correction import obtain_corrected_table
 from bearing_sim.studies.trade_course import BIN, Course, Window, bin_edges, built_in, cage_rate, turned
-from bearing_sim.sweep.table import new_figure
+from bearing_sim.sweep.pictures import new_figure, plain_numbers
 from bearing_sim.sweep.tasks import Journal, Task, program_hash, run_tasks, task
 from bearing_sim.sweep.thermal import equilibrium_temperatures
 
@@ -553,6 +553,7 @@ def draw(path: Path, title: str, found: Trade) -> None:
         axes.axhspan(floor / 2, max(own, floor), color="0.88", zorder=0, label="error of the reference")
         axes.set(xscale="log", yscale="log", xlabel="real-time factor, one core", ylabel=label)
         axes.set_ylim(bottom=floor / 2)
+        plain_numbers(axes.xaxis, axes.yaxis)
         axes.axvline(1.0, color="0.6", lw=0.8)
         axes.grid(alpha=0.25)
     _draw_front(figure.axes[0], found)

@@ -19,16 +19,16 @@ from scipy.stats import qmc
 
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.model.params import replenishment
-from bearing_sim.scene import fidelity
+from bearing_sim.scene import display, fidelity
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.fidelity import WHIRLING
-from bearing_sim.scene.mounting import clearance_limits
+from bearing_sim.scene.mounting import clearance_limits, clearance_source
 from bearing_sim.scene.scene import Integration, Scene
-from bearing_sim.scene.uncertainty import Range, messages, quantities, ranges_of, ring_ranges, shown, value_at, with_values, without_dimensions
+from bearing_sim.scene.uncertainty import Range, messages, number_at, quantities, ranges_of, ring_ranges, shown, with_values, without_dimensions
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
+from bearing_sim.sweep.pictures import new_figure, plain_numbers
 from bearing_sim.sweep.ring_resonance import ring_resonance
 from bearing_sim.sweep.states import states
-from bearing_sim.sweep.table import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 from bearing_sim.sweep.thermal import equilibrium_temperatures
 
@@ -79,6 +79,23 @@ class Indices(NamedTuple):
     total: np.ndarray
     first_error: np.ndarray
     total_error: np.ndarray
+
+    def bounded(self) -> "Indices":
+        """Return the indices as they are shown: what no variance allows, 0 <= first <= total <= 1, is brought to the nearest that it does.
+
+        NaN stands for what is not known from so few samples: its interval is wider than `_KNOWN`, or contradicts those bounds.
+        """
+        ends = np.clip(self.total_error, 0.0, 1.0), np.clip(self.first_error, 0.0, 1.0)
+        total = np.clip(self.total, 0.0, 1.0)
+        first = np.clip(self.first, 0.0, total)
+        above = np.maximum(self.total_error[:, 0] - 1.0, self.first_error[:, 0] - self.total_error[:, 1])
+        impossible = np.maximum(above, -self.first_error[:, 1]) > _NO_SHARE
+        unknown = [impossible | (np.ptp(error, axis=1) > _KNOWN) for error in (self.first_error, self.total_error)]
+        return Indices(np.where(unknown[0], np.nan, first), np.where(unknown[1], np.nan, total), ends[1], ends[0])
+
+
+_NO_SHARE = 0.02  # of the variance, that nobody misses
+_KNOWN = 0.4  # widest 95 % interval of an index that is shown as a number (assumption: an error of a fifth of the variance still orders fields)
 
 
 def distribution(one: Range, own: float):
@@ -305,7 +322,8 @@ def _assumed_ranges(scene: Scene) -> Iterator[Range]:
         return
     if isinstance(bearing.clearance, str):
         limits = clearance_limits(bearing.clearance, bearing.bore_diameter)
-        yield Range(field="bearing.clearance", low=limits.least, high=limits.largest, source=f"group {bearing.clearance} of ISO 5753-1")
+        source = f"group {bearing.clearance} ({clearance_source(bearing.clearance)})"
+        yield Range(field="bearing.clearance", low=limits.least, high=limits.largest, source=source)
     if scene.heat.law != "network":
         kelvin = lubricant.temperature
         source = "assumption: the temperature of the oil is known to 10 K"
@@ -317,7 +335,7 @@ def _assumed_ranges(scene: Scene) -> Iterator[Range]:
             field="lubricant.starvation.constant", low=0.5 * constant, high=min(2.0 * constant, 1e-6), distribution="log_uniform", source=source
         )
     for field, low, high, shape, source in _MIXED_RANGES if lubricant.mixed_friction.law != "none" else ():
-        if low < value_at(scene, field) < high:  # otherwise somebody has chosen it
+        if low < number_at(scene, field) < high:  # otherwise somebody has chosen it
             yield Range(field=field, low=low, high=high, distribution=shape, source=source)
 
 
@@ -369,7 +387,7 @@ def study(
     ranges, scene = varied_ranges(scene), filled_in(scene)
     _check(scene, ranges, course is not None)
     conditions, seconds = course if course is not None else (None, np.ones(1))
-    designed = design([distribution(one, value_at(scene, one.field)) for one in ranges], base, seed)
+    designed = design([distribution(one, number_at(scene, one.field)) for one in ranges], base, seed)
     if not shares:
         designed = designed._replace(points=designed.points[: 2 * base])
     own = settled(varied(scene, {}), conditions)
@@ -429,7 +447,7 @@ def _check(scene: Scene, ranges: Sequence[Range], on_course: bool) -> None:
             '--set "uncertainty.lubricant.mixture_fraction=[0.015, 0.05]"'
         )
     for one in scene.uncertainty:
-        own, declared = value_at(scene, one.field), quantities(type(scene))[one.field]
+        own, declared = number_at(scene, one.field), quantities(type(scene))[one.field]
         if on_course and one.field.startswith("operating."):
             raise UncertaintyError(
                 f"uncertainty.{one.field}: speed and load come from the log; remove the range (--set uncertainty.{one.field}=null)"
@@ -449,7 +467,7 @@ def varied(scene: Scene, values: dict[str, float]) -> Scene:
     The rollers' length follows a draw of their number and diameter so that the static rating stays, from which it was estimated.
     """
     declared = {one.field for one in scene.uncertainty}
-    own = {path: value_at(scene, path) for path in values if path not in declared}
+    own = {path: number_at(scene, path) for path in values if path not in declared}
     fraction = 1.0
     while True:
         tried = {path: value if path in declared else own[path] + fraction * (value - own[path]) for path, value in values.items()}
@@ -494,7 +512,7 @@ def largest_slip(scene: Scene, inputs: Inputs, draws: int = 8, seed: int = 1) ->
     """
     scene = scene.at_level("steady")
     ranges, scene = varied_ranges(scene), filled_in(scene)
-    points = design([distribution(one, value_at(scene, one.field)) for one in ranges], draws, seed).points[:draws] if ranges else ()
+    points = design([distribution(one, number_at(scene, one.field)) for one in ranges], draws, seed).points[:draws] if ranges else ()
     scenes = [scene, *(varied(scene, dict(zip([one.field for one in ranges], point))) for point in points)]
     found = [state.cage_slip for each in scenes for state in states(each, inputs, skid_load=False).found]
     if not found:
@@ -550,21 +568,24 @@ _SLIP, _LIFE, _FIRST, _TOTAL = "#0072b2", "#009e73", "#56b4e9", "#0072b2"  # Oka
 _FEWEST_BINS, _MOST_BINS = 8, 40
 
 
-def draw(path: Path, title: str, found: Study, times: np.ndarray | None = None) -> None:
-    """Draw distributions, indices and the slip over a course into a file.
+def draw(path: Path, title: str, found: Study, life: str, times: np.ndarray | None = None) -> None:
+    """Draw distributions, indices and the slip over a course into a file.  Shares of the variance are those of `Indices.bounded`.
 
     Parameters
     ----------
     path : its suffix gives the format.
     title : of the picture.
     found : the study.
+    life : name of the life, such as ``modified rating life L_nmr``.
     times : of the stretches of its course [s], shape (m,); None without a course.
     """
     layout = [["slip", "life"], ["slip indices", "life indices"]] + ([["course", "course"]] if times is not None else [])
-    figure = new_figure(12, 4 * len(layout))
-    axes = figure.subplot_mosaic(layout)
-    slip, life = ("cage slip [%]", "rating life [h]") if times is None else ("mean cage slip [%]", "life under the course [h]")
-    life += without_dimensions(one.field for one in found.ranges)
+    rows = 1.4 + 0.34 * len(found.ranges)
+    heights = [4.4, max(rows, 3.0), 4.0][: len(layout)]
+    figure = new_figure(13, sum(heights))
+    axes = figure.subplot_mosaic(layout, height_ratios=heights)
+    slip, over = ("cage slip [%]", "") if times is None else ("mean cage slip [%]", " under the course")
+    life = f"{life}{over} [h]{without_dimensions(one.field for one in found.ranges)}"
     _draw_distribution(axes["slip"], 100 * found.answers["cage_slip"], found, "cage_slip", 100.0, slip, _SLIP)
     _draw_distribution(axes["life"], found.answers["life_hours"], found, "life_hours", 1.0, life, _LIFE)
     _draw_indices(axes["slip indices"], found, "cage_slip", "slip")
@@ -576,35 +597,45 @@ def draw(path: Path, title: str, found: Study, times: np.ndarray | None = None) 
 
 
 def _draw_distribution(axes, values, found, name, scale, label, colour) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     values = values[: 2 * found.design.base]
     values, band, own = values[np.isfinite(values)], found.bands[name], scale * found.own[name]
-    axes.hist(values, bins=int(np.clip(1.5 * np.sqrt(len(values)), _FEWEST_BINS, _MOST_BINS)), density=True, color=colour, alpha=0.6)
+    bins, weights = int(np.clip(1.5 * np.sqrt(len(values)), _FEWEST_BINS, _MOST_BINS)), np.full(len(values), 100.0 / max(len(values), 1))
+    axes.hist(values, bins=bins, weights=weights, color=colour, alpha=0.6)
     axes.axvspan(scale * band.low, scale * band.high, color=colour, alpha=0.12, lw=0)
     for end, text in ((band.low, "5 %"), (band.middle, "50 %"), (band.high, "95 %")):
-        axes.axvline(scale * end, color=colour, lw=1.5, ls="-" if text == "50 %" else "--", label=f"{text} below {scale * end:.4g}")
-    axes.axvline(own, color="black", lw=1, ls=":", label=f"own values of the scene: {own:.4g}")
-    axes.set(xlabel=label, ylabel="probability density")
-    axes.legend(fontsize=9)
+        axes.axvline(scale * end, color=colour, lw=1.5, ls="-" if text == "50 %" else "--", label=f"{text} below {display.number(scale * end)}")
+    axes.axvline(own, color="black", lw=1, ls=":", label=f"the scene's own values: {display.number(own)}")
+    axes.set(xlabel=label, ylabel="share of the samples [%]")
+    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
+    plain_numbers(axes.xaxis, axes.yaxis)
+    axes.legend(fontsize=9, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
 
 
 def _draw_indices(axes, found, name, varied) -> None:
-    sobol = found.indices[name]
-    if sobol is None or np.isnan(sobol.total).all():
-        axes.text(0.5, 0.5, "does not vary" if sobol is not None else "not finite everywhere", ha="center", transform=axes.transAxes)
+    raw = found.indices[name]
+    if raw is None or np.isnan(raw.total).all():
+        axes.text(0.5, 0.5, "does not vary" if raw is not None else "not finite everywhere", ha="center", transform=axes.transAxes)
         axes.axis("off")
         return
-    order = np.argsort(sobol.total)
-    positions = np.arange(len(order))
+    order = np.argsort(raw.total)
+    sobol, positions = raw.bounded(), np.arange(len(order))
     for offset, value, error, colour, text in (
         (0.2, sobol.first, sobol.first_error, _FIRST, "alone (first order)"),
         (-0.2, sobol.total, sobol.total_error, _TOTAL, "with its interactions (total)"),
     ):
-        length = np.clip(np.abs(error[order].T - value[order]), 0.0, None)
-        axes.barh(positions + offset, value[order], height=0.36, color=colour, xerr=length, ecolor="0.3", capsize=2, label=text)
-    axes.set_yticks(positions, [found.ranges[k].field.rpartition(".")[2].replace("_", " ") for k in order])
-    axes.set(xlabel=f"fraction of the variance of {varied}, with 95 % intervals", xlim=(min(0.0, float(sobol.first.min())) - 0.02, None))
+        value, error = 100.0 * value[order], 100.0 * error[order]
+        axes.barh(positions + offset, np.nan_to_num(value), height=0.36, color=colour, label=text)
+        middle = error.mean(axis=1)
+        axes.errorbar(middle, positions + offset, xerr=middle - error[:, 0], fmt="none", ecolor="0.3", capsize=2, lw=1.2)
+        for place in np.flatnonzero(np.isnan(value)):
+            axes.text(102.0, positions[place] + offset, "?", va="center", fontsize=8, color="0.3")
+    axes.set_yticks(positions, [display.shown(found.ranges[k].field).name for k in order])
+    unknown = f"\n?: not known from {found.design.base} samples" if np.isnan([sobol.first, sobol.total]).any() else ""
+    axes.set(xlabel=f"share of the variance of {varied} [%], with 95 % intervals{unknown}", xlim=(-2.0, 107.0), xticks=range(0, 101, 20))
     axes.axvline(0.0, color="0.3", lw=0.8)
-    axes.legend(frameon=False, fontsize=9, loc="lower right")
+    axes.legend(frameon=False, fontsize=9, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
 
 
 def _draw_course(axes, found, times) -> None:

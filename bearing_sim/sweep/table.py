@@ -1,17 +1,16 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Tables of results, one row per point, as Parquet and CSV with units and meanings of the columns; and pictures of sweeps."""
+"""Tables of results, one row per point, as Parquet and CSV with units and meanings of the columns."""
 
 import collections
 import csv
 import hashlib
 import io
 import json
-import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -21,7 +20,7 @@ from bearing_sim.files.reading import NO_FILE, read_text, why_not_readable
 from bearing_sim.scene.quantity import conversion
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities
-from bearing_sim.sweep.point import OK, OTHER_STATE, RESULTS, UNSETTLED, Column
+from bearing_sim.sweep.point import OTHER_STATE, RESULTS, Column
 from bearing_sim.sweep.tasks import Journal
 
 if TYPE_CHECKING:
@@ -236,6 +235,13 @@ def _digest_of(path: Path) -> bytes:
         return hashlib.file_digest(file, "sha256").hexdigest().encode()
 
 
+def life_column(table: Table) -> str:
+    """Return the column of the life that a table is about: the modified rating life where any point of it has a factor for oil or reliability."""
+    basic, modified = "rating_life", "modified_rating_life"
+    has_both = {basic, modified} <= {column.name for column in table.columns}
+    return modified if has_both and any(row[basic] == row[basic] != row[modified] for row in table.rows) else basic
+
+
 def headed(column: Column) -> str:
     """Return a column heading with its unit."""
     return f"{column.name} [{column.unit}]" if column.unit else column.name
@@ -341,168 +347,3 @@ def _number(text: str) -> float | str:
         return float(text)
     except ValueError:
         return text
-
-
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")  # Okabe and Ito: safe for colour-blind readers
-MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-QUANTITIES = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum")
-_MOST_DECADES = 8  # of a life: near rest it grows beyond any scale
-_FEWEST_OF_A_MAP = 4  # values of each variable; with fewer, draw lines
-_LABELS = {
-    "cage_slip": "cage slip",
-    "rating_life": "rating life",
-    "inner_load_maximum": "largest inner load",
-    "outer_load_maximum": "largest outer load",
-    "low_radius": "low-point radius R_low",
-    "d_value": "D value",
-}
-
-
-class NotDrawable(ValueError):
-    """A table that cannot be drawn; the message says why."""
-
-
-def label(column: Column) -> str:
-    """Return the axis label of a column, with its unit."""
-    last = column.name.rpartition(".")[2]
-    name = _LABELS.get(last, last.replace("_", " "))
-    return f"{name} [{column.unit}]" if column.unit else name
-
-
-def new_figure(width: float, height: float):
-    """Return an empty figure without a window, of a size in inches."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
-
-
-def set_limits(axes, values: np.ndarray, is_logarithmic: bool, direction: str = "y") -> None:
-    """Set the limits and ticks of an axis so that its labels are short and apart, also where values hardly differ.
-
-    Parameters
-    ----------
-    axes : of matplotlib.
-    values : that are shown, all finite.
-    is_logarithmic : whether the axis is, if any value is positive: whole decades, at most eight above the least.
-    direction : ``x`` or ``y``.
-    """
-    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
-
-    axis, limit = getattr(axes, f"{direction}axis"), getattr(axes, f"set_{direction}lim")
-    positive = values[values > 0]
-    if is_logarithmic and len(positive):
-        getattr(axes, f"set_{direction}scale")("log")
-        low = math.floor(math.log10(positive.min()) + 1e-9)
-        high = min(math.ceil(math.log10(positive.max()) - 1e-9), low + _MOST_DECADES)
-        limit(10.0**low, 10.0 ** max(high, low + 1))
-        axis.set_major_locator(LogLocator(numticks=5))
-        axis.set_minor_formatter(NullFormatter())
-        return
-    if not len(values):
-        limit(0.0, 1.0)
-        axis.set_ticks([])
-        return
-    low, high = float(values.min()), float(values.max())
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    half = max(1.06 * half, 2e-3 * abs(middle), 1e-9)
-    limit(middle - half, middle + half)
-    axis.set_major_locator(MaxNLocator(5 if direction == "y" else 7, steps=[1, 2, 2.5, 5, 10]))
-    is_plain = 1e-3 <= max(abs(low), abs(high)) < 1e7 or low == high == 0.0
-    axes.ticklabel_format(axis=direction, useOffset=False, style="plain" if is_plain else "sci")
-
-
-def draw(path: Path | BinaryIO, table: Table, quantities: Sequence[str] = QUANTITIES) -> None:
-    """Draw a sweep into a file: lines over one variable, maps over two.
-
-    Parameters
-    ----------
-    path : its suffix gives the format: .png, .svg or .pdf; or a stream, for .png.
-    table : with one or two variables.
-    quantities : columns to draw, each on its own axes.
-
-    Raises
-    ------
-    NotDrawable
-        The table has more variables, or a quantity is missing or not a number.
-    """
-    varied = [table.column(axis["field"]) for axis in table.about["axes"] if len(axis["values"]) > 1]
-    if not 1 <= len(varied) <= 2:
-        raise NotDrawable(f"expected one or two variables, this table has {len(varied)}; fix the others with --set")
-    names = [column.name for column in table.columns]
-    for name in quantities:
-        if name not in names or not isinstance(table.rows[0][name], (int, float)):
-            raise NotDrawable(f"{name}: not a quantity of this table; it has {', '.join(names)}")
-    columns = -(-len(quantities) // 2) if len(quantities) > 3 else len(quantities)
-    rows = -(-len(quantities) // columns)
-    figure = new_figure(5.2 * columns, 0.5 + 3.9 * rows)
-    axes = figure.subplots(rows, columns, squeeze=False).flat
-    mapped = len(varied) == 2 and all(_is_dense(table, column) for column in varied)
-    for each, name in zip(axes, quantities):
-        (_draw_map if mapped else _draw_lines)(each, table, varied, table.column(name))
-    for empty in list(axes):
-        empty.axis("off")
-    if not mapped and len(varied) == 2:
-        handles, labels = figure.axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), 5), frameon=False)
-    figure.suptitle(_title(table), fontsize=11)
-    figure.savefig(path, dpi=130)
-
-
-def _title(table) -> str:
-    without = sum(row["status"] not in (OK, UNSETTLED) for row in table.rows)
-    missing = f"; {without} of {len(table.rows)} points have no result" if without else ""
-    about = table.about
-    return f"{about['scene']} {' '.join(each for each in about['overrides'] if not each.startswith('level='))} at level {about['level']}{missing}"
-
-
-def _is_dense(table, column) -> bool:
-    values = set(table.values(column.name))
-    return len(values) >= _FEWEST_OF_A_MAP and not any(isinstance(value, (str, bool)) for value in values)
-
-
-def _draw_lines(axes, table, varied, quantity) -> None:
-    over, *families = sorted(varied, key=lambda column: not _is_dense(table, column))
-    family = families[0] if families else None
-    members = list(dict.fromkeys(table.values(family.name))) if family is not None else [None]
-    for k, member in enumerate(members):
-        rows = [row for row in table.rows if family is None or row[family.name] == member]
-        if not isinstance(rows[0][over.name], str):
-            rows.sort(key=lambda row: row[over.name])
-        name = f"{label(family)} {member:.6g}" if isinstance(member, float) else str(member)
-        look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ms": 4, "lw": 1.4, "label": name}
-        axes.plot([row[over.name] for row in rows], [row[quantity.name] for row in rows], **look)
-        drifting = [row for row in rows if row["status"] == UNSETTLED]
-        axes.plot([row[over.name] for row in drifting], [row[quantity.name] for row in drifting], "x", color="black", ms=8)
-    axes.set(xlabel=label(over), ylabel=label(quantity))
-    shown = np.array(table.values(quantity.name), float)
-    if quantity.unit == "h" and (shown > 0).any():
-        set_limits(axes, shown[np.isfinite(shown)], is_logarithmic=True)
-    else:
-        axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
-    axes.ticklabel_format(axis="x", useOffset=False) if not isinstance(table.rows[0][over.name], str) else None
-    axes.grid(alpha=0.3)
-
-
-def _draw_map(axes, table, varied, quantity) -> None:
-    x, y = varied
-    across, up, field = on_grid(table, x.name, y.name, quantity.name)
-    finite = field[np.isfinite(field)]
-    mesh = axes.pcolormesh(across, up, field, cmap="viridis", shading="nearest")
-    if finite.size and np.ptp(finite) > 0:
-        lines = axes.contour(across, up, field, 5, colors="white", linewidths=0.8)
-        axes.clabel(lines, fontsize=8, fmt="%g")
-    axes.set(xlabel=label(x), ylabel=label(y), facecolor="#dddddd")
-    axes.ticklabel_format(useOffset=False)
-    axes.figure.colorbar(mesh, ax=axes, label=label(quantity))
-
-
-def on_grid(table: Table, x: str, y: str, quantity: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the increasing values of two variables and a quantity over them, shape (values of y, values of x); NaN without a result."""
-    across, up = (np.unique(table.values(name)) for name in (x, y))
-    field = np.full((len(up), len(across)), np.nan)
-    for row in table.rows:
-        field[np.searchsorted(up, row[y]), np.searchsorted(across, row[x])] = row[quantity]
-    return across, up, np.where(np.isfinite(field), field, np.nan)

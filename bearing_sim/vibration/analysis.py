@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.scene.display import number
 from bearing_sim.vibration.comb import (
     Fit,
     Prepared,
@@ -630,6 +631,11 @@ def _why_slip_is_not_claimed(slip: float, slip_error: float, geometry: Geometry,
     return ""
 
 
+def rarity(chance: float) -> str:
+    """Return one over a probability in words: a figure beyond what any plant records says nothing more."""
+    return number(1.0 / chance, 2) if chance > 1e-6 else "more than a million"
+
+
 def _nothing(shaft: Shaft, fit: Fit | None, doubt: str = "") -> Analysis:
     """Return the result for a record without lines of the bearing; ``fit`` is the clearest comb, if any has enough lines, ``doubt`` why not that."""
     nan = math.nan
@@ -639,7 +645,7 @@ def _nothing(shaft: Shaft, fit: Fit | None, doubt: str = "") -> Analysis:
     elif fit is None:
         why = "no comb has enough lines that are clear by themselves"
     elif fit.false_alarm < CERTAIN:
-        often = f"in one of {1.0 / chance:,.0f} records" if chance < 0.5 else "in most records"
+        often = f"in one of {rarity(chance)} records" if chance < 0.5 else "in most records"
         why = f"noise alone gives a comb as clear as the best {often}"
     else:
         why = "the lines do not keep together over the record, or may be the harmonics of a line that coincides with one of the shaft's"

@@ -8,10 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.files.outputs import replaced
+from bearing_sim.scene.display import heading
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.deng2017.study import ANGLE, D_VALUE, LOAD, LOW, LOW_RADII, MASS, MIXTURE, ROUNDNESS, SPEED
 from bearing_sim.studies.machining import Machined
-from bearing_sim.sweep.table import COLOURS, MARKERS, Table, label, new_figure, on_grid
+from bearing_sim.sweep.pictures import COLOURS, MARKERS, map_of, new_figure, on_grid, plain_numbers
+from bearing_sim.sweep.table import Table
 
 Tables = Mapping[tuple[str, str], Table]
 _LOOKS = {"slip": {"ls": "-", "lw": 1.6}, "planar": {"ls": "--", "lw": 1.1}}
@@ -34,13 +36,13 @@ def draw_contours(path: Path, rings: Mapping[float, Machined]) -> None:
     Parameters
     ----------
     path : of the picture.
-    rings : by the rotation of one arc [deg].
+    rings : by the rotation of one arc [°].
     """
     figure = new_figure(11, 4.2)
     contours, points = figure.subplots(1, 2, width_ratios=(1.5, 1))
     for k, (turn, ring) in enumerate(rings.items()):
         contours.plot(np.degrees(ring.azimuths), 1e3 * ring.radii, color=COLOURS[k % len(COLOURS)], lw=1.3, label=f"{turn:g}°")
-    contours.set(xlabel="azimuth [deg]", ylabel="raceway radius [mm]", xlim=(0, 360), xticks=range(0, 361, 60))
+    contours.set(xlabel="azimuth [°]", ylabel="raceway radius [mm]", xlim=(0, 360), xticks=range(0, 361, 60))
     contours.legend(title="rotation of one arc", frameon=False, ncols=3, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, 1.0))
     contours.set_ylim(top=contours.get_ylim()[1] + 0.035)
     turns = list(rings)
@@ -51,7 +53,7 @@ def draw_contours(path: Path, rings: Mapping[float, Machined]) -> None:
         ("rise of the lowest low point", [1e6 * (ring.lows[:, 1].min() - rings[turns[0]].lows[:, 1].min()) for ring in rings.values()], 3),
     ):
         points.plot(turns, values, color=COLOURS[look], marker=MARKERS[look], ms=5, label=quantity)
-    points.set(xlabel="rotation of one arc [deg]", ylabel="[µm]")
+    points.set(xlabel="rotation of one arc [°]", ylabel="[µm]")
     points.legend(frameon=False, fontsize=8)
     _finish(figure, path, (contours, points))
 
@@ -81,7 +83,7 @@ def _draw_levels(axes, tables, name, x, quantity) -> None:
         rows = tables[name, level].rows
         axes.plot(*_pair(rows, x, quantity), color=COLOURS[k], marker=MARKERS[k], ms=4, label=f"level {level}", **_LOOKS[level])
     table = tables[name, "slip"]
-    axes.set(xlabel=label(table.column(x)), ylabel=label(table.column(quantity)))
+    axes.set(xlabel=heading(x, table.column(x).unit), ylabel=heading(quantity, table.column(quantity).unit))
     _from_zero(axes)
     axes.legend(frameon=False)
 
@@ -93,7 +95,7 @@ def _draw_profiles(axes, profiles) -> None:
         shown = np.mod(azimuths[order] + 180.0, 360.0) - 180.0
         axes.plot(shown, np.array(profile["inner_load"])[order], color=COLOURS[k], lw=1.4, label=f"{value}: inner")
         axes.plot(shown, np.array(profile["outer_load"])[order], color=COLOURS[k], lw=0.9, ls=":", label="outer")
-    axes.set(xlabel="azimuth from the load line [deg]", ylabel="mean roller load, level slip [N]", xlim=(-180, 180), xticks=range(-180, 181, 60))
+    axes.set(xlabel="azimuth from the load line [°]", ylabel="mean roller load, level slip [N]", xlim=(-180, 180), xticks=range(-180, 181, 60))
     axes.set_ylim(0, axes.get_ylim()[1] * 1.3)
     axes.legend(frameon=False, fontsize=8, ncols=2)
 
@@ -118,7 +120,7 @@ def draw_families(path: Path, tables: Tables, name: str, x: str, quantities: Seq
                 marked = {"marker": MARKERS[k], "ms": 4 if level == "slip" else 3}
                 each.plot(*_pair(rows, x, quantity), color=COLOURS[k], alpha=1.0 if level == "slip" else 0.6, **marked, **named, **_LOOKS[level])
         table = tables[name, "slip"]
-        each.set(xlabel=label(table.column(x)), ylabel=label(table.column(quantity)))
+        each.set(xlabel=heading(x, table.column(x).unit), ylabel=heading(quantity, table.column(quantity).unit))
         if quantity == "rating_life":
             each.set_yscale("log")
         else:
@@ -141,8 +143,6 @@ def draw_map(path: Path, tables: Tables, slip_below: float = 10.0, life_above: f
     tables : by sweep and level.
     slip_below, life_above : limits [%], [h].
     """
-    from matplotlib.ticker import MaxNLocator
-
     levels = [level for sweep, level in tables if sweep == "map"]
     figure = new_figure(11, 4.3 * len(levels))
     axes = figure.subplots(len(levels), 2, squeeze=False)
@@ -150,17 +150,12 @@ def draw_map(path: Path, tables: Tables, slip_below: float = 10.0, life_above: f
         table = tables["map", level]
         for each, quantity, limit in zip(row, ("cage_slip", "rating_life"), (slip_below, life_above)):
             across, up, field = on_grid(table, D_VALUE, LOW, quantity)
-            mesh = each.pcolormesh(across, up, field, cmap="viridis", shading="gouraud")
-            lines = each.contour(across, up, field, 8, colors="white", linewidths=0.6, alpha=0.8)
-            each.clabel(lines, fontsize=8, fmt="%g")
+            map_of(each, table, D_VALUE, LOW, quantity, is_smooth=True)
             border = each.contour(across, up, field, [limit], colors="#d55e00", linewidths=2.2)
             each.clabel(border, fontsize=9, fmt={limit: f"{limit:g} {table.column(quantity).unit}"})
             (left, right), (low, high) = DENG_REGION
             each.plot([left, right, right, left, left], [low, low, high, high, low], color="black", lw=1.6, label="recommended by Deng 2017")
-            each.set(xlabel=label(table.column(D_VALUE)), ylabel=label(table.column(LOW)), title=f"level {level}")
-            each.ticklabel_format(useOffset=False)
-            each.xaxis.set_major_locator(MaxNLocator(5))
-            figure.colorbar(mesh, ax=each, label=label(table.column(quantity)))
+            each.set_title(f"level {level}")
     axes[0, 0].legend(loc="upper left", fontsize=8)
     with replaced(path) as draft:
         figure.savefig(draft, dpi=_DPI)
@@ -185,7 +180,7 @@ def draw_trajectories(path: Path, found: Mapping[float, dict], guide_clearance: 
         orbit.plot(guide_clearance * np.cos(around), guide_clearance * np.sin(around), ":", color="black", lw=0.8)
         orbit.set(aspect="equal", title=f"R_low = {low:.4f} mm", xlabel="cage centre y [µm]", ylabel="cage centre z [µm]")
         spin.plot(one["roller_angle"], one["spin_ratio"], ".", color=COLOURS[k], ms=2)
-        spin.set(xlabel="azimuth of the roller [deg]", ylabel="spin / spin of pure rolling", xlim=(0, 360), xticks=range(0, 361, 90))
+        spin.set(xlabel="azimuth of the roller [°]", ylabel="spin / spin of pure rolling", xlim=(0, 360), xticks=range(0, 361, 90))
         spin.set_ylim(min(spins) - 0.02, max(spins) + 0.02)
     limit = 1.08 * guide_clearance
     for each in axes[0]:
@@ -214,8 +209,8 @@ def _finish(figure, path, axes) -> None:
     for each in axes:
         each.grid(alpha=0.3)
         if each.get_yscale() == "linear" and each.get_xscale() == "linear":
-            each.ticklabel_format(useOffset=False)
-            if "[deg]" not in each.get_xlabel():  # long tick labels of radii and speeds would overlap
+            plain_numbers(each.xaxis, each.yaxis)
+            if "[°]" not in each.get_xlabel():  # long tick labels of radii and speeds would overlap
                 each.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
     with replaced(path) as draft:
         figure.savefig(draft, dpi=_DPI)
@@ -230,7 +225,7 @@ def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Ma
     tables : of sweeps, by name and level.
     profiles : load distributions by sweep, value and level.
     trajectories : by low-point radius [mm].
-    rings : machined raceways by the rotation of one arc [deg].
+    rings : machined raceways by the rotation of one arc [°].
     """
     both = "Solid: level slip; dashed: level planar."
 
