@@ -34,6 +34,7 @@ CASES = {
     "run": Case(("run", SCENE, "--duration", "0.05"), 2),
     "replay": Case(("replay", LOG, "--scene", SCENE, "--set", "level=slip"), 5),
     "replay-fleet": Case(("replay-fleet", LOG, "--scene", SCENE, "--set", "level=slip", "--workers", "1"), 5),
+    "spectrum": Case(("spectrum", SCENE, LOG, *_STEADY, "--classes", "1x1", "--workers", "1"), 2),
     "import-csv": Case(("import-csv", DATA, MAPPING)),
     "loads": Case(("loads", SCENE)),
     "table": Case(("table", SCENE), 20),

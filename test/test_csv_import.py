@@ -5,14 +5,19 @@ import csv
 import json
 import math
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
 from measured_data import measured_file
 
 from bearing_sim.cli.main import main
-from bearing_sim.inputs.csv_import import METADATA, TableError, load_mapping, mapping_from_yaml, read_table, write_log
+from bearing_sim.files.tally import PartlyUsedWarning
+from bearing_sim.inputs.csv_import import METADATA, TableError, input_log, load_mapping, mapping_from_yaml, read_table, write_log
 from bearing_sim.inputs.log import read_input_log
+from bearing_sim.inputs.profile import judge
+from bearing_sim.scene.scene import InputLimits
+from bearing_sim.simulation import Inputs
 
 MAPPING = """
 name: rig
@@ -29,11 +34,11 @@ def table_of(tmp_path, text, mapping=MAPPING):
 
 
 def test_rows_become_messages_in_si_at_their_times(tmp_path):
-    table = table_of(tmp_path, "t,n,f\n0.000000001,30,800\n0.1,60,-5\n")
+    table = table_of(tmp_path, "t,n,f\n0.000000001,30,800\n0.1,60,5\n")
     stamps = {channel: list(each) for channel, each in table.stamps.items()}
     assert stamps == {"shaft_speed": [EPOCH + 1, EPOCH + 100_000_000], "radial_load": [EPOCH + 1, EPOCH + 100_000_000]}
     assert table.values["shaft_speed"] == pytest.approx([math.pi, 2 * math.pi])
-    assert list(table.values["radial_load"]) == [800.0, -5.0]
+    assert list(table.values["radial_load"]) == [800.0, 5.0]
     assert not table.tally.refused and not table.gaps
 
 
@@ -52,6 +57,46 @@ def test_rows_become_messages_in_si_at_their_times(tmp_path):
 def test_each_law_of_load_is_what_it_says(tmp_path, load, expected):
     mapping = MAPPING.replace("{law: sum, columns: [{column: f, unit: N}]}", load)
     assert table_of(tmp_path, "t,n,f,g\n0,30,3,4\n1,30,3,4\n", mapping).values["radial_load"] == pytest.approx([expected] * 2)
+
+
+@pytest.mark.parametrize(
+    ("negative", "loads"), [("", [800.0, 3.0]), ("refuse", [800.0, 3.0]), ("magnitude", [800, 5, 3]), ("direction", [800, -5, 3])]
+)
+def test_a_negative_load_is_refused_with_its_line_unless_the_mapping_says_what_it_is(tmp_path, negative, loads):
+    mapping = MAPPING.replace("law: sum", f"law: sum, negative: {negative}" if negative else "law: sum")
+    table = table_of(tmp_path, "t,n,f\n0,30,800\n0.1,30,-5\n0.2,30,3\n", mapping)
+    assert list(table.values["radial_load"]) == loads
+    if len(loads) == 2:
+        assert table.tally.refused == {"radial_load.negative": 1}
+        line, text = table.examples["radial_load.negative"][0]
+        assert line == 3 and "-5 N is negative" in text and "radial_load.negative=magnitude" in text
+
+
+def test_what_a_replay_refuses_for_every_bearing_and_codes_of_errors_are_no_values(tmp_path):
+    mapping = MAPPING + "oil_temperature: {column: T, unit: degC}\n"
+    rows = [(30, 800, 60), (-9999, 800, 60), (30, -9999.9, 60), (30, 800, -999), (30, 800, 612), (30, 9999, -32768), (-998, 99, -39)]
+    table = table_of(tmp_path, "t,n,f,T\n" + "".join(f"{k},{n},{f},{T}\n" for k, (n, f, T) in enumerate(rows)), mapping)
+    assert table.tally.refused == {
+        "shaft_speed.error_code": 1,
+        "radial_load.error_code": 1,
+        "oil_temperature.error_code": 2,
+        "oil_temperature.too_large": 1,
+    }
+    assert "input_limits.maximum_temperature" in table.examples["oil_temperature.too_large"][0][1]
+    with pytest.warns(PartlyUsedWarning):
+        replayed = judge(input_log(table, tmp_path / "data.csv"), InputLimits(), Inputs(0.0, 0.0, 0.0, 300.0))
+    assert replayed.tally.refused == table.tally.refused, "the replay takes all that is left"
+
+
+def test_a_sensor_that_sticks_is_told_and_a_machine_at_rest_is_not(tmp_path):
+    generator = np.random.default_rng(2)
+    temperatures = np.round(60.0 + generator.normal(0.0, 1.0, 600), 2)
+    temperatures[200:400] = 61.4
+    rows = "".join(f"{k},{0 if k < 300 else 30 + k % 7},800,{T}\n" for k, T in enumerate(temperatures))
+    table = table_of(tmp_path, "t,n,f,T\n" + rows, MAPPING + "oil_temperature: {column: T, unit: degC}\n")
+    told = "oil_temperature is 61.4 degC from line 202 on for 199 s: constant conditions, or a sensor that sticks; its values are used"
+    assert [note for note in table.notes if "sticks" in note] == [told]
+    assert len(table.values["oil_temperature"]) == 600, "nothing is left out"
 
 
 def test_power_without_speed_gives_no_force(tmp_path):

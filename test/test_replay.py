@@ -30,6 +30,7 @@ from bearing_sim.recording.writer import McapSink
 from bearing_sim.runtime import replay as replaying
 from bearing_sim.runtime.replay import Replay, replay
 from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.scene import Thresholds
 from bearing_sim.simulation import Counters, Inputs, Simulation
 
 SCENE = load_scene("deng2017_table1")
@@ -239,7 +240,7 @@ def test_slip_statistics_weigh_by_time_and_leave_out_the_standing_shaft():
 
 
 def test_the_scene_says_from_which_speed_on_slip_counts():
-    samples = {"slip": [0.1, 0.4], "speed": [100.0, -30.0], "weight": [1.0, 1.0]}
+    samples = {"slip": [0.1, 0.4], "speed": [100.0, -30.0], "load": [5.0, 5.0], "weight": [1.0, 1.0]}
     assert Replay(1.0, **samples).slip_statistics()["maximum"] == 0.4 and Replay(1.0, **samples).seconds_above(0.2) == 1.0
     slower = Replay(1.0, **samples, slip_from_speed=50.0)
     assert slower.slip_statistics()["maximum"] == 0.1 and slower.seconds_above(0.2) == 0.0
@@ -261,8 +262,9 @@ def test_outputs_that_are_coarser_than_the_motion_are_told_from_those_of_a_slow_
 
 
 def test_life_is_simulated_time_over_damage():
-    assert Replay(1.0, sim_seconds=7200.0, damage=0.01).life_hours == pytest.approx(200.0)
-    assert Replay(1.0, sim_seconds=7200.0).life_hours == math.inf
+    thresholds = Thresholds()
+    assert Replay(1.0, sim_seconds=7200.0, damage=0.01).use(thresholds).life_hours == pytest.approx(200.0)
+    assert Replay(1.0, sim_seconds=7200.0).use(thresholds).life_hours == math.inf
 
 
 def command(*arguments):
@@ -482,6 +484,15 @@ def test_the_table_of_a_replay_spans_the_speeds_and_the_oil_temperatures_of_the_
     command._choice(scene, judge(read_input_log(path), scene.accepted_inputs, HELD))
     ((built, ends),) = asked
     assert (built.table.maximum_speed, *(end - 273.15 for end in ends)) == pytest.approx(expected)
+
+
+def test_a_skid_is_slip_above_the_warning_under_load_while_the_shaft_turns():
+    result = Replay(10.0)
+    result.slip, result.speed, result.load = [0.2, 0.2, 0.2, 0.01, math.nan], [100.0, 100.0, 5.0, 100.0, 0.0], [9.0, 0.0, 9.0, 9.0, 9.0]
+    result.weight = [1.0, 2.0, 4.0, 8.0, 16.0]
+    use = result.use(Thresholds())
+    assert (use.skid_seconds, use.turning_seconds) == (1.0, 11.0), "neither without load, nor just above rest, nor below 5 %"
+    assert "1 s with slip above 5 % under load, 9.09 % of the 11 s" in use.skid_text(Thresholds())
 
 
 def test_the_time_below_a_minimum_load_counts_while_the_shaft_turns_and_grows_with_the_speed():

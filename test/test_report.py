@@ -2,13 +2,18 @@
 """Pages of results: of a design, a sweep, a run, a replay and a folder of them; each holds all it shows, and names command and origin."""
 
 import html.parser
+import json
 
 import pytest
 from click.testing import CliRunner
-from recordings import steady_log, truncated
+from recordings import steady_log, truncated, write_log
 
 from bearing_sim.cli.main import main
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.model.turning import span_text
 from bearing_sim.recording.reader import Recording
+from bearing_sim.scene.display import hours
+from bearing_sim.studies.report_page import _events_table, _grouped
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, read_table, write_table
 
@@ -109,7 +114,8 @@ def test_the_page_of_a_sweep_shows_every_row_the_picture_the_scene_and_the_comma
 
 def test_the_page_of_a_run_shows_its_course_its_loads_its_last_results_and_how_to_repeat_it(folder, tmp_path):
     page = page_of(folder / "run.mcap", tmp_path / "r.html")
-    assert page.headings == ["Summary", "Pictures", "Observables", "Bearing and conditions", "Provenance"] and len(page.sources) == 2
+    expected = ["Summary", "Answer sheet, mean over the last 20 %", "Pictures", "Observables", "Bearing and conditions", "Provenance"]
+    assert page.headings == expected and len(page.sources) == 2
     recording = Recording(folder / "run.mcap")
     last = [block for block in recording][-1][-1]
     assert recording.command.startswith("bearing-sim run deng2017_table1 --set 'operating.radial_load=0.5 kN'")
@@ -132,6 +138,34 @@ def test_the_page_of_a_replay_tells_warnings_of_the_run(folder, tmp_path):
     )
 
 
+@pytest.mark.timeout(120)
+def test_a_page_and_a_replay_have_one_life_and_one_time_of_skid_also_across_a_gap(tmp_path):
+    """Half of the time of the log is a gap: a life over the whole log would be twice that over the time that is known."""
+    times = [0.02 * k for k in range(101)] + [4.0 + 0.02 * k for k in range(101)]
+    log = write_log(tmp_path / "log.mcap", [(time, 4700.0 - 400.0 * time) for time in times], [(time, 800.0, 0.0) for time in times])
+    options = "--scene", "deng2017_table1", "--set", "thresholds.slip_warning=3%"
+    report = json.loads(CliRunner().invoke(main, ["replay", str(log), *options, "-o", str(tmp_path / "run.mcap"), "--json"]).stdout)
+    assert report["gap_seconds"] == pytest.approx(2.0) and report["sim_seconds"] == pytest.approx(4.0)
+    assert 0.0 < report["skid_seconds"] < report["turning_seconds"] == pytest.approx(report["sim_seconds"])
+    page = page_of(tmp_path / "run.mcap", tmp_path / "r.html")
+    assert hours(report["life_hours"]) in page.text and hours(1.5 * report["life_hours"]) not in page.text
+    told = f"{span_text(report['skid_seconds'])} with slip above 3 % under load"
+    assert told in page.text, (told, page.text)
+
+
+def event(time, text, level=Level.WARN, subject="cage slip"):
+    return Event(time, level, "bearing.slip", subject, text)
+
+
+def test_a_warning_stands_with_the_time_of_its_own_number_and_once_on_a_page():
+    events = [event(1.0 + k, f"{5 + k} % has reached 5 %") for k in range(8000)] + [event(2.5, "back within its limits", Level.OK)]
+    first, back = _grouped(events)
+    assert (first.count, first.last, back.count) == (8000, 8000.0, 1)
+    assert "5 % has reached" in first.warning and "at 1 s; 8000 times until 8000 s" in first.warning and "8004 %" not in first.warning
+    assert back.warning.endswith("(at 2.5 s)")
+    assert _events_table(events).count("<tr>") == 1 + 2, "a heading, and a row for each"
+
+
 def test_the_page_of_a_folder_shows_all_its_results_and_names_what_it_could_not_show(folder, tmp_path):
     page = page_of(folder, tmp_path / "f.html")
     assert page.text.count("bearing-sim replay --from-recording") == 2 and len(page.sources) == 1 + 1 + 2 * 2
@@ -148,7 +182,7 @@ def test_warnings_open_the_page(tmp_path):
     write_table(tmp_path / "t", Table(columns, rows, {"kind": "sweep", "scene": "<b>", "level": "slip", "axes": []}))
     page = page_of(tmp_path / "t.parquet", tmp_path / "t.html")
     assert "1 warning 2 of 3 rows unsettled: slip was still <changing>" in page.text and "Sweep of <b> at level slip" in page.text
-    assert "No picture: expected one or two variables" in page.text
+    assert "No picture: a picture shows one or two varied fields" in page.text
 
 
 def test_a_scene_of_another_version_is_shown_as_text_with_a_warning(folder, tmp_path):

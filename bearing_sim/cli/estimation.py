@@ -5,8 +5,8 @@ import math
 
 import click
 
-from bearing_sim.cli.lives import hours
 from bearing_sim.cli.reporting import as_usage_error, progress_bar
+from bearing_sim.scene.display import hours
 
 
 def _percent(low, high) -> str:
@@ -18,7 +18,7 @@ def _hours(low, high) -> str:
 
 
 def _micrometres(low, high) -> str:
-    return f"{1e6 * low:.1f} to {1e6 * high:.1f} um"
+    return f"{1e6 * low:.1f} to {1e6 * high:.1f} µm"
 
 
 _SHOWN = {  # words and text of the bands of a replay by name
@@ -28,11 +28,12 @@ _SHOWN = {  # words and text of the bands of a replay by name
     "least_running_clearance": ("least running clearance, 5 to 95 %", _micrometres),
     "remaining_life": ("remaining life at the end, 5 to 95 %", _hours),
 }
-_NEWEST = {  # of a run at its end
+# Of a run at its end.  Its remaining life would be the rating life under the same conditions, but for the damage of its first seconds, in which the
+# cage comes to its slip: that is no answer about a bearing in service.
+_NEWEST = {
     "cage_slip": ("cage slip, 5 to 95 %", _percent),
     "rating_life": ("rating life, 5 to 95 %", _hours),
     "running_clearance": ("running clearance, 5 to 95 %", _micrometres),
-    "remaining_life": ("remaining life, 5 to 95 %", _hours),
 }
 
 
@@ -94,3 +95,8 @@ def _rows(shown, bands, scene) -> list[tuple[str, str]]:
 def band_numbers(bands) -> dict[str, list[float]]:
     """Return bands for JSON: the 5 and 95 % quantiles by name."""
     return {f"{name}_band": list(pair) for name, pair in bands.items()}
+
+
+def live_band_numbers(newest) -> dict[str, list[float]]:
+    """Return the bands of `live_band_rows` for JSON."""
+    return band_numbers({name: newest[name] for name in _NEWEST if name in newest})

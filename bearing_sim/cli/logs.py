@@ -83,6 +83,7 @@ def import_csv(
         print_json(_report(table, mapping, out))
     else:
         _print(table, mapping, data, out)
+        click.echo(f"next: bearing-sim replay {out} --scene SCENE.yaml -o run.mcap; of a long log: bearing-sim spectrum SCENE.yaml {out}", err=True)
 
 
 def _constants(given) -> dict[str, dict]:
@@ -185,18 +186,21 @@ def _report(table, mapping, out) -> dict:
 
 
 def _print(table, mapping, data, out) -> None:
+    from bearing_sim.scene.display import number
+
     start, end = _span(table)
     rows = [("used", table.tally.counts + (f"; {table.left_out} more do not concern this mapping" if mapping.only else ""))]
     rows += [("found in the file", note) for note in table.notes]
-    rows += [(f"{channel} messages", str(len(stamps))) for channel, stamps in table.stamps.items()]
+    rows += [(f"{channel} messages", number(len(stamps), 9)) for channel, stamps in table.stamps.items()]
     for kind, examples in table.examples.items():
-        count = table.tally.refused[kind]
-        more = f"; and {count - len(examples)} more" if count > len(examples) else ""
-        rows.append((f"refused: {kind}", f"{count}: " + "; ".join(f"line {line}: {text}" for line, text in examples) + more))
+        (line, text), *others = examples
+        more = f"; so lines {', '.join(str(other) for other, _ in others)}" if others else ""
+        more += f" and {number(table.tally.refused[kind] - len(examples), 9)} more" if table.tally.refused[kind] > len(examples) else ""
+        rows.append((f"refused: {kind}", f"{number(table.tally.refused[kind], 9)}: line {line}: {text}{more}"))
     gaps = [f"{channel}, line {line}: {seconds:.6g} s" for channel, line, seconds in table.gaps[:5]]
     more = [f"and {len(table.gaps) - 5} more"] if len(table.gaps) > 5 else []
     rows.append((f"gaps above {table.longest_step:.6g} s", f"{len(table.gaps)}" + (": " + "; ".join(gaps + more) if gaps else "")))
-    rows += [("duration", f"{(end - start) * 1e-9:.6g} s, a row every {table.spacing:.4g} s"), ("log", str(out))]
+    rows += [("duration", f"{number((end - start) * 1e-9, 6)} s, a row every {table.spacing:.4g} s"), ("log", str(out))]
     print_table(f"{data.name} by {mapping.name}", rows)
 
 
@@ -204,7 +208,7 @@ def _print(table, mapping, data, out) -> None:
 @click.option("-o", "--out", required=True, type=OutputRecording(), metavar="OUT.mcap", help="Log of the inputs.")
 @click.option("--duration", default=60.0, show_default=True, type=click.FloatRange(1, 3600), metavar="S", help="Duration; all phases scale with it.")
 @click.option("--rate", default=50.0, show_default=True, type=click.FloatRange(1, 2000), metavar="HZ", help="Rate of the speed and load messages.")
-@click.option("--start", type=click.DateTime(), help="Start time in UTC [default: now].")
+@click.option("--start", type=click.DateTime(), metavar="TIME", help="Start time in UTC, such as 2027-01-31 or 2027-01-31T08:00:00 [default: now].")
 @click.option("--cage", "machine", metavar="SCENE", help="Also write a measured cage speed: that of this scene's model, with noise.")
 @set_option
 @allow_outside_option

@@ -9,7 +9,6 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.estimation import band_numbers, band_rows, response_with_progress
-from bearing_sim.cli.lives import hours
 from bearing_sim.cli.options import allow_outside_option, channel_sources, json_option, log_options, set_option, verbose_option
 from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
 from bearing_sim.cli.reporting import (
@@ -29,6 +28,7 @@ from bearing_sim.cli.reporting import (
     warn_of_scene,
     warnings_report,
 )
+from bearing_sim.scene.display import hours
 
 
 @click.command("replay", cls=WritingCommand)
@@ -73,10 +73,11 @@ def replay(
 
     IN.mcap is any rosbag2 recording, MCAP or sqlite3: a file, finished or not, a bag's folder, or several that belong together. It holds
     shaft speed (JointState or Float64) and radial load (WrenchStamped, or Float64 along +y), or such numbers in messages of any other
-    type whose definition is in the recording. ROS is not needed. What was not measured may be a constant, as with --load 800N. Inputs
-    are interpolated linearly between stamps; bad messages are refused, reported and counted as in a live run, but silence and rate are
-    judged by the log's own rate. If only a part of the messages was used, the result says what that means for life and damage, the last
-    message what may help, and the exit code is 3.
+    type whose definition is in the recording. ROS is not needed. What was not measured may be a constant, as with --load 800N. Speed
+    and load are linear between their stamps; temperatures of oil and rings are held from one stamp to the next, as in a live run, which
+    cannot know the next one. Bad messages are refused, reported and counted as in a live run, but silence and rate are judged by the
+    log's own rate. If only a part of the messages was used, the result says what that means for life and damage, the last message what
+    may help, and the exit code is 3.
     """
     if from_recording == bool(scene_name):
         raise UsageError("give either --scene, or --from-recording for a recording made by bearing-sim")
@@ -204,8 +205,8 @@ def _report(result, course, recorded, scene, out) -> dict:
     from bearing_sim.inputs.log import anomalies
     from bearing_sim.model.plausibility import minimum_load
 
-    slip = result.slip_statistics()
-    below, turning = result.seconds_below(lambda speeds: minimum_load(scene, speeds)[0])
+    slip, use = result.slip_statistics(), result.use(scene.thresholds)
+    below, _ = result.seconds_below(lambda speeds: minimum_load(scene, speeds)[0])
     return {
         "scene": scene.name,
         "level": scene.level,
@@ -217,11 +218,13 @@ def _report(result, course, recorded, scene, out) -> dict:
         "cage_slip_p99": slip["p99"],
         "cage_slip_maximum": slip["maximum"],
         "life_method": scene.life.method,
-        "life_hours": result.life_hours,
+        "life_hours": use.life_hours,
         "least_rating_life_hours": result.least_rating_life,
         "damage": result.damage,
         **band_numbers(result.band_statistics()),
-        "turning_seconds": turning,
+        "turning_seconds": use.turning_seconds,
+        "skid_seconds": use.skid_seconds,
+        "skid_above_slip": scene.thresholds.slip_warning,
         "seconds_below_minimum_load": below,
         **unknown_report(course),
         "life_and_damage_are": "at most, at least" if course.verdict else "as given",
@@ -248,6 +251,7 @@ def _print(result, course, recorded, scene, out, keeper) -> None:
     from bearing_sim.model.plausibility import minimum_load
     from bearing_sim.model.turning import stands_text
 
+    use = result.use(scene.thresholds)
     slip = {name: f"{100 * value:.2f} %" for name, value in result.slip_statistics().items()}
     spread = f"mean {slip['mean']}, median {slip['median']}, 95 % below {slip['p95']}, 99 % below {slip['p99']}, largest {slip['maximum']}"
     rejected = f"{result.rejected_steps} rejected, {result.non_finite_steps} of them not finite"
@@ -262,9 +266,10 @@ def _print(result, course, recorded, scene, out, keeper) -> None:
             "cage slip while turning",
             f"none: {stands_text(scene.thresholds.slip_from_speed)}" if math.isnan(result.slip_statistics()["mean"]) else spread,
         ),
+        ("skid", use.skid_text(scene.thresholds)),
         (
             "life under these inputs",
-            f"{'at most ' * bool(course.verdict)}{hours(result.life_hours)} by {symbol}; "
+            f"{'at most ' * bool(course.verdict)}{hours(use.life_hours)} by {symbol}; "
             f"least rating life at an instant {hours(result.least_rating_life)}",
         ),
         *band_rows(result.band_statistics(), scene),
@@ -290,12 +295,11 @@ def _print(result, course, recorded, scene, out, keeper) -> None:
 
 def _below(below: float, turning: float, rule: str, slip_from_speed: float) -> str:
     """Return in words for how long [s] the load was below the makers' minimum while the shaft turned."""
-    from bearing_sim.model.turning import stands_text
+    from bearing_sim.model.turning import span_text, stands_text
 
     if not turning:
         return stands_text(slip_from_speed)
-    unit, factor = ("h", 3600.0) if turning > 7200.0 else ("s", 1.0)
-    return f"{below / factor:.4g} {unit} of {turning / factor:.4g} {unit} that the shaft turns, {100 * below / turning:.3g} % ({rule})"
+    return f"{span_text(below)} of {span_text(turning)} that the shaft turns, {100 * below / turning:.3g} % ({rule})"
 
 
 def reproduce(path: Path, out: Path | None, as_json: bool) -> None:

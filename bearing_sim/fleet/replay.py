@@ -340,7 +340,7 @@ def _results(scene: Scene, result: Replay) -> dict:
         "above_slip_error": share(result.seconds_above(scene.thresholds.slip_error)),
         "below_minimum_load": share(below),
         "damage": 100.0 * result.damage,
-        "life": result.life_hours,
+        "life": result.use(scene.thresholds).life_hours,
         "least_rating_life": result.least_rating_life,
         "failed_intervals": result.failed_ticks,
         "samples": result.samples,

@@ -207,6 +207,37 @@ def guess(
     return found
 
 
+def headed_columns(path: Path, known: Sequence[str], roles: Sequence[Role]) -> tuple[Layout, list[tuple[str, str]]]:
+    """Return how a table is laid out, and what each of its columns is by its heading: (field, unit), the field empty where the heading says nothing.
+
+    Parameters
+    ----------
+    path : of a table, CSV with any delimiter, decimal mark and encoding.
+    known : fields that a heading may name itself, such as ``radial_load``.
+    roles : what other headings may say, the first that fits counts.
+
+    Raises
+    ------
+    TableError
+        The file is no table, or its numbers may mean two things.
+    """
+    encoding = encoding_of(path)
+    lines = first_lines(path, encoding)
+    layout = _layout(path, lines, encoding, None)
+    try:
+        layout.marks = number_marks(cells_in(lines, layout, [name for name in dict.fromkeys(layout.names) if name]), layout.delimiter)
+    except TableError as error:
+        raise TableError(f"{path}, {str(error).partition('; say which')[0]}; write numbers without separators of thousands") from None
+    columns = []
+    for heading in layout.names:
+        name, unit = _heading_unit(heading, layout)
+        name = name if name in known else heading if heading in known else ""
+        role = None if name else _role_of(heading, layout, {}, roles)
+        unit = unit if name != heading and (name or role) else ""
+        columns.append((role.field if role else name, spelled(unit)))
+    return layout, columns
+
+
 def _headings_in(tree) -> list[str]:
     """Return the headings that a mapping's tree uses."""
     if isinstance(tree, dict):
@@ -421,7 +452,7 @@ def _heading_unit(heading: str, layout: Layout) -> tuple[str, str]:
     return name, unit
 
 
-def _role_of(heading: str, layout: Layout, columns: AnyMapping[str, str]) -> Role | None:
+def _role_of(heading: str, layout: Layout, columns: AnyMapping[str, str], roles: Sequence[Role] = ROLES) -> Role | None:
     """Return what a heading says that its column is; None if it says nothing that is needed."""
     if heading in columns.values() or len(heading) > _LONGEST_HEADING:
         return None
@@ -429,10 +460,10 @@ def _role_of(heading: str, layout: Layout, columns: AnyMapping[str, str]) -> Rol
     words = _CAMEL.sub(" ", f"{name} {unit}").replace("_", " ")
     texts = (words.lower(), heading.lower())
     unit = spelled(unit)
-    for role in ROLES:
+    for role in roles:
         says = any(re.search(role.words, text) for text in texts)
         denies = bool(role.not_words) and any(re.search(role.not_words, text) for text in texts)
-        may_be = is_unit_of(unit, role.si_unit) or not _is_a_unit(unit) or is_relative(unit) and role.field in _MAY_BE_RELATIVE
+        may_be = not role.si_unit or is_unit_of(unit, role.si_unit) or not _is_a_unit(unit) or is_relative(unit) and role.field in _MAY_BE_RELATIVE
         if says and not denies and may_be:
             return role
     return None

@@ -43,7 +43,7 @@ from bearing_sim.inputs.csv_text import (
     unit_in,
     unit_line,
 )
-from bearing_sim.inputs.gate import with_values
+from bearing_sim.inputs.gate import shown, value_refusal, with_values
 from bearing_sim.inputs.log import InputLog, Series
 from bearing_sim.inputs.parquet_table import checksum, is_parquet, parquet_layout, parquet_records
 from bearing_sim.messages import topics
@@ -51,11 +51,16 @@ from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.recording.writer import McapFile
 from bearing_sim.scene.loader import InvalidField, SceneError, invalid_fields, read_named, yaml_mapping
 from bearing_sim.scene.quantity import check, quantity, record, to_si
+from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
 METADATA = "bearing_sim_import"
 """Name of the metadata record: mapping (YAML), file, sha256, package_version, git_hash."""
 
+_LIMITS = InputLimits()  # of a scene that says nothing; those of speed and load depend on the bearing, and are not known here
+# Assumption: what loggers and databases write where a sensor has no value; numbers of nines, and the least number of 16 bits.
+_ERROR_CODES_FROM, _ERROR_CODE = -999.0, re.compile(r"-(9{3,}(\.9+)?|32768)")
+_STUCK_ROWS, _STUCK_SPELLS = 100, 20.0  # a signal sticks if it repeats one value in so many rows, and so many times as long as usually
 _LINES_KEPT = 5  # of each kind of error; all are counted
 _USUAL_SPACINGS = 3.0  # median spacings above which there is a gap, if the mapping does not set longest_step
 
@@ -217,6 +222,7 @@ class SumLoad:
 
     law: Literal["sum"] = "sum"
     columns: tuple[ForceColumn, ...]  # of forces
+    negative: Literal["refuse", "magnitude", "direction"] = "refuse"  # what a sum below 0 is: no load, one of that magnitude, or one along -y
 
 
 @record
@@ -477,7 +483,30 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
         why = f"{len(times)} rows rise in time, {refused['time.backwards']} go back; sort them by time, or choose one machine (only, --only)"
         raise TableError(f"{path}, line {table.examples['time.backwards'][0][0]}: {why}")
     _find_gaps(table, mapping, np.diff(times) * 1e-9)
+    table.notes += filter(None, (_stuck(table, channel) for channel in table.values))
     return table
+
+
+def _stuck(table: Table, channel: str) -> str:
+    """Return in words for how long a signal that otherwise changes repeats one value, as that of a sensor that sticks; empty if it never does.
+
+    It is told, and not left out: a controlled speed may be as constant.  A value of 0 is one of a machine at rest.
+    """
+    values = np.asarray(table.values[channel])
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
+    rows = np.diff(starts, append=len(values))
+    moving = values[starts] != 0.0
+    usual = float(np.median(rows[moving])) if moving.any() else math.inf
+    stuck = np.flatnonzero(moving & (rows >= max(_STUCK_ROWS, _STUCK_SPELLS * usual)))
+    if not len(stuck):
+        return ""
+    first = starts[stuck[0]]
+    last = first + rows[stuck[0]] - 1
+    seconds = (table.stamps[channel][last] - table.stamps[channel][first]) * 1e-9
+    more = f", and {len(stuck) - 1} more time{'s' * (len(stuck) > 2)}" if len(stuck) > 1 else ""
+    value = shown(channel, (values[first],))
+    where = f"from line {table.lines[channel][first]} on for {seconds:.6g} s{more}"
+    return f"{channel} is {value} {where}: constant conditions, or a sensor that sticks; its values are used"
 
 
 def _rows_of(path: Path, mapping: Mapping) -> tuple[Layout, Iterable[tuple[int, list[str]]]]:
@@ -613,6 +642,11 @@ class _RowReader:
         if not math.isfinite(value):  # as the sum of cells that are
             self._table.refuse(f"{channel}.not_finite", line, f"{channel} is not finite in SI")
             return math.nan
+        # A force may point along -y; what else a replay of any bearing refuses is no value either.
+        if refusal := value_refusal(channel, (abs(value) if channel == "radial_load" else value,), _LIMITS):
+            kind, reason = refusal
+            self._table.refuse(f"{channel}.{kind.removeprefix('input.')}", line, reason)
+            return math.nan
         self._table.stamps.setdefault(channel, array("q")).append(time_ns)
         self._table.values.setdefault(channel, array("d")).append(value)
         self._table.lines.setdefault(channel, array("q")).append(line)
@@ -628,6 +662,8 @@ class _RowReader:
             raise _BadCell("not_a_number", f"{name} = {text[:_SHOWN]!r} is not a number") from None
         if not math.isfinite(number):
             raise _BadCell("not_finite", f"{name} = {text[:_SHOWN]} is not finite")
+        if number <= _ERROR_CODES_FROM and _ERROR_CODE.fullmatch(f"{number:.12g}"):
+            raise _BadCell("error_code", f"{name} = {text[:_SHOWN]}, by which loggers say that there is no value")
         value = offset + scale * number
         if not math.isfinite(value):
             raise _BadCell("not_finite", f"{name} = {text[:_SHOWN]} is not finite in SI")
@@ -685,7 +721,17 @@ def _load_law(mapping: Mapping) -> Callable[[float, list[float]], float]:
         return lambda speed, values: law.value
     if isinstance(law, GearForce):
         return lambda speed, values: _gear_force(law, speed, values[0])
-    return lambda speed, values: math.fsum(values)
+    return lambda speed, values: _signed(law, math.fsum(values))
+
+
+def _signed(law: SumLoad, load: float) -> float:
+    """Return the load [N] that a sum stands for."""
+    if load >= 0.0 or law.negative == "direction":
+        return load
+    if law.negative == "magnitude":
+        return -load
+    choice = "a radial load is a magnitude; --set radial_load.negative=magnitude takes it without its sign, =direction as a load along -y"
+    raise _BadCell("negative", f"{load:.6g} N is negative: {choice}")
 
 
 def _gear_force(law: GearForce, speed: float, measured: float) -> float:

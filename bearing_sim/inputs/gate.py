@@ -263,13 +263,7 @@ class InputGate:
             else:  # the first message (NaN), or the receiver's clock was set back
                 state.window_start, state.window_count = received, 0
         error = None
-        if len(values) == 1:
-            is_good = state.least <= values[0] <= state.largest
-        elif channel in MEASURED_CHANNELS:
-            is_good = len(values) == 2 and state.least <= values[0] <= state.largest and (math.isnan(values[1]) or 0.0 < values[1] < math.inf)
-        else:
-            is_good = len(values) == 2 and state.is_force and math.hypot(*values) <= state.largest
-        if not is_good:
+        if not _are_good(channel, values, state):
             error = _value_error(channel, values, state)
         if error is None and not state.stamp < stamp < math.inf:
             error = _stamp_error(state, stamp)
@@ -504,6 +498,28 @@ def with_values(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs
     if channel == "radial_load":
         return Inputs(speed, float(values[0]), float(values[1]) if len(values) == 2 else 0.0, *temperatures)
     return held._replace(**{channel: float(values[0])})
+
+
+def value_refusal(channel: str, values: tuple[float, ...], limits: InputLimits) -> tuple[str, str] | None:
+    """Return kind and reason of what is wrong with the values of a message; None if they are good.
+
+    Parameters
+    ----------
+    channel : one of `CHANNELS`.
+    values : as of `InputGate.offer`.
+    limits : what a message may contain.
+    """
+    least, largest = _good_from_to(channel, limits)
+    state = _Channel(least, largest, channel == "radial_load", math.inf)
+    return None if _are_good(channel, values, state) else _value_error(channel, values, state)
+
+
+def _are_good(channel: str, values: tuple[float, ...], state: _Channel) -> bool:
+    if len(values) == 1:
+        return state.least <= values[0] <= state.largest
+    if channel in MEASURED_CHANNELS:
+        return len(values) == 2 and state.least <= values[0] <= state.largest and (math.isnan(values[1]) or 0.0 < values[1] < math.inf)
+    return len(values) == 2 and state.is_force and math.hypot(*values) <= state.largest
 
 
 def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from bearing_sim.messages.bands import BANDS, Bands
 from bearing_sim.messages.diagnostics import condition, further_condition
 from bearing_sim.messages.events import Event
 from bearing_sim.model.sample import joined
-from bearing_sim.model.turning import SLIP_FROM_SPEED, slip_statistics, turns
+from bearing_sim.model.turning import SLIP_FROM_SPEED, Use, slip_statistics, slipping_seconds, turns, use_of
 from bearing_sim.model.validity import Exceedance, Law
 from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
@@ -26,7 +26,7 @@ from bearing_sim.monitoring.residual import Comparison, ResidualMonitor
 from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
 from bearing_sim.runtime.health import Changes
 from bearing_sim.runtime.remembering import note, recall, warm_start
-from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import Inputs, Simulation
 from bearing_sim.stored_state.keeper import StateKeeper
 
@@ -100,10 +100,9 @@ class Replay:
         """Simulated seconds per second."""
         return self.sim_seconds / self.wall_seconds if self.wall_seconds > 0 else math.nan
 
-    @property
-    def life_hours(self) -> float:
-        """Life if this run were repeated, simulated time over damage [h]; infinite without damage."""
-        return self.sim_seconds / 3600 / self.damage if self.damage > 0 else math.inf
+    def use(self, thresholds: Thresholds) -> Use:
+        """Return what the run did to its bearing: life, damage and times (`bearing_sim.model.turning.use_of`)."""
+        return use_of(np.array(self.slip), np.array(self.speed), np.array(self.load), self.weight, self.damage, thresholds, self.sim_seconds)
 
     def slip_statistics(self) -> dict[str, float]:
         """Return mean, median, 95th and 99th percentile and maximum of the slip, weighted by time, while the shaft turns; NaN if it never does."""
@@ -135,9 +134,8 @@ class Replay:
         return float(np.abs(np.array(self.speed)) @ np.array(self.weight)) / (2.0 * math.pi)
 
     def seconds_above(self, slip: float) -> float:
-        """Return for how long the shaft turned with more slip than that [s]."""
-        slips, weight = np.array(self.slip), np.array(self.weight)
-        return float(weight[self._turning() & (slips > slip)].sum())
+        """Return for how long the shaft turned under a load with more slip than that [s]."""
+        return slipping_seconds(np.array(self.slip), np.array(self.speed), np.array(self.load), self.weight, slip, self.slip_from_speed)
 
     def seconds_below(self, minimum_load: Callable[[np.ndarray], np.ndarray]) -> tuple[float, float]:
         """Return for how long the load was below a minimum while the shaft turned, and for how long it turned [s].

@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
+from bearing_sim.scene.display import heading, hours, number
 from bearing_sim.sweep.point import Column
-from bearing_sim.sweep.table import headed
 
 _STYLE = """
 :root { color-scheme: light; --ink: #1c2430; --soft: #5b6675; --line: #d9dee5; --shade: #f5f7f9; --good: #00703c; --part: #9a5b00; --bad: #a3231f; }
@@ -43,6 +43,7 @@ figcaption b { display: block; }
 img { max-width: 100%; height: auto; border: 1px solid var(--line); }
 code, pre { font: .85em/1.45 ui-monospace, monospace; }
 pre { background: var(--shade); padding: .8rem; overflow-x: auto; }
+pre.command { white-space: pre-wrap; overflow-wrap: anywhere; }
 @media (max-width: 50rem) {
   table, tbody, tr, td { display: block; width: auto !important; } thead { display: none; }
   td { border: 0; padding: .15rem 0; } tr { padding: .6rem 0; border-bottom: 1px solid var(--line); }
@@ -82,7 +83,7 @@ def paragraph(text: str) -> str:
 
 def command(text: str) -> str:
     """Return a command line as a block of code."""
-    return f"<pre>{escape(text)}</pre>"
+    return f'<pre class="command">{escape(text)}</pre>'
 
 
 def folded(summary: str, text: str) -> str:
@@ -109,6 +110,9 @@ def pairs(values: Mapping) -> str:
 def rows_table(columns: Sequence[Column], rows: Iterable[Mapping], summary: str = "") -> str:
     """Return a table of rows with the units of its columns and, as a tooltip, their meanings.
 
+    Long texts that a page says once above, warnings and reasons, are left out.  Of a table with more columns than a page is wide, those that people
+    look at first are open, and all of them open at a click.
+
     Parameters
     ----------
     columns : to show, in order.
@@ -116,25 +120,35 @@ def rows_table(columns: Sequence[Column], rows: Iterable[Mapping], summary: str 
     summary : of a table that opens at a click; empty: it is open.
     """
     rows = list(rows)
+    columns = [column for column in columns if column.name not in _SAID_ABOVE]
+    if not summary and len(columns) > _MOST_COLUMNS:
+        first = [column for column in columns if "." in column.name or column.name in _FIRST] or columns[:_MOST_COLUMNS]
+        return _rows_table(first[:_MOST_COLUMNS], rows) + rows_table(columns, rows, f"all {len(columns)} columns")
+    whole = _rows_table(columns, rows)
+    return f"<details><summary>{escape(summary)}</summary>{whole}</details>" if summary else whole
+
+
+_MOST_COLUMNS = 9  # that fit side by side
+_SAID_ABOVE = ("warnings", "reason")
+_FIRST = ("cage_slip", "rating_life", "modified_rating_life", "inner_load_maximum", "running_clearance", "shaft_power", "status")
+
+
+def _rows_table(columns: Sequence[Column], rows: Sequence[Mapping]) -> str:
     numeric = [
         bool(rows) and all(isinstance(row[column.name], (int, float)) and not isinstance(row[column.name], bool) for row in rows)
         for column in columns
     ]
     classes = [' class="number"' if is_number else "" for is_number in numeric]
-    cells = zip(columns, classes)
-    head = "".join(f'<th{kind} title="{escape(column.meaning, quote=True)}">{escape(headed(_short(column)))}</th>' for column, kind in cells)
+    heads = (
+        f'<th{kind} title="{escape(column.meaning, quote=True)}">{escape(heading(column.name, column.unit))}</th>'
+        for column, kind in zip(columns, classes)
+    )
     lines = [
         "".join(f"<td{kind}>{escape(_shown(row[column.name], column.unit)) or chr(8211)}</td>" for column, kind in zip(columns, classes))
         for row in rows
     ]
-    body = "".join(f"<tr>{line}</tr>" for line in lines)
-    whole = f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
-    return f"<details><summary>{escape(summary)}</summary>{whole}</details>" if summary else whole
-
-
-def _short(column: Column) -> Column:
-    """Return a column whose name is the last part of its path, in words."""
-    return column._replace(name=column.name.rpartition(".")[2].replace("_", " "))
+    head, body = "".join(heads), "".join(f"<tr>{line}</tr>" for line in lines)
+    return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
 
 
 def _shown(value, unit: str) -> str:
@@ -144,7 +158,7 @@ def _shown(value, unit: str) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        return f"{value:.8g}" if unit == "mm" else f"{value:.5g}"
+        return hours(value, 5).removesuffix(" h") if unit == "h" else number(value, 8 if unit == "mm" else 5)
     return str(value)
 
 

@@ -7,7 +7,7 @@ A page has the scene and its bearing, tables, pictures, warnings, where the resu
 import io
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import NamedTuple
@@ -15,32 +15,36 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.files.tally import Tally
+from bearing_sim.inputs.profile import gaps_of
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.characteristic_frequencies import frequencies_text, mean_frequencies
 from bearing_sim.model.plausibility import left_out, plausibility
 from bearing_sim.model.sample import OBSERVABLES, joined
-from bearing_sim.model.turning import DIVIDED, slip_statistics, stands_text, turns
+from bearing_sim.model.turning import DIVIDED, slip_statistics, stands_text, turns, use_of
 from bearing_sim.model.validity import counted
 from bearing_sim.recording.bag import ACTIVE, RecordingError
 from bearing_sim.recording.provenance import versions
 from bearing_sim.recording.reader import Recording
+from bearing_sim.scene.display import hours, number
 from bearing_sim.scene.loader import SceneError, scene_from_yaml
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities, value_at
 from bearing_sim.studies import design as studied
+from bearing_sim.studies import spectrum as spectra
 from bearing_sim.studies.deng2017.page import study_page
 from bearing_sim.studies.deng2017.run import STUDY_FILE
 from bearing_sim.studies.page import NoResults, command, document, folded, pairs, paragraph, picture, rows_table, warnings
 from bearing_sim.studies.run_plot import DEFAULT_PANELS, course_of, draw_over_time
+from bearing_sim.studies.sheet import results, sheet
+from bearing_sim.sweep.pictures import COLOURS, NotDrawable, draw, new_figure
 from bearing_sim.sweep.point import OK, Column
 from bearing_sim.sweep.settling import mean_life
-from bearing_sim.sweep.table import COLOURS, NotDrawable, Table, draw, new_figure, read_any_table, written_by_us
+from bearing_sim.sweep.table import Table, read_any_table, written_by_us
 
 _RECORDINGS, _TABLES = (".mcap", ACTIVE), (".parquet", ".csv")
 _MOST_ROWS = 1000  # of a table on a page; the files have all
 _MOST_POINTS = 4000  # of a line in a picture
 _LAST = 0.2  # of a recording, over which its final results are averaged
-_GAP = 10.0  # usual intervals of samples from which on a pause counts as a gap
 _SECTORS = 72  # of the circle, for the load distribution
 
 
@@ -111,9 +115,9 @@ def _folder_page(folder: Path, tell: Callable[[Tally, Path], None]) -> str:
     if len(parts) == 1:
         return document(parts[0].title, parts[0].opening + warnings(skipped), parts[0].sections)
     sections = {}
-    for number, part in enumerate(parts, 1):
+    for place, part in enumerate(parts, 1):
         inner = "".join(f"<h3>{escape(heading)}</h3>{text}" for heading, text in part.sections.items() if text)
-        sections[f"{number}. {part.title}"] = part.opening + inner
+        sections[f"{place}. {part.title}"] = part.opening + inner
     return document(f"{len(parts)} results in {folder.name}", warnings(skipped), sections)
 
 
@@ -162,7 +166,7 @@ def _table_part(path: Path, table: Table) -> _Part:
         f"{kind.capitalize()}{where}",
         _opening(about, told),
         {
-            "Summary": pairs({"rows": len(table.rows), **_statuses(table), **_varied(about)}),
+            "Summary": pairs({"rows": len(table.rows), **_statuses(table), **_varied(about), **about.get("summary", {})}),
             "Pictures": _table_pictures(table),
             "Results": results,
             **_origin(about),
@@ -193,10 +197,12 @@ def _varied(about: Mapping) -> dict:
 
 
 def _text(value) -> str:
-    return f"{value:.8g}" if isinstance(value, float) else str(value)
+    return number(value, 8) if isinstance(value, float) else str(value)
 
 
 def _table_pictures(table: Table) -> str:
+    if table.about.get("kind") == "spectrum":
+        return picture(_drawn(lambda stream: spectra.draw(stream, table)), "Shares of time and damage by point")
     if table.about.get("kind") != "sweep":
         return ""
     try:
@@ -285,8 +291,7 @@ def _recording_part(recording: Recording) -> _Part:
     block = joined([_thinned(each, recording.samples) for each in blocks])
     course = course_of(blocks, scene, recording.path.name, recording.samples, (*DEFAULT_PANELS, "roller_load"))
     told = [] if recording.tally.is_whole else [f"the recording is used in part only: {recording.tally.text}"]
-    grouped = _grouped([event for event in events if event.level > Level.OK])
-    told += [f"{text} ({'at' if count == 1 else f'{count} times, first at'} {first:.6g} s)" for text, first, count in grouped]
+    told += [each.warning for each in _grouped(event for event in events if event.level > Level.OK)]
     last = float(blocks[-1]["time"][-1])  # that could be read
     duration = last - recording.first_time
     settled = block[block["time"] >= last - _LAST * duration]
@@ -299,28 +304,33 @@ def _recording_part(recording: Recording) -> _Part:
         "version": metadata.get("package_version", ""),
         "commit": metadata.get("git_hash", ""),
     } | {name.removeprefix("version_"): text for name, text in metadata.items() if name.startswith("version_")}
-    used = float(block["damage"][-1] - block["damage"][0])
-    slips = [np.concatenate([each[name] for each in blocks]) for name in ("cage_slip", "shaft_speed", "time")]
-    slip, at_end = _slip(*slips, scene), _while_turning(settled, scene) if _turns(block[-1:], scene).all() else settled[:0]
+    slips, speeds, times, load_y, load_z = (
+        np.concatenate([each[name] for each in blocks]) for name in ("cage_slip", "shaft_speed", "time", "load_y", "load_z")
+    )
+    weights = _weights(times, scene)
+    slip = slip_statistics(slips, speeds, weights, scene.thresholds.slip_from_speed)
+    used = float(blocks[-1]["damage"][-1] - blocks[0]["damage"][0])
+    use = use_of(slips, speeds, np.hypot(load_y, load_z), weights, used, scene.thresholds)
+    at_end = _while_turning(settled, scene) if _turns(block[-1:], scene).all() else settled[:0]
     none, at_rest = f"none: {stands_text(scene.thresholds.slip_from_speed)}", f"none: {stands_text(scene.thresholds.slip_from_speed)} there"
     summary = {
         "recording": ", ".join(file.name for file in recording.files),
-        "simulated": f"{duration:.6g} s, {recording.tally.counts}",
+        "simulated": f"{number(use.seconds, 6)} s of {number(duration, 6)} s, {recording.tally.counts}",
         "level": scene.level,
         "cage slip while turning": none if math.isnan(slip["mean"]) else f"mean {100 * slip['mean']:.2f} %, largest {100 * slip['maximum']:.2f} %",
         "cage slip at the end": f"{100 * np.nanmean(at_end['cage_slip']):.2f} %" if np.isfinite(at_end["cage_slip"]).any() else at_rest,
         "characteristic frequencies at the end": frequencies_text(mean_frequencies(at_end)) if len(at_end) else at_rest,
+        "skid": use.skid_text(scene.thresholds),
         "life used": f"{100 * used:.4g} %",
-        f"life under these conditions ({studied.life_name(scene)})": f"{duration / 3600 / used:.4g} h" if used > 0.0 else "not used",
+        f"life under these conditions ({studied.life_name(scene)})": hours(use.life_hours) if used > 0.0 else "not used",
         "events": ", ".join(f"{count} x {kind}" for kind, count in Counter(event.kind for event in events).most_common()) or "none",
     }
-    columns = Column("time", "s", "since the start"), Column("level", "", "severity"), Column("kind", "", "identifier"), Column("text", "", "what")
-    listed = [dict(zip(("time", "level", "kind", "text"), (event.time, event.level.name, event.kind, event.text))) for event in events[:_MOST_ROWS]]
     return _Part(
         f"{scene.name} at level {scene.level}: {recording.path.name}",
         _opening(about, told),
         {
             "Summary": pairs(summary),
+            f"Answer sheet, mean over the last {100 * _LAST:g} %": _sheet(scene, at_end),
             "Pictures": picture(_drawn(lambda stream: draw_over_time(stream, [course], form="png")), "Conditions and results over time")
             + picture(
                 _drawn(lambda stream: _draw_loads(stream, settled)),
@@ -328,10 +338,17 @@ def _recording_part(recording: Recording) -> _Part:
                 f"Roller loads over the azimuth from +y, mean over the last {100 * _LAST:g} % of the recording.",
             ),
             "Observables": _observables(blocks, settled, scene),
-            "Events": rows_table(columns, listed, f"{len(events)} events") if events else "",
+            "Events": _events_table(events),
             **_origin(about),
         },
     )
+
+
+def _sheet(scene: Scene, samples: np.ndarray) -> str:
+    """Return the answer sheet of the end of a recording; empty where the shaft stands there."""
+    if not len(samples):
+        return ""
+    return pairs({name: text for group in sheet(scene, results(scene, samples)) for name, text in group})
 
 
 def _thinned(block: np.ndarray, samples: int) -> np.ndarray:
@@ -341,20 +358,62 @@ def _thinned(block: np.ndarray, samples: int) -> np.ndarray:
     return np.ascontiguousarray(block[np.union1d(kept, [len(block) - 1])])
 
 
-def _grouped(events: Sequence[Event]) -> list[tuple[str, float, int]]:
-    """Return one text for each trouble, when it was first, and how often."""
+class _Trouble(NamedTuple):
+    """All events of one kind about one subject: the first one's text and time, how often it was, and when last."""
+
+    first: Event
+    count: int
+    last: float
+
+    @property
+    def warning(self) -> str:
+        """The text of the first one with its time, so that a number stands beside the instant of which it is, and how often it came again."""
+        again = f"; {self.count} times until {self.last:.6g} s" if self.count > 1 else ""
+        return f"{self.first.text} (at {self.first.time:.6g} s{again})"
+
+
+def _grouped(events: Iterable[Event]) -> list[_Trouble]:
+    """Return each kind of event once for each of its subjects and levels, in the order in which they came first."""
     found: dict[tuple, list[Event]] = {}
     for event in events:
-        found.setdefault(event.key, []).append(event)
-    return [(each[-1].text, each[0].time, sum(event.count for event in each)) for each in found.values()]
+        found.setdefault((event.key, event.level), []).append(event)
+    return [_Trouble(each[0], sum(event.count for event in each), max(event.time for event in each)) for each in found.values()]
 
 
-def _slip(slips: np.ndarray, speeds: np.ndarray, times: np.ndarray, scene: Scene) -> dict[str, float]:
-    """Return the statistics of the slip of samples, each of which stands for the time since the one before; a gap counts as a usual interval."""
-    intervals = np.diff(times, prepend=times[0])
-    usual = float(np.median(intervals[1:])) if len(times) > 1 else 1.0
-    weight = np.where(intervals > _GAP * usual, usual, intervals)
-    return slip_statistics(slips, speeds, weight if len(times) > 1 else np.ones(1), scene.thresholds.slip_from_speed)
+def _events_table(events: Sequence[Event]) -> str:
+    """Return the table of events, one row for each kind about one subject; the recording has all."""
+    columns = (
+        Column("first", "s", "time of the first one since the start"),
+        Column("last", "s", "of the last one"),
+        Column("count", "", "how often"),
+        Column("level", "", "severity"),
+        Column("kind", "", "identifier"),
+        Column("text", "", "of the first one"),
+    )
+    rows = [
+        dict(
+            zip(
+                (column.name for column in columns), (each.first.time, each.last, each.count, each.first.level.name, each.first.kind, each.first.text)
+            )
+        )
+        for each in _grouped(events)
+    ]
+    return rows_table(columns, rows, f"{len(events)} events") if rows else ""
+
+
+def _weights(times: np.ndarray, scene: Scene) -> np.ndarray:
+    """Return the simulated time that each sample of a recording stands for [s], shape (n,): that since the sample before.
+
+    Gaps are not simulated, and not recorded as such: an interval counts as one where a replay would see a gap in a log with these stamps
+    (`bearing_sim.inputs.profile.is_gap`), and the sample after it stands for a usual interval.
+    """
+    if len(times) < 2:
+        return np.ones(len(times))
+    weights = np.diff(times, prepend=times[0])
+    stamps = np.round(1e9 * times).astype(np.int64)
+    ends = [end for _, end in gaps_of(stamps, scene.accepted_inputs)]
+    weights[np.searchsorted(stamps, ends)] = np.median(weights[1:])
+    return weights
 
 
 def _turns(samples: np.ndarray, scene: Scene) -> np.ndarray:

@@ -176,8 +176,13 @@ def _as_value(field: Field, value: float | str) -> float | int | str:
     raise FieldError(f"{field.path} takes {field.words()}, got {value!r}")
 
 
-def read_axis(text: str) -> Axis:
+def read_axis(text: str, written: bool = False) -> Axis:
     """Return the axis of a text such as ``operating.shaft_speed=15000rpm:52000rpm:8`` or ``bearing.roller.crown=none,iso_log``.
+
+    Parameters
+    ----------
+    text : FIELD=VALUES.
+    written : whether it is an option of a command line, on which a quantity needs its unit.
 
     Raises
     ------
@@ -189,18 +194,18 @@ def read_axis(text: str) -> Axis:
         raise FieldError(f"{text!r}: expected FIELD=START:STOP:N or FIELD=a,b,c")
     field = field_of(path)
     if ":" in given:
-        return Axis(field, _range(text, field, given))
-    return Axis(field, tuple(dict.fromkeys(_value(text, field, part.strip()) for part in given.split(","))))
+        return Axis(field, _range(text, field, given, written))
+    return Axis(field, tuple(dict.fromkeys(_value(text, field, part.strip(), written) for part in given.split(","))))
 
 
-def _range(text, field, given) -> tuple:
+def _range(text, field, given, written) -> tuple:
     parts = [part.strip() for part in given.split(":")]
     if len(parts) != 3 or not parts[2].isdigit() or not 1 <= int(parts[2]) <= MOST_VALUES:
         raise FieldError(f"{text!r}: expected FIELD=START:STOP:N with N from 1 to {MOST_VALUES}")
     bare = [part for part in parts[:2] if _NUMBER_ALONE.fullmatch(part) and float(part) != 0.0]
     if len(bare) == 1 and field.unit:
         raise FieldError(f"{text!r}: only one end has a unit; give both {parts[0]} and {parts[1]} a unit, such as {field.unit}")
-    ends = [_value(text, field, part) for part in parts[:2]]
+    ends = [_value(text, field, part, written) for part in parts[:2]]
     if not all(isinstance(end, (int, float)) and not isinstance(end, bool) for end in ends):
         raise FieldError(f"{text!r}: a range needs numbers; list the values as FIELD=a,b,c")
     if field.quantity is None:
@@ -213,7 +218,7 @@ def _range(text, field, given) -> tuple:
     return tuple(dict.fromkeys(to_si(f"{value:.11g} {field.unit}", field.quantity.unit) for value in values))
 
 
-def _value(text, field, part) -> float | int | str:
+def _value(text, field, part, written=False) -> float | int | str:
     if bool in field.kinds and part.lower() in ("true", "false"):
         return part.lower()
     if int in field.kinds and re.fullmatch(r"[-+]?\d+", part):
@@ -221,6 +226,8 @@ def _value(text, field, part) -> float | int | str:
     if isinstance(field.quantity, QuantityOrName) and part.upper() in field.quantity.names:
         return part.upper()
     if field.quantity is not None:
+        if written and (reason := field.quantity.why_unit_is_needed(part)):
+            raise FieldError(f"{text!r}: {field.path}: {reason}")
         try:
             return to_si(part, field.quantity.unit)
         except ValueError as error:

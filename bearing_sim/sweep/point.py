@@ -9,7 +9,8 @@ import numpy as np
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.model.losses import power_loss
 from bearing_sim.model.sample import OBSERVABLES
-from bearing_sim.model.validity import cell, outside
+from bearing_sim.model.validity import below_minimum_load, cell, outside
+from bearing_sim.scene.axial_load import results_without_rule
 from bearing_sim.scene.quantity import to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
@@ -40,7 +41,7 @@ class Column(NamedTuple):
 
 LIVES = tuple(each.name for each in OBSERVABLES if each.unit == "h")
 _CLEARANCES = tuple(each.name for each in OBSERVABLES if each.name.endswith("_clearance"))
-_MEANS = ("inner_equivalent_load", "outer_equivalent_load", "land_eccentricity")
+_MEANS = ("equivalent_load", "static_safety", "inner_equivalent_load", "outer_equivalent_load", "land_eccentricity")
 _POWERS = tuple(each.name for each in OBSERVABLES if each.name.endswith("_power"))
 _OBSERVED = {each.name: each for each in OBSERVABLES}
 
@@ -69,7 +70,7 @@ OTHER_STATE = (
 TEXTS = (
     Column("status", "", "ok; unsettled: slip or life was still changing at the end; failed: the run stopped early; refused: the scene is invalid"),
     Column("reason", "", "why the status is not ok"),
-    Column("warnings", "", "laws used outside of their ranges, each with its worst value"),
+    Column("warnings", "", "laws used outside of their ranges, and the makers' minimum load if the load is below, each with its worst value"),
 )
 
 
@@ -122,9 +123,12 @@ def point_row(scene: Scene, duration: float = DURATION, longest: float | None = 
     except IntegrationError as error:
         return empty_row(FAILED, str(error))
     found = results_of(outcome)
+    window = outcome.window
+    found |= dict.fromkeys(results_without_rule(scene, float(np.hypot(window["load_y"], window["load_z"]).mean())), math.nan)
     row = {column.name: column.factor * found[column.name] for column in RESULTS}
     judged = {"status": OK if outcome.settled else UNSETTLED, "reason": outcome.reason}
-    return row | _other_state(scene, outcome) | judged | {"warnings": cell(outside(scene, outcome.window))}
+    warnings = cell([*outside(scene, window), *below_minimum_load(scene, window)])
+    return row | _other_state(scene, outcome) | judged | {"warnings": warnings}
 
 
 def _other_state(scene: Scene, outcome: Outcome) -> dict[str, float]:

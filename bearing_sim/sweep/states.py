@@ -17,6 +17,7 @@ from bearing_sim.levels.common.model import Model
 from bearing_sim.levels.steady.model import Work, forget, new_work, solve_condition
 from bearing_sim.levels.steady.operating_point import ANSWER, CREEP, SCANNED, basin, find_skid_load, stable_balances
 from bearing_sim.model.losses import power_loss
+from bearing_sim.scene.display import force, hours, power
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, inputs_of, scene_inputs, thermal_nodes
 from bearing_sim.sweep.ring_resonance import Resonance, ring_resonance
@@ -255,7 +256,7 @@ def state_rows(others: Others, start: str) -> list[tuple[str, str]]:
     rows = [("state", f"{came}{'' if others.states else '; no other was found'}")]
     rows += [("also stays at", state_text(state)) for state in others.states]
     if others.skid_load > 0.0:
-        rows.append(("skid load", f"{others.skid_load:.4g} N; under less a cage that skids goes on skidding"))
+        rows.append(("skid load", f"{force(others.skid_load)}; under less a cage that skids goes on skidding"))
     if others.resonance is not None:
         rows.append(("inner ring", resonance_text(others.resonance)))
     return rows
@@ -263,7 +264,7 @@ def state_rows(others: Others, start: str) -> list[tuple[str, str]]:
 
 def state_text(state: State) -> str:
     """Return a state in words."""
-    return f"{100.0 * state.cage_slip:.2f} % cage slip, {state.rating_life:.4g} h, {state.shaft_power:.4g} W: {state.start}"
+    return f"{100.0 * state.cage_slip:.2f} % cage slip, {hours(state.rating_life)}, {power(state.shaft_power)}: {state.start}"
 
 
 def resonance_text(resonance: Resonance) -> str:
