@@ -40,11 +40,11 @@ ROOMS = {
     "estimation": ("numpy platformdirs scipy", "files scene numerics physics model levels messages monitoring"),
     "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring estimation vibration"),
     "view": ("PIL numpy platformdirs rerun rerun_cli", "files scene messages recording"),
-    "sweep": ("numpy pandas pyarrow matplotlib distributed xarray scipy", "files scene numerics physics model levels simulation recording"),
+    "sweep": ("numpy pandas pyarrow matplotlib distributed xarray scipy", "files scene numerics physics model levels simulation recording inputs"),
     "fleet": ("numpy pyarrow", "files scene levels simulation messages recording inputs model estimation runtime sweep"),
     "studies": (
         "numpy numba pandas scipy matplotlib pydantic sksundae",
-        "files scene numerics physics model levels simulation messages recording vibration monitoring estimation runtime sweep",
+        "files scene numerics physics model levels simulation messages recording inputs vibration monitoring estimation runtime sweep",
     ),
     "cli": (
         "click numpy pydantic_core rich",

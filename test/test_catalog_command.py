@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from bearing_sim.cli.main import main
 from bearing_sim.scene.loader import load_bearing, load_scene
 from bearing_sim.studies import bearing_drawing
-from bearing_sim.sweep.table import new_figure
+from bearing_sim.sweep.pictures import new_figure
 
 
 def called(*arguments, code=0):
@@ -40,7 +40,7 @@ def test_every_bearing_of_the_list_has_ratings_and_says_whose():
 def test_one_bearing_is_shown_with_what_is_estimated_and_drawn(tmp_path):
     picture = tmp_path / "nu210.svg"
     shown = called("catalog", "nu 210 ecp/c3", "--picture", picture).stdout
-    for text in ("NU 210 ECP/C3", "d 50 mm, D 90 mm, B 20 mm", "C3: 50 to 80 um", "C 73.5 kN", "16 of 11 mm", "estimated cage.mass"):
+    for text in ("NU 210 ECP/C3", "d 50 mm, D 90 mm, B 20 mm", "C3: 50 to 80 µm", "C 73.5 kN", "16 of 11 mm", "estimated cage.mass"):
         assert text in shown
     assert picture.read_text().count("</svg>") == 1
     facts = json.loads(called("catalog", "NU 210", "--json").stdout)
@@ -53,8 +53,8 @@ def test_one_bearing_is_shown_with_what_is_estimated_and_drawn(tmp_path):
     ("arguments", "words"),
     [
         (("catalog", "NU 211 ECX"), "unknown suffix 'ECX' (did you mean EC?)"),
-        (("catalog", "6205"), "expected a designation such as NU 210 ECP/C3"),
-        (("catalog", "--bore", "50"), "these are 50 m; expected a length such as 50mm"),
+        (("catalog", "6205"), "a deep groove ball bearing, not a cylindrical roller bearing"),
+        (("catalog", "--bore", "50"), "--bore: 50 has no unit; write 50 mm"),
         (("catalog", "--bore", "60mm:50mm"), "expected a length such as 50mm, or a range"),
         (("catalog", "--type", "NX"), "--type NX: expected one of N, NU"),
         (("catalog", "--picture", "a.png"), "--picture draws one bearing; give its designation"),

@@ -43,7 +43,7 @@ def test_all_faults_of_diameters_come_at_once_in_the_words_of_the_file():
     told = {error.path: error.reason for error in caught.value.errors}
     assert "unknown unit 'apples'" in told["bearing.outer_raceway.diameter"]
     assert "radius is given, too ('29.75 mm'); give one of the two" in told["bearing.inner_raceway.diameter"]
-    assert told["bearing.cage.outer_diameter"] == "81000 mm is outside 2 mm to 4000 mm"
+    assert told["bearing.cage.outer_diameter"] == "81 m is outside 2 mm to 4000 mm; a bare number is SI: write 81 mm?"
     assert "unknown unit 'pears'" in told["uncertainty.bearing.inner_raceway.bore_diameter.high"]
     assert len(told) == 4, "and no consequences of them"
 

@@ -143,7 +143,7 @@ def test_the_command_writes_totals_a_table_and_a_picture(tmp_path, monkeypatch):
     result = CliRunner().invoke(
         main,
         ["study", "extremes", "--samples", "3", "--seed", "2", "--level", "slip", "--no-long", "--workers", "1", "--json"]
-        + ["--csv", str(table), "--picture", str(picture)],
+        + ["--out", str(table), "--picture", str(picture)],
     )
     report = json.loads(result.stdout)
     assert result.exit_code == (1 if report["failed"] else 0)
@@ -203,7 +203,7 @@ def test_the_night_gives_one_table_and_resumes(tmp_path, monkeypatch):
     monkeypatch.setattr("bearing_sim.studies.nightly.LONG_RUNS", {"slip": ((15_000.0, 2.0),)})
     options = "--level slip --samples 9 --first 2 --workers 1".split()
     arguments = ["study", "nightly", *options, "--journal", str(tmp_path / "night.journal")]
-    result = CliRunner().invoke(main, [*arguments, "--json", "--csv", str(tmp_path / "night.csv")])
+    result = CliRunner().invoke(main, [*arguments, "--json", "--out", str(tmp_path / "night.csv")])
     report = json.loads(result.stdout)
     assert [(row["runs"], sum(row["counts"].values())) for row in report["rows"]] == [
         ("scenes", 2),

@@ -31,9 +31,9 @@ def test_bearings_as_they_are_built_are_plausible(scene):
 @pytest.mark.parametrize(
     "overrides, field, value, expected",
     [
-        (["bearing.cage.mass=2 kg"], "bearing.cage.mass", "2000 g", "polyamide to brass"),
+        (["bearing.cage.mass=2 kg"], "bearing.cage.mass", "2,000 g", "polyamide to brass"),
         (["bearing.cage.mass=0.5 g"], "bearing.cage.mass", "0.5 g", "polyamide to brass"),
-        (["bearing.inner_raceway.ring_mass=20 kg"], "bearing.inner_raceway.ring_mass", "2e+04 g", "by raceway, bore and roller length"),
+        (["bearing.inner_raceway.ring_mass=20 kg"], "bearing.inner_raceway.ring_mass", "20,000 g", "by raceway, bore and roller length"),
         (["bearing.inner_raceway.ring_mass=5 g"], "bearing.inner_raceway.ring_mass", "5 g", "by raceway, bore and roller length"),
         (
             ["bearing.dimensions_at=running", "bearing.inner_raceway.bore_radius=null", "bearing.inner_raceway.ring_mass=1 g"],
@@ -44,16 +44,16 @@ def test_bearings_as_they_are_built_are_plausible(scene):
         (["bearing.roller.count=5"], "bearing.roller", "24.8 %", "40 to 97 %"),
         (["bearing.outer_raceway.low_radius=40.9 mm"], "bearing", "300 um", "at most 125 um, class C5"),
         (["bearing.outer_raceway.low_radius=40.72 mm"], "bearing", "60 um", "of a round raceway"),
-        (["bearing.outer_raceway.d_value=1 mm", "bearing.outer_raceway.lobes=3"], "bearing.outer_raceway.d_value", "1000 um", "0.5 % of the pitch"),
+        (["bearing.outer_raceway.d_value=1 mm", "bearing.outer_raceway.lobes=3"], "bearing.outer_raceway.d_value", "1,000 um", "0.5 % of the pitch"),
         (["bearing.outer_raceway.d_value=50 um", "bearing.outer_raceway.lobes=3"], "bearing.outer_raceway.d_value", "50 um", "do not press rollers"),
         (["bearing.cage.guide_radius=40 mm", "bearing.cage.inner_radius=36 mm"], "bearing.cage", "36 to 39.7 mm", "the pitch radius between"),
-        (["bearing.ratings.dynamic=150 kN"], "bearing.ratings.dynamic", "1.5e+05 N", "0.65 to 1.5 times"),
+        (["bearing.ratings.dynamic=150 kN"], "bearing.ratings.dynamic", "150,000 N", "0.65 to 1.5 times"),
         (["bearing.ratings.static=73.5"], "bearing.ratings.static", "73.5 N", "check its unit"),
         (["bearing.ratings.fatigue_limit=70 N"], "bearing.ratings.fatigue_limit", "70 N", "0.4 to 2.5 times"),
-        (["bearing.ratings.limiting_speed=2000 rpm"], "limiting_speed", "3000 rpm", "at most 2000 rpm"),
-        (["operating.radial_load=1 kN"], "operating.radial_load", "1000 N", "expect slip"),
-        (["operating.shaft_speed=50000 rpm"], "speed_factor", "3.525e+06 rpm mm", "at most 3e+06 rpm mm"),
-        (["lubricant.temperature=210 degC"], "oil_temperature", "210 degC", "37.85 to 204.9 degC"),
+        (["bearing.ratings.limiting_speed=2000 rpm"], "limiting_speed", "3,000 rpm", "at most 2,000 rpm"),
+        (["operating.radial_load=1 kN"], "operating.radial_load", "1,000 N", "expect slip"),
+        (["operating.shaft_speed=50000 rpm"], "speed_factor", "3,525,000 rpm mm", "at most 3,000,000 rpm mm"),
+        (["lubricant.temperature=210 degC"], "oil_temperature", "210 °C", "37.85 to 204.9 °C"),
     ],
 )
 def test_a_slip_of_the_pen_is_named(overrides, field, value, expected):
@@ -101,7 +101,7 @@ def test_the_node_tells_once_what_is_implausible():
     news = [event for after in (0, 1, 2) for event in live.collect(start + after * 10**9)]
     live.close()
     (told,) = [event for event in news if event.kind == "scene.implausible"]
-    assert told.level is Level.WARN and told.subject == "bearing.cage.mass" and told.reason.startswith("5000 g for about ")
+    assert told.level is Level.WARN and told.subject == "bearing.cage.mass" and told.reason.startswith("5,000 g for about ")
 
 
 @pytest.mark.long
@@ -111,7 +111,7 @@ def test_commands_print_what_is_implausible_and_go_on(command, tmp_path):
     overrides = ["--set", "bearing.cage.mass=5 kg"]
     result = CliRunner().invoke(main, [name, PAPER, *options, *overrides, "--json"])
     assert result.exit_code == 0, result.output
-    assert "warning: bearing.cage.mass: 5000 g for about " in result.stderr
+    assert "warning: bearing.cage.mass: 5,000 g for about " in result.stderr
     if name != "uncertainty":
         (found,) = json.loads(result.stdout)["implausible"]
         assert found.startswith("bearing.cage.mass: ")

@@ -34,7 +34,7 @@ def command_output(folder):
     with pytest.MonkeyPatch.context() as patch:
         size = []
         if "BEARING_SIM_PICTURES" not in os.environ:
-            size = ["--size", "1000", "640"]
+            size = ["--size", "1000x640"]
             coarse = [each if each.fault else each._replace(rate=0.5 * each.rate) for each in SITUATIONS]
             patch.setattr("bearing_sim.studies.situations.SITUATIONS", tuple(coarse))
         return _output_of(["--out", str(folder), *size, "--json"])

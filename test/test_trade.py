@@ -128,7 +128,7 @@ def test_every_setting_of_every_level_is_a_scene():
 def test_command_measures_writes_and_recommends(tmp_path):
     table, picture = tmp_path / "trade.csv", tmp_path / "trade.png"
     words = ["trade", "deng2017_table1", "--quick", "--level", "slip", "--level", "planar", "--error", "0.5", "--json", "--workers", "1"]
-    result = CliRunner().invoke(main, [*words, "--csv", str(table), "--picture", str(picture)])
+    result = CliRunner().invoke(main, [*words, "--out", str(table), "--picture", str(picture)])
     assert result.exit_code == 0, result.output
     report = json.loads(result.stdout)
     slip, planar = report["settings"]

@@ -16,7 +16,7 @@ from bearing_sim.cli.estimation import band_rows, live_band_rows
 from bearing_sim.cli.main import main
 from bearing_sim.model.plausibility import left_out
 from bearing_sim.scene.loader import SceneError, load_scene, scene_from_yaml, scene_names, scene_to_yaml
-from bearing_sim.scene.uncertainty import Range, quantities, value_at, with_values, without_dimensions
+from bearing_sim.scene.uncertainty import Range, number_at, quantities, value_at, with_values, without_dimensions
 from bearing_sim.studies.uncertainty import (
     UncertaintyError,
     band,
@@ -132,9 +132,11 @@ def test_a_radius_takes_the_range_of_the_clearance_away():
     assert scene.bearing.clearance is None and "bearing.clearance" not in {one.field for one in scene.uncertainty}
 
 
-def test_a_range_of_a_clearance_that_is_a_group_is_refused():
-    with pytest.raises(SceneError, match="'C3' there, a name; give a number"):
-        load_scene("deng2017_table1_cold", ["bearing.clearance=C3"])
+def test_the_clearance_of_a_scene_with_a_range_may_be_a_group():
+    scene = load_scene("deng2017_table1_cold", ["bearing.clearance=C3"])
+    own = number_at(scene, "bearing.clearance")
+    assert own == pytest.approx(2.0 * scene.bearing.radial_clearance_at_low_points) and own > 0.0
+    assert "bearing.clearance" in {one.field for one in scene.uncertainty}
 
 
 def test_values_are_changed_by_path_and_checked_again():
@@ -297,7 +299,7 @@ def bands(*arguments):
 
 
 def test_the_command_tells_bands_shares_errors_and_sources(tmp_path):
-    found = bands("--samples", 12, "--json", "--csv", tmp_path / "points.csv", "--picture", tmp_path / "bands.png")
+    found = bands("--samples", 12, "--json", "--out", tmp_path / "points.csv", "--picture", tmp_path / "bands.png")
     assert found.exit_code == 0, found.output
     report = json.loads(found.stdout)
     assert (report["samples"], report["evaluations"], report["level"], report["seed"]) == (16, 16 * 8, "steady", 2017)
@@ -310,14 +312,14 @@ def test_the_command_tells_bands_shares_errors_and_sources(tmp_path):
     assert (tmp_path / "bands.png").stat().st_size > 20_000
     again = json.loads(bands("--samples", 16, "--json").stdout)
     assert again["cage_slip"] == slip and again["kept_from_before"] == 0, "the seed decides"
-    resumed = json.loads(bands("--samples", 16, "--json", "--csv", tmp_path / "points.csv").stdout)
+    resumed = json.loads(bands("--samples", 16, "--json", "--out", tmp_path / "points.csv").stdout)
     assert resumed["cage_slip"] == slip and resumed["kept_from_before"] == 16 * 8, "the study may replace its own file"
     before = (tmp_path / "points.csv").read_bytes()
-    other = bands("--samples", 16, "--seed", 1, "--csv", tmp_path / "points.csv")
+    other = bands("--samples", 16, "--seed", 1, "--out", tmp_path / "points.csv")
     assert other.exit_code == 2 and "points.csv exists and was not written by this study; --force replaces it" in other.output
     assert (tmp_path / "points.csv").read_bytes() == before
     (tmp_path / "points.csv").write_text("notes of the user")
-    edited = bands("--samples", 16, "--csv", tmp_path / "points.csv")
+    edited = bands("--samples", 16, "--out", tmp_path / "points.csv")
     assert edited.exit_code == 2 and (tmp_path / "points.csv").read_text() == "notes of the user"
 
 

@@ -563,7 +563,7 @@ def test_the_command_gives_ratio_error_parts_and_a_picture(outer, tmp_path):
     synthetic, _ = outer
     np.savez(tmp_path / "r.npz", acceleration=synthetic.vibration.samples.astype(np.float32), fs=RATE)
     arguments = (tmp_path / "r.npz", "--rollers", 13, "--speed", "3015rpm")
-    result = called(*arguments, "--every", "0.5s", "--csv", tmp_path / "r.csv", "--picture", tmp_path / "r.png", "--json")
+    result = called(*arguments, "--every", "0.5s", "--out", tmp_path / "r.csv", "--picture", tmp_path / "r.png", "--json")
     assert result.exit_code == 0, result.output
     found = json.loads(result.output)
     assert abs(found["cage_to_shaft"] - synthetic.ratio) < 3.0 * found["cage_to_shaft_standard_error"] and found["shows"] == "outer_ring"

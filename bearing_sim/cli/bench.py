@@ -79,7 +79,7 @@ def _print_references(references) -> None:
         names = ("slip_percent", "slip_standard_error", "settled_slip_change", "settled_load_change", "orbit_radius_um")
         return [found["level"], f"{found['speed_rpm']:.0f}", *[_number(found[name], ".4g") for name in names]]
 
-    columns = ("level", "rpm", "slip [%]", "+-", "change of slip [pp]", "of loads", "orbit [um]")
+    columns = ("level", "speed [rpm]", "slip [%]", "±", "change of slip [points]", "of loads", "orbit [µm]")
     title = "references: the level's own method at a tight tolerance, and its change from a less tight one"
     print_rows(title, columns, map(row, references), words=_WORDS)
 

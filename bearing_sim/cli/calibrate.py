@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import allow_outside_option, json_option, picture_option
+from bearing_sim.cli.options import allow_outside_option, channel_sources, json_option, log_options, picture_option, set_option
 from bearing_sim.cli.outputs import OutputFile, WritingCommand
 from bearing_sim.cli.reporting import (
     UsageError,
@@ -28,7 +28,7 @@ _UNLIKELY = 0.01
 @click.argument("log", type=click.Path(path_type=Path), metavar="RUN.mcap")
 @allow_outside_option
 @click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file [default: the scene in the recording].")
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field or a range of the scene; can be repeated.")
+@set_option
 @click.option("--fit", "fields", multiple=True, metavar="FIELD", help="Fit this field; can be repeated [default: lubricant.mixture_fraction].")
 @click.option("--batch", type=click.FloatRange(min=0.01), metavar="S", help="Length of the averaged blocks [default: 1 s, less for short runs].")
 @click.option(
@@ -38,17 +38,18 @@ _UNLIKELY = 0.01
     "-o", "--out", type=OutputFile(".yaml", ".yml"), metavar="SCENE.yaml", help="Write the scene with the fitted values and their intervals."
 )
 @picture_option("Draw measured and predicted slip")
-@click.option("--speed-topic", metavar="TOPIC", help="Topic of the shaft speed [default: /shaft_speed].")
-@click.option("--load-topic", metavar="TOPIC", help="Topic of the radial load [default: /radial_load].")
-@click.option("--temperature-topic", metavar="TOPIC", help="Topic of the oil temperature [default: /oil_temperature, if present].")
-@click.option("--cage-topic", metavar="TOPIC", help="Topic of the measured cage speed [default: /cage_speed_measured].")
-@click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="Name of the shaft's joint in JointState messages.")
+@log_options
+@click.option(
+    "--cage",
+    "--cage-topic",
+    "cage",
+    metavar="TOPIC",
+    help="Measured cage speed: /topic, or /topic.field[0] of any type, in the unit of --speed-unit [default: /cage_speed_measured].",
+)
 @click.option("--cage-joint", default="cage", show_default=True, metavar="NAME", help="Name of the cage's joint in JointState messages.")
-@click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Use header stamps or log times.")
 @json_option
 def calibrate(
-    log, scene_name, overrides, fields, batch, confidence, out, picture, speed_topic, load_topic, temperature_topic, cage_topic, joint, cage_joint,
-    stamps, as_json,
+    log, scene_name, overrides, fields, batch, confidence, out, picture, cage, joint, cage_joint, stamps, longest_gap, as_json, **channels
 ):  # fmt: skip
     """Fit fields of a scene to the cage speed measured in RUN.mcap, within their ranges in the scene's block `uncertainty`.
 
@@ -57,8 +58,7 @@ def calibrate(
     """
     scene = _scene(log, scene_name, overrides)
     warn_of_scene(scene, before_results=False)
-    names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic, "cage_speed_measured": cage_topic}
-    measured, lines, unknown = _measured(log, scene, names, joint, stamps, cage_joint)
+    measured, lines, unknown = _measured(log, scene, channels, cage, joint, stamps, cage_joint, longest_gap)
     announce_compilation(scene)
     from bearing_sim.studies.calibration import CalibrationError, block_length, calibrate, cut
 
@@ -97,17 +97,20 @@ def _scene(log, scene_name, overrides):
         return scene_from_yaml(scene_to_yaml(recorded), overrides, origin=f"{log}: scene in the metadata")
 
 
-def _measured(log, scene, names, joint, stamps, cage_joint):
+def _measured(log, scene, channels, cage, joint, stamps, cage_joint, longest_gap):
     """Return the measured data, table rows that say where they come from, and for how long inputs are unknown."""
     import math
 
-    from bearing_sim.inputs.log import REQUIRED, InputLogError, read_input_log, summary_lines
+    from bearing_sim.inputs.log import REQUIRED, InputLogError, read_input_log, source, summary_lines
     from bearing_sim.messages.topics import MEASURED
     from bearing_sim.studies.calibration import Measured
 
-    with as_usage_error(InputLogError), as_file_error():
-        recorded = read_input_log(log, names, joint, stamps, cage_joint, (*REQUIRED, MEASURED))
-        course = judged(recorded, scene)
+    names, constants = channel_sources(**channels)
+    with as_usage_error(InputLogError, ValueError), as_file_error():
+        if cage is not None:
+            names[MEASURED] = source(MEASURED, cage, channels["speed_unit"])
+        recorded = read_input_log(log, names, joint, stamps, cage_joint, (*REQUIRED, MEASURED), constants)
+        course = judged(recorded, scene, longest_gap)
     inputs = course.at(course.instants, math.nan)  # NaN: the scene's own temperature, which may be a fitted field
     gaps = [(begin * 1e-9, end * 1e-9) for begin, end in course.gaps]
     lines = [*(("log", line) for line in summary_lines(recorded)), ("used", course.tally.counts)]

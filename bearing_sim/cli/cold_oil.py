@@ -15,13 +15,14 @@ from bearing_sim.cli.reporting import (
     quantity_of,
     warn_of_scene,
 )
+from bearing_sim.scene.display import force, number
 
 
 @click.command("cold-oil", cls=WritingCommand)
 @scene_argument
 @set_option
 @click.option("--supply", "supplies", multiple=True, help="Supply of oil; can be repeated  [default: oil_bath, circulating, oil_jet].")
-@click.option("--temperature", "temperatures", multiple=True, metavar="VALUE", help="Oil temperature; can be repeated  [default: 0 to 80 degC].")
+@click.option("--temperature", "temperatures", multiple=True, metavar="VALUE", help="Oil temperature; can be repeated  [default: 0 to 80 °C].")
 @click.option("--load", "loads", multiple=True, metavar="VALUE", help="Radial load; can be repeated  [default: 0.08 to 3 times the minimum load].")
 @picture_option("Draw the map")
 @json_option
@@ -58,21 +59,24 @@ def cold_oil(scene_name, overrides, supplies, temperatures, loads, picture, as_j
     for supply in dict.fromkeys(point.supply for point in found.points):
         columns = [point.celsius for point in found.skid_loads if point.supply == supply]
         rows = [
-            (f"{load:.4g} N", *(_slips(point) for point in found.points if (point.supply, point.load) == (supply, load)))
+            (force(load), *(_slips(point) for point in found.points if (point.supply, point.load) == (supply, load)))
             for load in dict.fromkeys(point.load for point in found.points)
         ]
-        rows.append(("skid load", *(f"{each.load:.4g} N" for each in found.skid_loads if each.supply == supply)))
-        title = f"{scene.name}, {supply}: cage slip [%], and from a skid where that differs; minimum load {found.minimum_load:.4g} N"
-        print_rows(title, ("load", *(f"{each:g} degC" for each in columns)), rows)
+        rows.append(("skid load", *(force(each.load) for each in found.skid_loads if each.supply == supply)))
+        title = f"{scene.name}, {supply}: cage slip [%], and from a skid where that differs; minimum load {force(found.minimum_load)}"
+        print_rows(title, ("load", *(f"{number(each)} °C" for each in columns)), rows)
     rows = [(one.claim, one.figures, {True: "yes", False: "no", None: "no case"}[one.holds]) for one in told]
     print_rows("published trends", ("trend", "figures", "holds"), rows, words=("trend", "figures"))
     if run_up:
-        rows = [(each.supply, f"{each.load:.4g} N", f"{each.celsius:g} degC", f"{each.seconds:g} s", f"{100 * each.slip:.3g} %") for each in run_up]
+        rows = [
+            (each.supply, force(each.load), f"{number(each.celsius)} °C", f"{number(each.seconds)} s", f"{number(100 * each.slip, 3)} %")
+            for each in run_up
+        ]
         print_rows("slip after a run-up from rest", ("supply", "load", "oil", "run-up", "cage slip"), rows, words=("supply",))
     if picture is not None:
         click.echo(picture.path)
 
 
 def _slips(point) -> str:
-    rolling, skid = f"{100 * point.rolling:.3g}", f"{100 * point.skid:.3g}"
+    rolling, skid = number(100 * point.rolling, 3), number(100 * point.skid, 3)
     return rolling if rolling == skid else f"{rolling} / {skid}"

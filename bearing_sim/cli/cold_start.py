@@ -20,6 +20,7 @@ from bearing_sim.cli.reporting import (
     seconds_of,
     warn_of_scene,
 )
+from bearing_sim.scene.display import force, number
 
 
 @click.command("cold-start", cls=WritingCommand)
@@ -71,8 +72,8 @@ def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise, 
         print_json(_report(scene, found))
         return
     for load in dict.fromkeys(course.load for course in found.courses):
-        share = f"{100 * load / found.minimum_load:.3g} % of the minimum load"
-        _print_course(f"{scene.name}: idling under {load:.4g} N, {share}, then {found.loaded:.4g} N", found, load)
+        share = f"{number(100 * load / found.minimum_load, 3)} % of the minimum load"
+        _print_course(f"{scene.name}: idling under {force(load)}, {share}, then {force(found.loaded)}", found, load)
     if picture is not None:
         click.echo(picture.path)
 
@@ -108,8 +109,8 @@ def _print_course(title, found, load) -> None:
         slips = f"{100 * at.cage_slip:.3g}", f"{100 * beside.cage_slip:.3g}"
         rows.append((f"{at.time / 60:.3g}", *slips, *films, f"{at.sliding_power:.3g}", *warmth))
     parts = ("shaft", "inner", "rollers", "outer", "housing", "oil")
-    columns = ("min", "slip, %", "from rolling", "film, um", "left, %", "asperities, %", "sliding, W", *parts)
-    print_rows(f"{title}; temperatures in degC", columns, rows)
+    columns = ("time [min]", "slip [%]", "slip from rolling [%]", "film [µm]", "film left [%]", "asperities [%]", "sliding [W]", *parts)
+    print_rows(f"{title}; temperatures in °C", columns, rows)
     rows = [
         (
             f"{each.time / 60:.3g}",
@@ -124,5 +125,8 @@ def _print_course(title, found, load) -> None:
         for each in found.loadings
         if each.load == load
     ]
-    columns = ("min", "from", "slip, %", "worst contact idling, W", "as the load comes, W", "W/mm^2", "energy, J", "rolls after, s")
+    columns = (
+        *("time [min]", "from", "slip [%]", "worst contact idling [W]", "as the load comes [W]", "intensity [W/mm²]", "energy [J]"),
+        "rolls after [s]",
+    )
     print_rows("if the load comes at that time; the last lines: if a warm machine has idled again", columns, rows, words=("from",))

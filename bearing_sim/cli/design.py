@@ -16,6 +16,7 @@ from bearing_sim.cli.reporting import (
     command_line,
     print_json,
     print_rows,
+    quantity_of,
     warn,
 )
 
@@ -109,7 +110,7 @@ def design(
         axes = list(studied.default_axes(scene))
         for place, (path, text) in enumerate(((studied.LOW, radii), (studied.D_VALUE, d_values))):
             if text is not None:
-                axes[place] = read_axis(f"{path}={text}")
+                axes[place] = read_axis(f"{path}={text}", written=True)
     limits = _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tolerances, points, points_file)
     verify_level = _verify_level(verify_level, scene)
     raceways = Points("raceways", 0)
@@ -150,7 +151,6 @@ def _check_design(scene, has_points) -> None:
 
 
 def _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tolerances, points, points_file):
-    from bearing_sim.scene.quantity import to_si
     from bearing_sim.studies.design import Limits
     from bearing_sim.sweep.conditions import Conditions, PointError, read_point, read_points, read_tolerance
 
@@ -161,10 +161,7 @@ def _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tole
         ("--speed-tolerance", speed_tolerance, "", 1.0, 0.5),
         ("--load-tolerance", load_tolerance, "", 1.0, 0.9),
     ):
-        try:
-            value = factor * to_si(text, unit)
-        except ValueError as error:
-            raise UsageError(f"{name} {text}: {error}") from None
+        value = factor * quantity_of(name, text, unit)
         if not 0.0 <= value <= most:
             raise UsageError(f"{name} {text}: expected 0 to {most / factor:g}{f' {unit}' if unit else ''}")
         found.append(value)
@@ -263,7 +260,7 @@ def _print_design(report) -> None:
 
 
 def _print_bands(condition, bands, level, verify_level) -> None:
-    columns = ["D, mm", f"R_low at {level}, mm", "bound by"]
+    columns = ["D [mm]", f"R_low at {level} [mm]", "bound by"]
     rows = []
     for band in bands:
         row = [f"{band['d_value']:.4f}", f"{band['low_from']:.5f} to {band['low_to']:.5f}", f"{band['below_by']}, {band['above_by']}"]
@@ -273,8 +270,8 @@ def _print_bands(condition, bands, level, verify_level) -> None:
             row.append(band["verdict"])
         rows.append(row)
     if verify_level:
-        columns += [f"verified at {verify_level}, mm", "bound by", "verdict"]
-    print_rows(condition, columns, rows, words=("bound by", "verdict"), whole=columns)
+        columns += [f"verified at {verify_level} [mm]", "bound by", "verdict"]
+    print_rows(condition, columns, rows, words=("bound by", "verdict"))
 
 
 def _print_checks(report) -> None:
@@ -305,5 +302,5 @@ def _print_checks(report) -> None:
         for check in report["checks"]
         if (check["kind"], check["d_value"]) == (kind, d_value)
     ]
-    columns = ("raceway", "R_low, mm", f"slip at {level}, %", f"at {verify_level}", f"life at {level}, h", f"at {verify_level} ", "verdict")
+    columns = ("raceway", "R_low [mm]", f"slip at {level} [%]", f"at {verify_level}", f"life at {level} [h]", f"at {verify_level} ", "verdict")
     print_rows(f"both levels at D = {d_value:.4f} mm, {kind} (the others are in the table of checks)", columns, rows, words=("raceway", "verdict"))

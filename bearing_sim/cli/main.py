@@ -56,6 +56,7 @@ _COMMANDS = {
     "run": Entry("run:run", "Run a scene under constant conditions."),
     "replay": Entry("replay:replay", "Run the model on a recorded log of shaft speed and radial load."),
     "replay-fleet": Entry("fleet:replay_fleet", "Run the model on many logs at once, one bearing each, into a table."),
+    "spectrum": Entry("spectrum:spectrum", "Compute the life under a load spectrum: a table of shares of time, or a long log in classes."),
     "import-csv": Entry("logs:import_csv", "Convert a measured table to an MCAP log."),
     "loads": Entry("bearings:loads", "Show a scene's load distribution over rollers and slices, and the lives."),
     "catalog": Entry("catalog:catalog", "List the bearings of the catalogue, or show one by its designation."),
@@ -81,6 +82,7 @@ _COMMANDS = {
     "state": Entry("main:state", "Show, export and fill the stored states of bearings in service."),
     "view": Entry("view:view", "Show a recording in rerun."),
     "mission": Entry("logs:mission", "Write the bundled synthetic mission as an MCAP log."),
+    "fields": Entry("fields:fields", "Show the fields of a scene: unit, range, default and meaning."),
     "scenes": Entry("bearings:scenes", "List the bundled scenes, bearings and oils."),
 }
 

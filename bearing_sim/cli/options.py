@@ -1,19 +1,37 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Options and arguments that several commands have."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import click
 
 from bearing_sim.cli.outputs import OutputFile, OutputTable
-from bearing_sim.cli.reporting import as_usage_error
+from bearing_sim.cli.reporting import UsageError, as_usage_error
 from bearing_sim.files.outside import OPTION, allowing_outside
 from bearing_sim.scene.fidelity import LEVELS
 
 PICTURES = (".png", ".svg", ".pdf")
 
 level_type = click.Choice(LEVELS)
-set_option = click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; can be repeated.")
+
+
+def _with_units(context: click.Context, parameter: click.Parameter, overrides: Sequence[str]) -> Sequence[str]:
+    """Return the overrides of a scene; a quantity without a unit is refused."""
+    from bearing_sim.scene.loader import SceneError, require_units
+
+    with as_usage_error(SceneError):
+        require_units(overrides)
+    return overrides
+
+
+set_option = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="FIELD=VALUE",
+    callback=_with_units,
+    help="Override a field of the scene, or its range (uncertainty.FIELD); can be repeated. See: bearing-sim fields.",
+)
 verbose_option = click.option("--verbose", is_flag=True, help="Also print limits of validity that are passed without effect, and assumptions.")
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 quick_option = click.option("--quick", is_flag=True, help="Measure almost nothing, to check that everything works.")
@@ -132,7 +150,39 @@ def table_option(default: str, beside: str, *parts: str) -> Callable:
 
 def csv_option(written: str) -> Callable:
     """Return the option for the path of a CSV table; ``written`` is its help."""
-    return click.option("--csv", "table", type=OutputFile(), metavar="PATH.csv", help=written)
+    return csv_option_of(OutputFile(), written)
+
+
+def csv_option_of(kind: OutputFile, written: str) -> Callable:
+    """Return the option for the path of a CSV table of a type of output; ``written`` is its help."""
+
+    def add(command: Callable) -> Callable:
+        return click.option("-o", "--out", "table", type=kind, metavar="PATH.csv", help=written)(removed_option("--csv", "-o, --out")(command))
+
+    return add
+
+
+def removed_option(name: str, successor: str) -> Callable:
+    """Return an option that no longer exists, and whose use is refused with what it is called now."""
+
+    def refuse(context: click.Context, parameter: click.Parameter, value: str | None) -> None:
+        if value is not None:
+            raise UsageError(f"{name} is no longer an option; give {successor} instead")
+
+    return click.option(name, hidden=True, expose_value=False, callback=refuse)
+
+
+def _read_size(context: click.Context, parameter: click.Parameter, text: str) -> tuple[int, int]:
+    """Return width and height [px] of a text such as ``1600x1000``."""
+    parts = text.lower().split("x")
+    if len(parts) != 2 or not all(part.isdigit() and 100 <= int(part) <= 8000 for part in parts):
+        raise UsageError(f"--size {text}: expected WIDTHxHEIGHT in pixels, 100 to 8000 each, such as 1600x1000")
+    return int(parts[0]), int(parts[1])
+
+
+size_option = click.option(
+    "--size", default="1600x1000", show_default=True, metavar="WxH", callback=_read_size, help="Size of a picture of the view [px]."
+)
 
 
 def picture_option(drawn: str, *names: str) -> Callable:

@@ -232,7 +232,7 @@ def _print_comparison(first, second, differences, skipped, agree) -> None:
         counts = str(difference.matched), alone, str(difference.differing)
         rows.append((difference.topic, *counts, *numbers, f"{difference.tolerance:g}", *where, verdict))
     columns = ("topic", "messages", "alone", "differing", "largest", "over magnitude", "tolerance", "in", "after [s]", "")
-    print_rows(f"{first} against {second}", columns, rows, words=("topic", "in", ""), width=170, whole=("topic",))
+    print_rows(f"{first} against {second}", columns, rows, words=("topic", "in", ""), width=170)
     if skipped:
         click.echo(f"not compared: {', '.join(skipped)}")
     click.echo("the recordings agree" if agree else "the recordings differ")

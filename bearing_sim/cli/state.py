@@ -9,6 +9,7 @@ from bearing_sim.cli.options import allow_outside_option, json_option, set_optio
 from bearing_sim.cli.outputs import OutputFile, WritingCommand
 from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_table, tell_use
 from bearing_sim.files.outputs import remember_input
+from bearing_sim.scene.display import number
 
 _TABLES = (".csv", ".parquet")
 _state_argument = click.argument("name", metavar="STATE")
@@ -72,16 +73,16 @@ def _rows(path: Path, state) -> list[tuple[str, str]]:
     rows = [
         ("file", f"{path}, write {state.writes}" + (f" of {time_text(state.written_ns)}" if state.written_ns else "")),
         ("bearing", f"{state.identity.get('bearing.name', 'not known yet')} in the scene {state.identity.get('name', 'not known yet')}"),
-        ("life used", f"{100.0 * totals.damage:.6g} %; by the basic rating life {100.0 * totals.basic_damage:.6g} %"),
-        ("running", f"{totals.running_seconds / 3600.0:.6g} h of {totals.monitored_seconds / 3600.0:.6g} h monitored"),
-        ("revolutions", f"{totals.revolutions:.6g}"),
+        ("life used", f"{number(100.0 * totals.damage, 6)} %; by the basic rating life {number(100.0 * totals.basic_damage, 6)} %"),
+        ("running", f"{number(totals.running_seconds / 3600.0, 6)} h of {number(totals.monitored_seconds / 3600.0, 6)} h monitored"),
+        ("revolutions", number(totals.revolutions, 6)),
         ("starts", str(totals.starts)),
         *_regimes(totals),
     ]
     if totals.largest_slip is not None:
-        rows.append(("largest slip", f"{100.0 * totals.largest_slip.value:.4g} % on {time_text(totals.largest_slip.time_ns)}"))
+        rows.append(("largest slip", f"{number(100.0 * totals.largest_slip.value)} % on {time_text(totals.largest_slip.time_ns)}"))
     if totals.lowest_clearance is not None:
-        rows.append(("lowest clearance", f"{1e6 * totals.lowest_clearance.value:.4g} um on {time_text(totals.lowest_clearance.time_ns)}"))
+        rows.append(("lowest clearance", f"{number(1e6 * totals.lowest_clearance.value)} µm on {time_text(totals.lowest_clearance.time_ns)}"))
     stretches = state.covered.stretches
     if stretches:
         rows.append(("counted", f"{time_text(stretches[0][0])} to {time_text(stretches[-1][1])}, with {len(stretches) - 1} gaps"))
@@ -95,7 +96,7 @@ def _rows(path: Path, state) -> list[tuple[str, str]]:
         rows.append(
             (
                 "temperatures",
-                f"of {time_text(state.thermal.time_ns)}: " + ", ".join(f"{kelvin - ZERO_CELSIUS:.1f} degC" for kelvin in state.thermal.nodes),
+                f"of {time_text(state.thermal.time_ns)}: " + ", ".join(f"{kelvin - ZERO_CELSIUS:.1f} °C" for kelvin in state.thermal.nodes),
             )
         )
     if state.retired_ns is not None:
@@ -118,7 +119,7 @@ def _regimes(totals) -> list[tuple[str, str]]:
     def hours(seconds, bounds, factor=1.0, unit=""):
         edges = [f"{factor * bound:g}{unit}" for bound in bounds]
         names = [f"below {edges[0]}", *(f"{low} to {high}" for low, high in zip(edges, edges[1:])), f"from {edges[-1]}", "unknown"]
-        return ", ".join(f"{name} {each / 3600.0:.4g} h" for name, each in zip(names, seconds) if each) or "none"
+        return ", ".join(f"{name} {number(each / 3600.0)} h" for name, each in zip(names, seconds) if each) or "none"
 
     return [
         ("running at slip", hours(totals.slip_seconds, SLIP_BOUNDS, 100.0, " %")),
@@ -180,10 +181,10 @@ def merge(name, recordings, as_json):
         print_json({"state": str(path), "damage": state.totals.damage, "merged": {run: each._asdict() for run, each in filled.items()}})
         return
     rows = [
-        (run, f"{each.recorded:.6g} s recorded, {each.added:.6g} s of them were missing: {100.0 * each.damage:.6g} % of life")
+        (run, f"{number(each.recorded, 6)} s recorded, {number(each.added, 6)} s of them were missing: {number(100.0 * each.damage, 6)} % of life")
         for run, each in filled.items()
     ]
-    print_table(f"merged into {path}", [*rows, ("life used", f"{100.0 * state.totals.damage:.6g} %")])
+    print_table(f"merged into {path}", [*rows, ("life used", f"{number(100.0 * state.totals.damage, 6)} %")])
 
 
 @click.command("adopt")

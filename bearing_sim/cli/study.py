@@ -6,7 +6,6 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.lives import temperature_report, temperature_rows
 from bearing_sim.cli.options import (
     allow_outside_option,
     csv_option,
@@ -16,6 +15,7 @@ from bearing_sim.cli.options import (
     picture_option,
     scene_argument,
     set_option,
+    size_option,
 )
 from bearing_sim.cli.outputs import OutputFolder, OutputJournal, OutputTable, WritingCommand
 from bearing_sim.cli.reporting import (
@@ -26,18 +26,21 @@ from bearing_sim.cli.reporting import (
     as_failed_run,
     as_file_error,
     as_usage_error,
+    column_texts,
     command_line,
     judged,
     print_json,
     print_rows,
     print_table,
     progress_bar,
+    quantity_of,
     seconds_of,
     unknown_report,
     warn_of_scene,
     write_csv,
 )
 from bearing_sim.files.outputs import Output
+from bearing_sim.scene.display import number as number_text
 
 
 def _write(table, rows, picture, draw) -> None:
@@ -127,7 +130,7 @@ def _print_damage(log, name, found) -> None:
         rows.append((*where, *numbers, f"{window.planar / window.slip:.3f}" if window.slip > 0.0 else ""))
     rows.append(("windows", "", "", *(f"{1e6 * value:.4g}" for value in sums), f"{sums[2] / sums[1]:.3f}" if sums[1] > 0.0 else ""))
     rows.append(("whole", "", "", f"{1e6 * found.steady:.6g}", f"{1e6 * found.slip:.6g}", "", ""))
-    columns = ("from, s", "rpm", "N", "steady", "slip", "planar", "planar/slip")
+    columns = ("from [s]", "speed [rpm]", "load [N]", "steady", "slip", "planar", "planar/slip")
     print_rows(f"{log.name}, {name}: damage in millionths of the life, by level", columns, rows)
 
 
@@ -164,7 +167,7 @@ def misalignment(scene_name, overrides, largest, points, crowns, slices, table, 
     with progress_bar("points", points * len(crowns)) as show, as_usage_error(SceneError, ValueError), as_failed_run(IntegrationError):
         found = misalign(scene_name, overrides, amounts, crowns, slices, progress=lambda name: show(next(done)))
     rows = [_row(one) for one in found]
-    title = f"{scene_name} {' '.join(overrides)}: misalignment of the inner ring, {slices} laminae"
+    title = f"{' '.join([scene_name, *overrides])}: misalignment of the inner ring, {slices} laminae"
     _write(table, rows, picture, lambda draft: draw(draft, title, found))
     if as_json:
         print_json({"scene": scene_name, "slices": slices, "points": rows})
@@ -190,12 +193,12 @@ def _row(one) -> dict:
 
 def _print_misalignment(name, rows) -> None:
     pressures, angles, lives = (
-        ("largest, MPa", "inner edge, MPa", "outer edge, MPa"),
-        ("tilt, mrad", "skew, mrad"),
-        ("life, h", "L10r, h", "L10r, no slip, h"),
+        ("largest [MPa]", "inner edge [MPa]", "outer edge [MPa]"),
+        ("tilt [mrad]", "skew [mrad]"),
+        ("life [h]", "L10r [h]", "L10r, no slip, h"),
     )
-    texts = [(crown, *(format(number, ".4g") for number in numbers)) for crown, *numbers in (row.values() for row in rows)]
-    columns = ("crown", "mrad", "slip, %", *pressures, *angles, *lives)
+    texts = [(crown, *(number_text(number) for number in numbers)) for crown, *numbers in (row.values() for row in rows)]
+    columns = ("crown", "misalignment [mrad]", "slip [%]", *pressures, *angles, *lives)
     print_rows(f"{name}: misalignment of the inner ring, level spatial", columns, texts, words=("crown",))
     click.echo("pressures, tilt and skew: time average of the largest value at each instant; no slip: life by slices in quasi-static equilibrium")
 
@@ -235,8 +238,8 @@ def support(scene_name, overrides, lowest, highest, points, level, table, pictur
     if as_json:
         print_json({"scene": scene_name, "level": level, "points": rows})
     else:
-        columns = ("model", "rpm", "slip, %", "largest load, N", "ring moves, um", "outer ring, um", "damage/slip's", "support, W")
-        texts = [(row["model"], *(format(number, ".4g") for number in list(row.values())[1:])) for row in rows]
+        columns = ("model", "speed [rpm]", "slip [%]", "largest load [N]", "ring moves [µm]", "outer ring [µm]", "damage/slip's", "support [W]")
+        texts = [(row["model"], *(number_text(number) for number in list(row.values())[1:])) for row in rows]
         print_rows(f"{scene_name}: response over speed, level {level}", columns, texts, words=("model",))
 
 
@@ -274,8 +277,8 @@ def resonances(scene_name, overrides, lowest, highest, points, level, table, pic
     if as_json:
         print_json({"scene": scene_name, "level": level, "points": rows})
     else:
-        columns = ("rpm", "over passage", "multiplier", "nearby", "slip, %", "life, h", "state")
-        texts = [tuple(cell if isinstance(cell, str) else format(cell, ".4g") for cell in _resonance_cells(row)) for row in rows]
+        columns = ("speed [rpm]", "over passage", "multiplier", "nearby", "slip [%]", "life [h]", "state")
+        texts = [tuple(cell if isinstance(cell, str) else number_text(cell) for cell in _resonance_cells(row)) for row in rows]
         print_rows(f"{scene_name}: the inner ring on its rollers over speed, level {level}", columns, texts, words=("over passage", "state"))
 
 
@@ -312,9 +315,9 @@ def _response_row(one, relative) -> dict:
 
 
 @click.command("situations", cls=WritingCommand)
-@click.option("--out", type=OutputFolder(), required=True, metavar="FOLDER", help="Folder for NAME.rrd and NAME.png.")
+@click.option("-o", "--out", type=OutputFolder(), required=True, metavar="FOLDER", help="Folder for NAME.rrd and NAME.png.")
 @click.option("--only", "names", multiple=True, metavar="NAME", help="Run only this situation; can be repeated.")
-@click.option("--size", type=(int, int), default=(1600, 1000), show_default=True, metavar="W H", help="Size of the pictures [px].")
+@size_option
 @click.option("--pictures/--no-pictures", default=True, show_default=True, help="Pictures need a Vulkan driver; a software driver is sufficient.")
 @json_option
 def situations(out, names, size, pictures, as_json):
@@ -446,10 +449,21 @@ def slices(scene_name, overrides, settle, duration, as_json):
 
 
 def _print_slices(name, found) -> None:
-    columns = ("slices", "slip, %", "largest load, N", "life, h", "L10r, h", "edge, MPa", "static: MPa", "L10r, h", "us per step", "x real time")
+    columns = (
+        "slices",
+        "slip [%]",
+        "largest load [N]",
+        "life [h]",
+        "L10r [h]",
+        "edge [MPa]",
+        "static pressure [MPa]",
+        "L10r [h]",
+        "time per step [µs]",
+        "x real time",
+    )
     rows = []
     for one in found:
-        lives = [format(value, ".4g") for value in (one.inner_load, one.rating_life, one.l10r, 1e-6 * one.edge_pressure)]
+        lives = [number_text(value) for value in (one.inner_load, one.rating_life, one.l10r, 1e-6 * one.edge_pressure)]
         still = ("-", "-") if one.slices is None else (f"{1e-6 * one.static_pressure:.5g}", f"{one.static_l10r:.4g}")
         rows.append(
             (str(one.slices or "quadrature"), f"{100 * one.slip:.4g}", *lives, *still, f"{1e6 * one.step_seconds:.3g}", f"{one.real_time_factor:.3g}")
@@ -461,7 +475,9 @@ def _print_slices(name, found) -> None:
 @allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", required=False)
 @set_option
-@click.option("--series", metavar="SERIES", help="Series of SCENE's bearing: 10, 2, 3, 22 or 23 [default: that in its name].")
+@click.option(
+    "--series", metavar="SERIES", help="Series of SCENE's bearing: 10, 2, 3, 4, 22, 23, or NCF 22, NCF 29, NCF 30 [default: by its designation]."
+)
 @csv_option("Write all operating points to a table.")
 @json_option
 def friction(scene_name, overrides, series, table, as_json):
@@ -472,9 +488,11 @@ def friction(scene_name, overrides, series, table, as_json):
     a second table has the speeds at which friction reaches the standard's heat flow, against those that makers print, and a third one rolling and
     sliding against SKF's friction model, from mixed friction to thick films.
     """
+    from bearing_sim.scene.display import force, number, power
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError
     from bearing_sim.studies.friction import SERIES, compare, series_of
+    from bearing_sim.studies.sheet import temperatures, temperatures_text
 
     announce_compilation()
     if scene_name is None:
@@ -485,15 +503,16 @@ def friction(scene_name, overrides, series, table, as_json):
         return
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
-    series = series or series_of(scene.bearing.name)
+    series = " ".join(series.upper().split()) if series else series_of(scene.bearing.designation or scene.bearing.name)
     if series not in SERIES:
-        raise UsageError(f"--series: makers' factors are known for series {', '.join(SERIES)}; name that of {scene.bearing.name!r}")
+        named = scene.bearing.designation or scene.bearing.name
+        raise UsageError(f"--series: makers publish constants for series {', '.join(SERIES)}; name that of {named!r}, or the nearest")
     warn_of_scene(scene, before_results=False)
     with as_usage_error(ValueError), as_failed_run(IntegrationError):
         found = compare(scene, series)
-    temperatures = temperature_report(found.temperatures)
+    warm = temperatures(found.temperatures)
     if as_json:
-        print_json({"scene": scene.name, **found._replace(temperatures=temperatures)._asdict()})
+        print_json({"scene": scene.name, **found._replace(temperatures=warm)._asdict()})
         return
     rows = (
         ("model", found.model),
@@ -502,9 +521,10 @@ def friction(scene_name, overrides, series, table, as_json):
         ("SKF's friction model", found.skf),
         ("coefficient 0.0011", found.coefficient),
     )
-    title = f"{scene.name}: friction at {abs(scene.operating.shaft_speed) * 30 / math.pi:.6g} rpm and {scene.operating.radial_load:.6g} N"
-    warmth = [*temperature_rows(temperatures), ("viscosity", f"{found.viscosity:.4g} mm^2/s in the contacts")]
-    print_table(title, [(name, f"{watts:.4g} W") for name, watts in rows] + warmth)
+    title = f"{scene.name}: friction at {number(abs(scene.operating.shaft_speed) * 30 / math.pi, 6)} rpm and {force(scene.operating.radial_load)}"
+    known = [("temperatures", words)] if (words := temperatures_text(warm)) else []
+    warmth = [*known, ("viscosity", f"{number(found.viscosity)} mm²/s in the contacts")]
+    print_table(title, [(name, power(watts)) for name, watts in rows] + warmth)
 
 
 def _friction_of_catalogue(overrides, table, as_json) -> None:
@@ -577,7 +597,7 @@ def _print_films(films) -> None:
 
     rows = [(f"{one.kappa:g}", *(shown(each) for each in (one.whole, one.rolling, one.sliding)), shown(one.slip, 100.0, ".2g")) for one in films]
     title = f"friction over SKF's friction model by film ratio: median (5 to 95 %) of {films[0].count} points, loads from 0.02 to 0.3 C"
-    print_rows(title, ("kappa", "whole moment", "rolling over M_rr", "sliding over M_sl", "cage slip, %"), rows)
+    print_rows(title, ("kappa", "whole moment", "rolling over M_rr", "sliding over M_sl", "cage slip [%]"), rows)
 
 
 @click.command("scenes", cls=WritingCommand)
@@ -605,7 +625,7 @@ def scenes(count, level, seed, at_most, journal, workers, as_json):
         return
     print_table(f"{count} random scenes at level {level}", [(status, str(number)) for status, number in sorted(report.counts.items())])
     if report.others:
-        columns = ("designation", "oil", "supply", "degC", "rpm", "N", "status", "what it does")
+        columns = ("designation", "oil", "supply", "temperature [°C]", "speed [rpm]", "load [N]", "status", "what it does")
         print_rows("scenes that did not settle", columns, [[*map(str, one), status, why] for one, status, why in report.others], words=columns)
 
 
@@ -691,7 +711,6 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as
     from pydantic_core import ValidationError
 
     from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.scene.quantity import to_si
     from bearing_sim.sweep.grid import FieldError, read_axis
 
     with as_usage_error(SceneError):
@@ -702,10 +721,13 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as
     from bearing_sim.sweep.table import require_same_study, study_digest, write_table
 
     operating = scene.operating
-    defaults = (SPEED, speeds or _from_to(operating.shaft_speed, 0.2, 1.2, 9)), (LOAD, loads or _from_to(operating.radial_load, 0.5, 3.5, 7))
+    defaults = (
+        (SPEED, speeds or _from_to(operating.shaft_speed, 0.2, 1.2, 9, "rad/s")),
+        (LOAD, loads or _from_to(operating.radial_load, 0.5, 3.5, 7, "N")),
+    )
     with as_usage_error(FieldError, ValueError):
-        grid = [sorted(read_axis(f"{field}={text}").values) for field, text in defaults]
-        least = to_si(life_above, "h")
+        grid = [sorted(read_axis(f"{field}={text}", written=True).values) for field, text in defaults]
+        least = quantity_of("--life-above", life_above, "h")
     files, study = [], study_digest("clearance", scene, grid, least)
     if out is not None:
         require_same_study(out, study)
@@ -732,8 +754,8 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as
         click.echo(", ".join(map(str, files)))
 
 
-def _from_to(value: float, low: float, high: float, count: int) -> str:
-    return f"{low * value!r}:{high * value!r}:{count}"
+def _from_to(value: float, low: float, high: float, count: int, unit: str) -> str:
+    return f"{low * value!r} {unit}:{high * value!r} {unit}:{count}"
 
 
 def _title(scene, overrides) -> str:
@@ -741,33 +763,30 @@ def _title(scene, overrides) -> str:
     return f"{' '.join([scene.name, *overrides])}: {warmth}"
 
 
-_CLEARANCE_SHOWN = {
-    "operating.shaft_speed": "rpm",
-    "operating.radial_load": "N",
-    "running_clearance": "running clearance, um",
-    "fit_clearance": "fits",
-    "rotation_clearance": "rotation",
-    "heat_clearance": "heat",
-    "shaft_temperature": "shaft, degC",
-    "inner_ring_temperature": "inner ring",
-    "roller_temperature": "rollers",
-    "outer_ring_temperature": "outer ring",
-    "oil_outlet_temperature": "oil out",
-    "seat_pressure": "seat, MPa",
-    "cage_slip": "slip, %",
-    "life": "life, h",
-    "loss": "loss, W",
-    "status": "status",
-}
+_CLEARANCE_SHOWN = (
+    "operating.shaft_speed",
+    "operating.radial_load",
+    "running_clearance",
+    "fit_clearance",
+    "rotation_clearance",
+    "heat_clearance",
+    "shaft_temperature",
+    "inner_ring_temperature",
+    "roller_temperature",
+    "outer_ring_temperature",
+    "oil_outlet_temperature",
+    "seat_pressure",
+    "cage_slip",
+    "life",
+    "loss",
+    "status",
+)
 
 
 def _print_clearances(table) -> None:
-    rows = [
-        [f"{row[name]:.{5 if name.startswith('operating') else 4}g}" if isinstance(row[name], float) else row[name] for name in _CLEARANCE_SHOWN]
-        for row in table.rows
-    ]
+    headings, columns = zip(*(column_texts(table.column(name), table.values(name)) for name in _CLEARANCE_SHOWN))
     title = f"{table.about['scene']}: running clearance, heat.law {table.about['heat']}"
-    print_rows(title, tuple(_CLEARANCE_SHOWN.values()), rows, words=("status",), width=170)
+    print_rows(title, headings, zip(*columns), words=("status",), keys=2)
 
 
 _SHOWN = 12  # reasons per table
@@ -885,7 +904,7 @@ def _print_nightly(report) -> None:
     books = ("books off by, %: median", "95 %", "largest", "in")
     print_rows(
         f"seed {report.seed}, program {report.program[:12]}",
-        ("level", "runs", *counts, *books, "core, s"),
+        ("level", "runs", *counts, *books, "core [s]"),
         rows,
         words=("level", "runs", "in"),
         width=190,

@@ -259,9 +259,10 @@ def print_trade(name, found) -> None:
         percents = ("load_error", "life_error", "largest_window_life_error", *(("edge_error",) if has_edges else ()))
         values = _unless_nan(row["real_time_factor"], in_digits, 3), *points, *(_unless_nan(100 * row[column], in_digits, 2) for column in percents)
         rows.append(("*" if row["on_front"] else "", row["level"], row["setting"], *values, row["failure"]))
-    words = ("", "level", "setting")
-    numbers = ("x real time", "slip, points", "largest, points", "load, %", "life, %", "of a window, %", *(("edge, %",) if has_edges else ()))
-    print_rows(f"{name}, {found.course.name}: against {found.reference}", (*words, *numbers, ""), rows, words)
+    numbers = ["times real time", "slip error [points]", "largest slip error [points]", "load error [%]", "life error [%]"]
+    numbers += ["largest life error of a window [%]", *(["edge load error [%]"] if has_edges else [])]
+    columns, words = ("best", "level", "setting", *numbers, "failure"), ("best", "level", "setting", "failure")
+    print_rows(f"{name}, {found.course.name}: errors against {found.reference}", columns, rows, words, keys=3)
     click.echo(measured_in_words(found.course))
     own = found.own_error
     click.echo(

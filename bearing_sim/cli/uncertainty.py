@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import executor_options, json_option, level_type, picture_option, scene_argument
+from bearing_sim.cli.options import csv_option_of, executor_options, json_option, level_type, picture_option, scene_argument, set_option
 from bearing_sim.cli.outputs import OutputWithJournal, WritingCommand
 from bearing_sim.cli.reporting import (
     Points,
@@ -26,7 +26,7 @@ SEED = 2017
 
 @click.command("uncertainty", cls=WritingCommand)
 @scene_argument
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field or a range of the scene; can be repeated.")
+@set_option
 @click.option(
     "--samples", default=256, show_default=True, type=click.IntRange(2, 65536), help="Size of each of the two samples; rounded up to a power of two."
 )
@@ -35,13 +35,7 @@ SEED = 2017
 @click.option("--log", type=click.Path(path_type=Path), metavar="IN.mcap", help="Compute the ranges over time, for speed and load in a log.")
 @click.option("--stretches", default=24, show_default=True, type=click.IntRange(1, 10_000), help="Number of intervals into which the log is divided.")
 @executor_options
-@click.option(
-    "--csv",
-    "table",
-    type=OutputWithJournal(),
-    metavar="PATH.csv",
-    help="Write all points; also written: PATH.journal, from which an interrupted run resumes.",
-)
+@csv_option_of(OutputWithJournal(), "Write all points; also written: PATH.journal, from which an interrupted run resumes.")
 @picture_option("Draw ranges and shares")
 @json_option
 def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, workers, dask, table, picture, as_json):
@@ -74,11 +68,13 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
                 note_points(journal, digest, table.path)
     with as_file_error():
         if picture is not None:
+            from bearing_sim.studies.run_plot import life_label
             from bearing_sim.studies.uncertainty import draw
 
             ranges = f"{len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
             with picture.draft() as draft:
-                draw(draft, f"{scene.name}{'' if log is None else f' under {log.name}'}: {ranges}", found, course and course.middles)
+                title = f"{scene.name}{'' if log is None else f' under {log.name}'}: {ranges}"
+                draw(draft, title, found, life_label([scene]), course and course.middles)
     if as_json:
         print_json({"scene": scene.name, "log": log and log.name, **report, **unknown})
     else:
@@ -178,6 +174,7 @@ def _report(scene, found, seed, seconds, course) -> dict:
 
 def band_rows(report) -> list[tuple[str, str]]:
     """Return table rows: the quantiles with their sampling errors, and the fields they depend on, most important first."""
+    from bearing_sim.scene.display import number
     from bearing_sim.scene.uncertainty import without_dimensions
 
     rows, note = [], without_dimensions(report["ranges"])
@@ -186,21 +183,25 @@ def band_rows(report) -> list[tuple[str, str]]:
 
         def quantile(key, one=one, scale=scale):
             low, high = (scale * end for end in one[f"{key}_interval"])
-            return f"{scale * one[key]:.4g} ({low:.4g} to {high:.4g})"
+            return f"{number(scale * one[key])} ({number(low)} to {number(high)})"
 
         rows.append(
             (
                 f"{label}: 5, 50, 95 % quantile",
                 f"{quantile('p05')}, {quantile('p50')}, {quantile('p95')} {unit}{note if unit == 'h' else ''}; "
-                f"scene's own values: {scale * one['own']:.4g}",
+                f"scene's own values: {number(scale * one['own'])}",
             )
         )
-        rows.append((f"{label} depends on", _shares(one["shares"])))
+        rows.append((f"{label} depends on", _shares(one["shares"], report["samples"])))
     return rows
 
 
-def _shares(shares) -> str:
+def _shares(shares, samples) -> str:
     import math
+
+    import numpy as np
+
+    from bearing_sim.studies.uncertainty import Indices
 
     if shares is None:
         return "unknown: it is not finite at every point"
@@ -208,15 +209,20 @@ def _shares(shares) -> str:
     if not known:
         return "no field: it is the same at every point"
     known.sort(key=lambda item: -item[1]["total"])
+    names = "first_order", "total", "first_order_interval", "total_interval"
+    found = Indices(*(np.array([one[name] for _, one in known]) for name in names)).bounded()
+    lines = zip((field for field, _ in known), found.first, found.first_error, found.total, found.total_error)
     return "\n".join(
-        f"{field}: {_percent(one['first_order'])} % alone ({' to '.join(map(_percent, one['first_order_interval']))}), "
-        f"{_percent(one['total'])} % including interactions ({' to '.join(map(_percent, one['total_interval']))})"
-        for field, one in known
+        f"{field}: {_share(first, ends, samples)} alone, {_share(total, total_ends, samples)} including interactions"
+        for field, first, ends, total, total_ends in lines
     )
 
 
-def _percent(share: float) -> str:
-    return str(round(100 * share))
+def _share(share: float, interval, samples: int) -> str:
+    import math
+
+    low, high = (round(100 * end) for end in interval)
+    return f"not known from {samples} samples ({low} to {high} %)" if math.isnan(share) else f"{round(100 * share)} % ({low} to {high} %)"
 
 
 def print_bands(name, report) -> None:

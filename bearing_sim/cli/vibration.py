@@ -270,10 +270,10 @@ def _report(found, record, geometry) -> dict:
 
 
 def _print(name, record, geometry, found) -> None:
-    from bearing_sim.vibration.analysis import PARTS
+    from bearing_sim.vibration.analysis import PARTS, rarity
 
     shaft = found.shaft
-    turns = f"{60.0 * shaft.frequency:.6g} rpm +- {60.0 * shaft.standard_error:.2g}, {_SOURCES[shaft.source]}"
+    turns = f"{60.0 * shaft.frequency:.6g} rpm ± {60.0 * shaft.standard_error:.2g}, {_SOURCES[shaft.source]}"
     rows = [("record", f"{record.duration:.4g} s at {record.rate:g} Hz: {record.name}"), ("bearing", geometry.name), ("shaft", turns)]
     rows.append(("slip looked for", f"up to {100.0 * geometry.largest_slip:.3g} %"))
     if not found.found:
@@ -282,23 +282,23 @@ def _print(name, record, geometry, found) -> None:
     rows += [
         ("shows" if found.is_claim else "may show", _CAGE if found.shows == "cage" else PARTS[found.shows]),
         *(("cannot be told from", text) for text in found.alternatives),
-        ("line", f"{found.line:.5f} of the shaft's frequency" + (f" +- {found.line_error:.5f}" if math.isfinite(found.line_error) else "")),
-        ("cage over shaft", f"{found.ratio:.6f} +- {found.ratio_error:.6f}"),
-        ("cage", f"{found.cage_speed * 30 / math.pi:.6g} rpm +- {found.cage_speed_error * 30 / math.pi:.2g}"),
+        ("line", f"{found.line:.5f} of the shaft's frequency" + (f" ± {found.line_error:.5f}" if math.isfinite(found.line_error) else "")),
+        ("cage over shaft", f"{found.ratio:.6f} ± {found.ratio_error:.6f}"),
+        ("cage", f"{found.cage_speed * 30 / math.pi:.6g} rpm ± {found.cage_speed_error * 30 / math.pi:.2g}"),
     ]
     if math.isfinite(geometry.ideal_ratio):
         rows.append(("without slip", f"{geometry.ideal_ratio:.6f} by the drawing"))
-    rows.append(("slip", f"{100.0 * found.slip:.2f} % +- {100.0 * found.slip_error:.2f}" if found.claims_slip else found.reason))
+    rows.append(("slip", f"{100.0 * found.slip:.2f} % ± {100.0 * found.slip_error:.2f}" if found.claims_slip else found.reason))
     rows.append(("band", f"{found.band.low:g} to {found.band.high:g} Hz"))
     rows.append(("lines", ", ".join(f"{order:.3f}" for order in found.lines)))
     if math.isfinite(found.jitter):
         rows.append(("impacts", f"scatter by {100.0 * found.jitter:.2g} % of their period" + (" or more" if found.is_claim else "")))
-    rows.append(("false alarm", f"in one of {1.0 / found.false_alarm:.2g} records of noise, at most"))
+    rows.append(("false alarm", f"in one of {rarity(found.false_alarm)} records of noise, at most"))
     if found.is_claim:
         rows.append(("something else", f"with a probability of {100.0 * found.doubt:.2g} %, at most"))
     print_table(name, rows)
     if len(found.parts) <= 60:
-        columns = ("from, s", "to, s", "shaft, rpm", "cage, rpm", "+-", "cage over shaft", "+-")
+        columns = ("from [s]", "to [s]", "shaft [rpm]", "cage [rpm]", "±", "cage over shaft", "±")
         texts = [
             (
                 f"{part.begin:.3f}",

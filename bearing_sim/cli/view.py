@@ -7,6 +7,7 @@ from tempfile import TemporaryDirectory
 
 import click
 
+from bearing_sim.cli.options import size_option
 from bearing_sim.cli.outputs import OutputFile, WritingCommand, default_output
 from bearing_sim.cli.reporting import FailedRun, UsageError, as_file_error, as_usage_error, progress_bar, tell_use
 from bearing_sim.files.outputs import Output
@@ -17,7 +18,7 @@ from bearing_sim.files.outputs import Output
 @click.option("-o", "--out", type=OutputFile(), metavar="RUN.rrd", help="File for rerun [default: next to the recording].")
 @click.option("--screenshot", type=OutputFile(), metavar="PICTURE.png", help="Write a picture of the view instead of opening it.")
 @click.option("--at", "seconds", type=float, metavar="SECONDS", help="Simulated time of the picture [default: the end].")
-@click.option("--size", default="1600x1000", show_default=True, metavar="WxH", help="Size of the picture [px].")
+@size_option
 @click.option(
     "--speed",
     "--speed-topic",
@@ -81,7 +82,6 @@ def view(
         raise UsageError("--web-port goes with --web")
     if is_web and screenshot is not None:
         raise UsageError("--web and --screenshot contradict each other; give one of them")
-    picture_size = _size(size)
     given = {"speed": (speed, speed_unit), "load": (load, load_unit), "cage_speed": (cage, speed_unit), "temperature": (temperature, None)}
     given["clearance"] = clearance, clearance_unit
     lines = _lines({role: texts for role, texts in given.items() if texts[0]})
@@ -92,7 +92,7 @@ def view(
         with out.draft() as draft:
             span = _write(recording, draft, seconds, *lines)
         if screenshot is not None:
-            _take_picture(out.path, screenshot, span[1] if seconds is None else seconds, picture_size)
+            _take_picture(out.path, screenshot, span[1] if seconds is None else seconds, size)
             click.echo(f"{screenshot}")
             return
     if is_web:
@@ -154,13 +154,6 @@ def _write_bag(recording: Path, out: Path, seconds: float | None, lines: dict, c
 def _require_within(seconds: float | None, first: float, last: float) -> None:
     if seconds is not None and not first <= seconds <= last:
         raise UsageError(f"--at {seconds:g}: the recording covers {first:g} to {last:g} s")
-
-
-def _size(text: str) -> tuple[int, int]:
-    width, _, height = text.partition("x")
-    if not (width.isdigit() and height.isdigit() and 200 <= int(width) <= 8000 and 200 <= int(height) <= 8000):
-        raise UsageError(f"--size {text}: expected WIDTHxHEIGHT, each 200 to 8000, such as 1600x1000")
-    return int(width), int(height)
 
 
 def _convert(source, out: Path) -> None:

@@ -33,7 +33,7 @@ from bearing_sim.model.params import pack
 from bearing_sim.model.table_span import span_of
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.scene import Scene
-from bearing_sim.scene.uncertainty import Range, ranges_of, value_at
+from bearing_sim.scene.uncertainty import Range, number_at, ranges_of
 
 CONDITIONS = ("shaft_speed", "load", "oil_temperature", "load_angle")
 """Columns of conditions: [rad/s, N, K, rad]; the load counts by its magnitude."""
@@ -682,4 +682,4 @@ def kept_response(scene: Scene) -> ResponseModel | None:
 def scene_fields(scene: Scene) -> Fields:
     """Return the uncertain fields of a scene."""
     ranges = uncertain_ranges(scene)
-    return Fields(ranges, [value_at(scene, one.field) for one in ranges])
+    return Fields(ranges, [number_at(scene, one.field) for one in ranges])

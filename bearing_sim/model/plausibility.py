@@ -11,6 +11,7 @@ import numpy as np
 from bearing_sim.model.running_clearance import clearance_at_speed
 from bearing_sim.model.validity import outside, still_sample
 from bearing_sim.scene.bearing import Bearing
+from bearing_sim.scene.display import number
 from bearing_sim.scene.mounting import LARGEST_BORE, clearance_limits
 from bearing_sim.scene.ratings import minimum_load_law, rate
 from bearing_sim.scene.scene import Scene
@@ -73,8 +74,9 @@ def _rollers(bearing: Bearing) -> list[str]:
     if _LEAST_FILL <= fill <= largest:
         return []
     return [
-        f"bearing.roller: {bearing.roller.count} rollers of {1e3 * bearing.roller.diameter:.6g} mm fill {100 * fill:.3g} % of the pitch circle of "
-        f"{1e3 * bearing.pitch_diameter:.6g} mm; expected {100 * _LEAST_FILL:g} to {100 * largest:g} %; check count and diameter"
+        f"bearing.roller: {bearing.roller.count} rollers of {number(1e3 * bearing.roller.diameter, 6)} mm fill {number(100 * fill, 3)} % of "
+        "the pitch circle of "
+        f"{number(1e3 * bearing.pitch_diameter, 6)} mm; expected {100 * _LEAST_FILL:g} to {100 * largest:g} %; check count and diameter"
     ]
 
 
@@ -85,7 +87,8 @@ def _ratings(bearing: Bearing) -> list[str]:
         rating, standard = getattr(given, name), getattr(computed, name)
         if rating is not None and not low * standard <= rating <= high * standard:
             found.append(
-                f"bearing.ratings.{name}: {rating:.4g} N is {rating / standard:.3g} times the {standard:.4g} N by the standard from the dimensions; "
+                f"bearing.ratings.{name}: {number(rating)} N is {number(rating / standard, 3)} times the {number(standard)} N by the "
+                "standard from the dimensions; "
                 f"expected {low:g} to {high:g} times; check its unit, and count, diameter and length of the rollers"
             )
     return found
@@ -104,20 +107,28 @@ def _clearance(bearing: Bearing) -> list[str]:
     clearance = 2e6 * bearing.radial_clearance_at_low_points
     bore, estimated = _bore(bearing)
     largest = 1e6 * clearance_limits("C5", bore).largest if bore <= LARGEST_BORE else None
-    dimensions = "check inner_raceway.radius, roller.diameter and outer_raceway.low_radius"
+    given = "inner_raceway.radius, roller.diameter and outer_raceway.low_radius" if bearing.clearance is None else "bearing.clearance"
+    dimensions = f"check {given}"
     if largest is not None and clearance > largest:
         return [
-            f"bearing: the diametral clearance is {clearance:.4g} um; expected at most {largest:.4g} um, class C5 of ISO 5753-1 for a bore of "
-            f"{1e3 * bore:.4g} mm{estimated}; {dimensions}"
+            f"bearing: the diametral clearance is {number(clearance)} um; expected at most {number(largest)} um, class C5 of ISO 5753-1 for "
+            "a bore of "
+            f"{number(1e3 * bore)} mm{estimated}; {dimensions}"
         ]
     lobed = bearing.outer_raceway.d_value > 0.0
     preload = 1e6 * _HEAVIEST_PRELOAD[lobed] * bearing.pitch_diameter
     if -clearance > preload:
         return [
-            f"bearing: the diametral preload is {-clearance:.4g} um; expected at most {preload:.3g} um, {100 * _HEAVIEST_PRELOAD[lobed]:g} % of the "
+            f"bearing: the diametral preload is {number(-clearance)} um; expected at most {number(preload, 3)} um, "
+            f"{100 * _HEAVIEST_PRELOAD[lobed]:g} % of the "
             f"pitch diameter of a {'lobed' if lobed else 'round'} raceway; {dimensions}"
         ]
     return []
+
+
+def _gives_clearance(bearing: Bearing) -> str:
+    """Return the field by which a bearing gives the clearance at its low points."""
+    return "bearing.outer_raceway.low_radius" if bearing.clearance is None else "bearing.clearance"
 
 
 def _lobes(scene: Scene) -> list[str]:
@@ -126,21 +137,22 @@ def _lobes(scene: Scene) -> list[str]:
     d_value, low = bearing.outer_raceway.d_value, 0.5 * clearance_at_speed(bearing, scene.mounting, scene.operating.shaft_speed)
     if not d_value:
         return []
-    shown, name = f"{1e6 * d_value:.4g} um", "bearing.outer_raceway.d_value"
+    shown, name = f"{number(1e6 * d_value)} um", "bearing.outer_raceway.d_value"
     if d_value > _LARGEST_LOBES * bearing.pitch_diameter:
         return [
-            f"{name}: {shown}; expected at most {1e6 * _LARGEST_LOBES * bearing.pitch_diameter:.4g} um, {100 * _LARGEST_LOBES:g} % of the pitch "
+            f"{name}: {shown}; expected at most {number(1e6 * _LARGEST_LOBES * bearing.pitch_diameter)} um, {100 * _LARGEST_LOBES:g} % of the pitch "
             "diameter; it is a difference of radii, not of diameters: check its unit"
         ]
     if low >= 0.0:
         return [
-            f"{name}: {shown} with a radial clearance of {1e6 * low:.4g} um at the low points, where lobes do not press rollers; expected preload "
-            "there; lower low_radius, or set d_value to 0 for a round raceway"
+            f"{name}: {shown} with a radial clearance of {number(1e6 * low)} um at the low points, where lobes do not press rollers; "
+            "expected preload "
+            f"there; lower {_gives_clearance(bearing)}, or set d_value to 0 for a round raceway"
         ]
     if -low >= d_value:
         return [
-            f"{name}: {shown} is no more than the radial preload at the low points, {-1e6 * low:.4g} um: no roller is free between lobes; "
-            "expected more; raise d_value or low_radius"
+            f"{name}: {shown} is no more than the radial preload at the low points, {number(-1e6 * low)} um: no roller is free between lobes; "
+            f"expected more; raise d_value or {_gives_clearance(bearing)}"
         ]
     return []
 
@@ -150,8 +162,8 @@ def _cage_radii(bearing: Bearing) -> list[str]:
     if cage.bore < pitch < cage.outside:
         return []
     return [
-        f"bearing.cage: it reaches from {1e3 * cage.bore:.6g} to {1e3 * cage.outside:.6g} mm and leaves out the pitch radius, "
-        f"{1e3 * pitch:.6g} mm, where rollers touch their pockets; expected the pitch radius between; check inner_radius and outer_radius"
+        f"bearing.cage: it reaches from {number(1e3 * cage.bore, 6)} to {number(1e3 * cage.outside, 6)} mm and leaves out the pitch radius, "
+        f"{number(1e3 * pitch, 6)} mm, where rollers touch their pockets; expected the pitch radius between; check inner_radius and outer_radius"
     ]
 
 
@@ -167,8 +179,10 @@ def _cage_mass(bearing: Bearing) -> list[str]:
     if low <= cage.mass <= high:
         return []
     return [
-        f"bearing.cage.mass: {1e3 * cage.mass:.4g} g for about {1e6 * volume:.3g} cm^3 is {1e-3 * cage.mass / volume:.3g} g/cm^3; expected "
-        f"{1e3 * low:.4g} to {1e3 * high:.4g} g (polyamide to brass, within a factor of {_MASS_FACTOR:g}); check mass, width and radii of the cage"
+        f"bearing.cage.mass: {number(1e3 * cage.mass)} g for about {number(1e6 * volume, 3)} cm^3 is {number(1e-3 * cage.mass / volume, 3)} "
+        "g/cm^3; expected "
+        f"{number(1e3 * low)} to {number(1e3 * high)} g (polyamide to brass, within a factor of {_MASS_FACTOR:g}); check mass, width and "
+        "radii of the cage"
     ]
 
 
@@ -182,7 +196,8 @@ def _ring_mass(bearing: Bearing) -> list[str]:
     if low <= ring.ring_mass <= high:
         return []
     return [
-        f"bearing.inner_raceway.ring_mass: {1e3 * ring.ring_mass:.4g} g; expected {1e3 * low:.4g} to {1e3 * high:.4g} g by raceway, bore and roller "
+        f"bearing.inner_raceway.ring_mass: {number(1e3 * ring.ring_mass)} g; expected {number(1e3 * low)} to {number(1e3 * high)} g by "
+        "raceway, bore and roller "
         f"length (within a factor of {_MASS_FACTOR:g}); give the mass of the ring; that of the shaft belongs into support.shaft.mass"
     ]
 
@@ -192,8 +207,8 @@ def _slip_from_speed(scene: Scene) -> list[str]:
     if not 0.0 < speed < least:
         return []
     return [
-        f"thresholds.slip_from_speed: slip enters means, maxima and thresholds from {least * _RPM:.4g} rpm on, and operating.shaft_speed is "
-        f"{speed * _RPM:.4g} rpm; expected a threshold that the shaft exceeds; if the machine is made to turn so slowly, set it to "
+        f"thresholds.slip_from_speed: slip enters means, maxima and thresholds from {number(least * _RPM)} rpm on, and operating.shaft_speed is "
+        f"{number(speed * _RPM)} rpm; expected a threshold that the shaft exceeds; if the machine is made to turn so slowly, set it to "
         f"{0.5 * speed * _RPM:.2g} rpm or so"
     ]
 
@@ -205,6 +220,7 @@ def _load(scene: Scene) -> list[str]:
     if not operating.shaft_speed or operating.radial_load >= least or scene.bearing.radial_clearance_at_low_points < 0.0:
         return []
     return [
-        f"operating.radial_load: {operating.radial_load:.4g} N; expected at least the makers' minimum, {least:.4g} N ({rule}); below it expect slip: "
+        f"operating.radial_load: {number(operating.radial_load)} N; expected at least the makers' minimum, {number(least)} N ({rule}); "
+        "below it expect slip: "
         "raise the load, take a smaller bearing or one with less clearance, or study the slip"
     ]

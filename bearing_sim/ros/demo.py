@@ -31,7 +31,7 @@ from bearing_sim.recording.reader import Recording
 from bearing_sim.ros.recordings import fresh_path
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Scene
-from bearing_sim.scene.uncertainty import quantities, ranges_of, shown, value_at
+from bearing_sim.scene.uncertainty import number_at, quantities, ranges_of, shown
 
 _DOMAINS = range(60, 100)  # above the usual choices of users, below where ports collide with ephemeral ports
 _NODE_ENDS_WITHIN = 30.0  # [s]
@@ -236,7 +236,7 @@ def _estimates(scene: Scene) -> tuple[tuple[str, ...], tuple[str, ...] | None]:
     asked = () if scene.estimation.bands else ("estimation.bands=true",)
     if not calibrated:
         return asked, None
-    own = [value_at(scene, path) for path in calibrated]
+    own = [number_at(scene, path) for path in calibrated]
     hidden = [value + _HIDDEN * (ranges[path].high - value) for path, value in zip(calibrated, own)]
     asked += () if scene.estimation.calibrated else (f"estimation.calibrated=[{', '.join(calibrated)}]",)
     return asked, tuple(f"{path}={value:.4g}" for path, value in zip(calibrated, hidden))

@@ -13,12 +13,17 @@ from bearing_sim.scene.contour import form_errors, settled_form
 from bearing_sim.scene.crown import Crown, IsoLogCrown, crown_errors
 from bearing_sim.scene.flanges import Flanges, flange_errors
 from bearing_sim.scene.material import Material
-from bearing_sim.scene.mounting import CLEARANCE_GROUPS, clearance_limits
+from bearing_sim.scene.mounting import CLEARANCE_GROUPS, CLEARANCE_PARTS, OTHER_CLEARANCES, clearance_limits
 from bearing_sim.scene.quantity import QuantityOrName, check, named_law, quantity, record
 from bearing_sim.scene.ratings import Ratings
 
 _CLEARANCE = QuantityOrName(
-    "m", "radial internal clearance, diametral: 2 (R_low - R_i - D_w); or its group by ISO 5753-1", -1e-3, 5e-3, "um", CLEARANCE_GROUPS
+    "m",
+    "radial internal clearance, diametral: 2 (R_low - R_i - D_w); or its group by ISO 5753-1, or another of `bearing_sim.scene.mounting`",
+    -1e-3,
+    5e-3,
+    "um",
+    (*CLEARANCE_GROUPS, *CLEARANCE_PARTS, *OTHER_CLEARANCES),
 )
 # Assumption where a scene does not name boundary dimensions: diameters within 15 %, widths within 40 % of those of the bearings of the catalogue.
 _SECTION = 0.27  # roller diameter over D - d
@@ -435,8 +440,13 @@ class Bearing:
             )
         clearance = self.radial_clearance_at_low_points
         if not -0.02 * self.roller.diameter <= clearance <= 0.5 * self.roller.diameter:
+            given = (
+                f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm"
+                if self.clearance is None
+                else f"clearance: {self.clearance}"
+            )
             errors.append(
-                f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm leaves {1e6 * clearance:.6g} um between inner "
+                f"{given} leaves {1e6 * clearance:.6g} um between inner "
                 f"raceway, roller and low point; expected {-2e4 * self.roller.diameter:.6g} to {5e5 * self.roller.diameter:.6g} um"
             )
         return errors + ring_errors(self) + cage_errors(self) + play_errors(self) + flange_errors(self) + estimate_errors(self)

@@ -7,7 +7,7 @@ import functools
 import re
 import types
 import typing
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import NamedTuple
@@ -26,6 +26,7 @@ from bearing_sim.scene.designation import DesignationError, is_designation
 from bearing_sim.scene.diameters import ROUND_RACEWAY, diameters, forget_counterpart, gives_round_raceway, override_by_radius, with_radii
 from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
 from bearing_sim.scene.fidelity import choose
+from bearing_sim.scene.fields import laws_with, records_at
 from bearing_sim.scene.flanges import drop_absent_flanges
 from bearing_sim.scene.internal_dimensions import CAGE_RULES, bearing_tree, with_cage_of_kind
 from bearing_sim.scene.kept_front import KeptSetting, read_front
@@ -33,7 +34,7 @@ from bearing_sim.scene.lubricant_names import keep_one_lubricant, with_named_lub
 from bearing_sim.scene.quantity import SPEED, to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.tree import at
-from bearing_sim.scene.uncertainty import declared_in, drop_ranges, override_range, read_ranges, written
+from bearing_sim.scene.uncertainty import declared_in, drop_ranges, override_range, read_ranges, value_at, written
 from bearing_sim.scene.wants import candidates, read_wants, reason_of, without_measurement
 
 _UNION_TAGS = frozenset(
@@ -61,6 +62,8 @@ _OPENED = {
     ("lubricant", "rolling_resistance"): "law",
     ("lubricant", "starvation"): "law",
     ("lubricant", "mixed_friction"): "law",
+    ("bearing", "roller", "crown"): "law",
+    ("bearing", "seals"): "law",
 }
 _RACEWAY_RADII = tuple(f"outer_raceway.{name}" for name in ("low_radius", "diameter", "low_points", "high_points", "contour", "contour_file"))
 # What older scenes say, and what says it now.
@@ -197,7 +200,7 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
     halved, wrong_diameters = with_radii(tree, Scene)
     resolved, errors = _with_presets(halved)
     resolved, unread = with_contour_text(resolved)
-    ranges, wrong = read_ranges(resolved.get("uncertainty"), Scene)
+    ranges, wrong = read_ranges(resolved.get("uncertainty"), Scene, _bore(resolved))
     resolved["uncertainty"] = ranges
     errors += [InvalidField(*error) for error in (*wrong_diameters, *wrong)]
     if isinstance(resolved.get("wants"), Mapping):
@@ -238,6 +241,14 @@ def load_bearing(name: str) -> Bearing:
         except ValidationError as error:
             errors = invalid_fields(error, Bearing, _UNION_TAGS)
     raise SceneError(name, errors)
+
+
+def _bore(tree: Mapping) -> float | None:
+    """Return the diameter of the bore of a tree [m]; None if there is none, or it cannot be read."""
+    try:
+        return 2.0 * to_si(at(tree, "bearing.inner_raceway.bore_radius"), "m")
+    except ValueError:
+        return None
 
 
 def _has_lobes(tree: Mapping) -> bool:
@@ -362,15 +373,73 @@ def _overridden(tree: dict, overrides: Iterable[str]) -> dict:
     return tree
 
 
-def _apply_override(tree: dict, override: str) -> None:
+def require_units(overrides: Iterable[str], record: type = Scene) -> None:
+    """Raise an error for overrides that give a quantity as a bare number, such as ``operating.radial_load=5``: on a command line 5 may mean 5 kN.
+
+    Parameters
+    ----------
+    overrides : as of `load_scene`.
+    record : type of what they change.
+
+    Raises
+    ------
+    SceneError
+        Listing every such value with the units that it may have.
+    """
+    known = {
+        **{path.lstrip("."): declared for path, declared in declared_in("", record)},
+        **{path: each.quantity for path, each in diameters(Scene).items()},
+    }
+    errors = []
+    for keys, value in map(_read_override, overrides):
+        in_range = record is Scene and keys[0] == "uncertainty"
+        for path, number in _numbers_in(".".join(keys[in_range:]), value):
+            field = path.removesuffix(f".{path.rpartition('.')[2]}") if in_range and path not in known else path
+            if field in known and (reason := known[field].why_unit_is_needed(number)):
+                errors.append(InvalidField(f"uncertainty.{path}" if in_range else path, "", reason))
+    if errors:
+        raise SceneError("--set", errors)
+
+
+def _numbers_in(path: str, value) -> Iterator[tuple[str, object]]:
+    """Yield the values in a value, each with its path."""
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _numbers_in(f"{path}.{name}", inner)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from _numbers_in(path, inner)
+    else:
+        yield path, value
+
+
+def _read_override(override: str) -> tuple[list[str], object]:
+    """Return the path of an override, in parts, and its value."""
     path, equals, text = override.partition("=")
     keys = path.strip().split(".")
     if not equals or not all(keys):
         raise SceneError("--set", [InvalidField(path, "", "expected FIELD=VALUE, such as bearing.outer_raceway.low_radius=34.865mm")])
     try:
-        value = values_of(text)
+        return keys, values_of(text)
     except FileError:
-        value = text.strip()
+        return keys, text.strip()
+
+
+def _law_kept(tree: Mapping, block: list[str], field: str) -> dict:
+    """Return the law that the block of an override has where its scene leaves it to a default, so that the block keeps it; if it has that field."""
+    path = ".".join(block)
+    known = laws_with(Scene, f"{path}.{field}")
+    if not known or field == "law":
+        return {}
+    try:
+        law = getattr(value_at(scene_from_mapping(tree, "scene"), path), "law", None)
+    except SceneError:  # another override may mend it
+        return {}
+    return {"law": law} if law in known else {}
+
+
+def _apply_override(tree: dict, override: str) -> None:
+    keys, value = _read_override(override)
     if keys[0] == "uncertainty" and len(keys) > 1:
         override_range(tree, keys, value)
         return
@@ -381,12 +450,12 @@ def _apply_override(tree: dict, override: str) -> None:
         if isinstance(child, str) and (opened := _OPENED.get(tuple(keys[: depth + 1]))):
             child = {opened: child}
         if child is None:
-            child = {}
+            child = _law_kept(tree, keys[: depth + 1], keys[depth + 1])
         if not isinstance(child, dict):
             raise SceneError("--set", [InvalidField(".".join(keys[: depth + 1]), repr(child), f"is a value, not a block; {path} cannot be set")])
         node[key] = dict(child)
         node = node[key]
-    if keys == ["heat", "law"] and node.get("law") != value:  # each law has fields of its own
+    if keys == ["heat", "law"] and node.get("law") not in (None, value):  # each law has fields of its own
         node.clear()
         drop_ranges(tree, "heat.")
     if keys == ["bearing", "cage", "guidance"]:
@@ -541,16 +610,30 @@ def _invalid_field(problem: Mapping, record: type, laws: frozenset[str]) -> Inva
     if kind == "missing":
         return InvalidField(path, "", _MISSING.get(path, "missing"))
     if kind == "union_tag_not_found":
-        return InvalidField(f"{path}.law", "", "missing")
+        given = [name for name in problem["input"] if isinstance(name, str)] if isinstance(problem["input"], Mapping) else []
+        fitting = [law for law in _laws_of(record, path) if all(law in laws_with(record, f"{path}.{name}") for name in given)]
+        none = next((name for name in given if not laws_with(record, f"{path}.{name}")), None)
+        which = f"of the laws with {' and '.join(given)}" if given and fitting else "of the laws"
+        unknown = f"; none of them has {none}" if none else ""
+        return InvalidField(f"{path}.law", "", f"missing; expected one {which}: {', '.join(fitting or _laws_of(record, path))}{unknown}")
     if kind == "union_tag_invalid":
         tag, known = problem["ctx"]["tag"], problem["ctx"]["expected_tags"]
         return InvalidField(f"{path}.law", repr(tag), f"expected one of {known}{did_you_mean(str(tag), re.findall(r'[a-z_0-9]+', known))}")
     if kind == "unexpected_keyword_argument":
         if path in _RENAMED:
             return InvalidField(path, shown, f"no longer a field; {_RENAMED[path]}")
-        known = _field_names(problem["loc"][:-1], record, laws)
-        return InvalidField(path, shown, f"unknown field{did_you_mean(str(problem['loc'][-1]), known)}; known here: {', '.join(known)}")
+        known, block = _field_names(problem["loc"][:-1], record, laws), path.rpartition(".")[0]
+        if others := laws_with(record, path):
+            return InvalidField(
+                path, shown, f"no field of this law; set {block}.law to {' or '.join(others)}, which {'has' if len(others) == 1 else 'have'} it"
+            )
+        more = f"; see: bearing-sim fields {block}".rstrip() if record is Scene else ""
+        return InvalidField(path, shown, f"unknown field{did_you_mean(str(problem['loc'][-1]), known)}; known here: {', '.join(known)}{more}")
     return InvalidField(path, shown, re.sub(r"^(Value error, |Input should be )", lambda m: "" if m[1].startswith("Value") else "expected ", reason))
+
+
+def _laws_of(record: type, path: str) -> list[str]:
+    return [block.law for block in records_at(record, path) if block.law]
 
 
 def _written_path(loc: Iterable, record: type, laws: frozenset[str]) -> str:

@@ -139,6 +139,9 @@ _USUAL = {
     "W/(m*K)": {"W/(m*K)": 1.0},
     "J/(kg*K)": {"J/(kg*K)": 1.0},
 }
+_SECOND_SPELLINGS = ("µm", "revolution/s")  # which no message proposes
+_FIRST_PROPOSED = {"m": "mm", "K": "degC", "rad": "deg", "Pa": "MPa"}
+_MOST_PROPOSED = 3
 _ANGLES = ("radian", "degree", "turn", "revolution", "cycle", "arcminute", "arcsecond", "grade", "revolutions_per_minute", "revolutions_per_second")
 _SPELLINGS = (
     "N",
@@ -265,12 +268,35 @@ class Quantity:
             if math.isclose(number, bound, rel_tol=1e-12):  # round-off must not put "10 um" outside a bound of 1e-5
                 number = bound
         if not self.minimum <= number <= self.maximum:  # NaN fails here too
+            bare = self.unit and is_bare(value)
+            shown = f"{number:.6g} {self.unit}" if bare else self.show(number)
+            meant = f"; a bare number is SI: write {found}?" if bare and (found := self.with_units(number)) else ""
             raise PydanticCustomError(
                 "bound",
-                "{shown} is outside {low} to {high}",
-                {"shown": self.show(number), "low": self.show(self.minimum), "high": self.show(self.maximum)},
+                "{shown} is outside {low} to {high}{meant}",
+                {"shown": shown, "low": self.show(self.minimum), "high": self.show(self.maximum), "meant": meant},
             )
         return number
+
+    def with_units(self, number: float) -> str:
+        """Return a bare number with each usual unit in which it lies within the bounds, such as ``5 N or 5 kN``; empty if it does in none."""
+        first = self.shown_in or _FIRST_PROPOSED.get(self.unit, self.unit)
+        usual = dict.fromkeys((first, *_USUAL.get(self.unit, ()), *(("degC",) if self.unit == "K" else ())))
+        written = [f"{number:.12g} {unit}" for unit in usual if unit not in _SECOND_SPELLINGS]
+        fitting = [text for text in written if self.minimum <= to_si(text, self.unit) <= self.maximum]
+        return " or ".join(fitting[:_MOST_PROPOSED])
+
+    def why_unit_is_needed(self, value: object) -> str:
+        """Return why an option or an override does not take this value: it is a bare number, in a unit that nobody wrote; empty if it is not.
+
+        A pure number needs no unit, nor does a zero, which is the same in every unit but those of temperature.
+        """
+        if not self.unit or not is_bare(value) or not (number := float(value)) and self.unit != "K":
+            return ""
+        if self.unit == SPEED:
+            return _bare_speed(value)
+        found = self.with_units(number) or f"it with one, such as {expected(self.unit)}"
+        return f"{value} has no unit; write {found}"
 
     def written(self, number: float) -> str:
         """Return ``number`` (SI) as a file has it, to the last digit: a rotational speed with its unit."""
@@ -304,6 +330,13 @@ class QuantityOrName(Quantity):
         except PydanticCustomError as error:
             reason = f"{error.message()}; or one of {', '.join(self.names)}"
             raise PydanticCustomError("quantity", "{reason}", {"reason": reason}) from None
+
+
+def is_bare(value: object) -> bool:
+    """Whether a value is a number without a unit, as a number or as text."""
+    if isinstance(value, str):
+        return (match := _NUMBER_THEN_UNIT.match(value)) is not None and not match[2]
+    return isinstance(value, numbers.Real) and not isinstance(value, bool)
 
 
 def in_digits(value: float, digits: int) -> str:

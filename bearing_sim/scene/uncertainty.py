@@ -25,6 +25,7 @@ from pydantic_core import PydanticCustomError
 
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.fidelity import WHIRLING
+from bearing_sim.scene.mounting import clearance_limits
 from bearing_sim.scene.quantity import SPEED, Quantity, check, record
 
 _MOST_ERRORS = 50  # that are listed
@@ -32,8 +33,9 @@ _LONGEST_PATH = 200  # characters of a path for which the nearest is looked for
 BLOCKS = ("bearing", "lubricant", "operating", "mounting", "heat", "support")  # of a scene; their quantities may have ranges
 _ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
 _LOW_RADIUS = "outer_raceway.low_radius"
+_CLEARANCE = "bearing.clearance"
 # Lengths there decide the clearance.
-_DIMENSIONS = ("bearing.clearance", "bearing.inner_raceway.", "bearing.outer_raceway.", "bearing.roller.", "mounting.")
+_DIMENSIONS = (_CLEARANCE, "bearing.inner_raceway.", "bearing.outer_raceway.", "bearing.roller.", "mounting.")
 _TRACTION_FACTOR = 1.5  # assumption
 # Defaults of a scene that decide how an inner ring vibrates, with their ranges.
 _RING_RANGES = (
@@ -148,13 +150,14 @@ def drop_ranges(tree: dict, beginning: str) -> None:
         tree["uncertainty"] = {path: value for path, value in flattened(given).items() if not path.startswith(beginning)}
 
 
-def read_ranges(given, scene_type: type) -> tuple[list[dict], list[tuple[str, str, str]]]:
+def read_ranges(given, scene_type: type, bore: float | None = None) -> tuple[list[dict], list[tuple[str, str, str]]]:
     """Read a block ``uncertainty`` into records in SI.
 
     Parameters
     ----------
     given : the block in the file.
     scene_type : type of the scene.
+    bore : diameter of the bearing's bore [m], by which a group of clearance is read; None: not known.
 
     Returns
     -------
@@ -178,7 +181,7 @@ def read_ranges(given, scene_type: type) -> tuple[list[dict], list[tuple[str, st
             reason = f"unknown field{nearest(path, known)}; expected a quantity of {', '.join(BLOCKS[:-1])} or {BLOCKS[-1]}"
             errors.append((where, "", reason))
             continue
-        entered, wrong = _entered(where, value, known[path])
+        entered, wrong = _entered(where, value, known[path], bore)
         errors += wrong
         if wrong:
             continue
@@ -191,8 +194,8 @@ def read_ranges(given, scene_type: type) -> tuple[list[dict], list[tuple[str, st
     return ranges, errors
 
 
-def _entered(where: str, value, declared: Quantity) -> tuple[dict, list[tuple[str, str, str]]]:
-    """Return the fields of one range in SI, and its errors."""
+def _entered(where: str, value, declared: Quantity, bore: float | None) -> tuple[dict, list[tuple[str, str, str]]]:
+    """Return the fields of one range in SI, and its errors.  A group of clearance stands for its least value, its largest or, as mode, its middle."""
     if isinstance(value, (list, tuple)):
         if len(value) != 2:
             return {}, [(where, repr(value), "expected [low, high]")]
@@ -211,8 +214,15 @@ def _entered(where: str, value, declared: Quantity) -> tuple[dict, list[tuple[st
             continue
         try:
             entered[name] = declared.read(value[name], written=True)
+            if isinstance(entered[name], str):
+                if bore is None:
+                    raise ValueError("the group follows from the bore, bearing.inner_raceway.bore_radius, which is not given; give a length")
+                limits = clearance_limits(entered[name], bore)
+                entered[name] = {"low": limits.least, "high": limits.largest, "mode": limits.mean}[name]
         except PydanticCustomError as error:
             errors.append((f"{where}.{name}", repr(value[name]), error.message()))
+        except ValueError as error:
+            errors.append((f"{where}.{name}", repr(value[name]), str(error)))
     return entered, errors
 
 
@@ -223,10 +233,8 @@ def range_errors(scene) -> list[str]:
         where, declared = f"uncertainty.{one.field}", known.get(one.field)
         if declared is None:
             errors.append(f"{where}: unknown field{nearest(one.field, known)}")
-        elif (own := value_at(scene, one.field)) is None:
+        elif value_at(scene, one.field) is None:
             errors.append(f"{where}: this scene has no {one.field}; leave its range out")
-        elif isinstance(own, str):
-            errors.append(f"{where}: this scene has {own!r} there, a name; give a number instead, which lies in the range")
         elif not declared.minimum <= one.low <= one.high <= declared.maximum:
             bounds = f"{declared.show(declared.minimum)} to {declared.show(declared.maximum)}"
             errors.append(f"{where}: {declared.show(one.low)} to {declared.show(one.high)} goes beyond {bounds}")
@@ -324,6 +332,12 @@ def value_at(scene, path: str):
     for name in path.split("."):
         scene = getattr(scene, name, None)
     return scene
+
+
+def number_at(scene, path: str):
+    """Return the value of a scene at a dotted path; that of a clearance given by its group is the middle of the group."""
+    value = value_at(scene, path)
+    return 2.0 * scene.bearing.radial_clearance_at_low_points if path == _CLEARANCE and isinstance(value, str) else value
 
 
 def messages(error: ValidationError) -> str:

@@ -56,10 +56,8 @@ def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None, me
     measured : which of `bearing_sim.messages.topics.MEASURED_CHANNELS` are measured; the residual slip of a measured cage has a plot.
     """
     axes = _Axes(live, extent)
-    lanes = rrb.StateTimelineView(origin="/", contents=["/regime", "/level"], name="Regime by the slip's thresholds, level", time_view=axes.time)
-    plots = rrb.Horizontal(_middle(scene, axes, measured), _right(scene, axes, measured), column_shares=[0.58, 0.42])
-    below = rrb.Horizontal(lanes, log_view(), column_shares=[0.58, 0.42])
-    return page(rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, below, row_shares=[0.815, 0.185]), column_shares=[0.42, 0.58]))
+    columns = (_left(scene, bounds), _middle(scene, axes, measured), _right(axes))
+    return page(rrb.Horizontal(*columns, column_shares=[0.41, 0.32, 0.27]))
 
 
 def log_view() -> rrb.TextLogView:
@@ -107,7 +105,7 @@ class _Axes:
             low, high = min(low, 0.0), max(high, 0.0)
         margin = 0.1 * (high - low) or 0.05 * abs(high) or 1.0
         decade = 10.0 ** math.ceil(math.log10(high)) if from_zero and high > 0 else math.inf
-        if 0.45 * decade < high < decade:  # ticks are labelled at powers of ten first: keep one in sight
+        if 0.35 * decade < high < decade:  # ticks are labelled at powers of ten first: keep one in sight
             high, margin = decade, 0.14 * decade
         step = 10.0 ** math.floor(math.log10(high - low)) if high > low else math.inf
         if (tick := math.ceil(high / step - 1e-9) * step if math.isfinite(step) else high) < high + 1.4 * margin:
@@ -133,12 +131,13 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
     reach = (0.83 if scene.bodies_tilt else 1.0) * bounds[0][1]  # closer where the solid has less room
     eye = rrb.EyeControls3D(position=(2.0 * reach, 1.1 * reach, 0.8 * reach), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, 1.0))
     titles = {
-        "/load_map": "Load map, colours as above" if scene.cage_whirls else "Load map: load on the inner ring by azimuth and time, colours as above",
+        "/load_map": "Load map" if scene.cage_whirls else "Load map: load on the inner ring by azimuth and time, colours as above",
         "/load_map_by_roller": "By roller",
     }
-    charts = [_flat(root, title, map_bounds(narrow=scene.cage_whirls)) for root, title in titles.items()]
-    if scene.uses_ring_temperatures:
-        charts.insert(0, _flat(HEAT_ROOT, "Temperatures (housing not to scale)", heat_bounds(scene)))
+    maps = [_flat(root, title, map_bounds(narrow=scene.cage_whirls)) for root, title in titles.items()]
+    heat = [_flat(HEAT_ROOT, "Temperatures (housing not to scale)", heat_bounds(scene))] if scene.uses_ring_temperatures else []
+    power = _flat("/power_now", f"Power: mean of {SAMPLES} samples", bar_bounds(len(causes_of(scene))))
+    clearance = _flat("/clearance_now", "Running clearance", bar_bounds(len(CLEARANCES), signed=True))
     across = _flat("/section", section_title(scene), bounds)
     solid = rrb.Spatial3DView(
         origin="/",
@@ -148,13 +147,10 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
         eye_controls=eye,
         line_grid=False,
     )
+    orbit = [_orbit(scene)] if scene.cage_whirls else []
     above = across if scene.bodies_tilt else rrb.Tabs(across, solid, active_tab=0)
-    chart = rrb.Tabs(*([solid] if scene.bodies_tilt else []), *charts, active_tab=0)
-    return rrb.Vertical(
-        above,
-        rrb.Horizontal(chart, _orbit(scene), column_shares=[0.64, 0.36]) if scene.cage_whirls else chart,
-        row_shares=[0.69, 0.31],
-    )
+    chart = rrb.Tabs(*([solid] if scene.bodies_tilt else []), *heat, *maps, power, clearance, *orbit, active_tab=0)
+    return rrb.Vertical(above, chart, row_shares=[0.6, 0.4])
 
 
 def _flat(root: str, title: str, bounds) -> rrb.Spatial2DView:
@@ -170,15 +166,30 @@ def _orbit(scene: Scene) -> rrb.Spatial2DView:
 
 def _middle(scene: Scene, axes: _Axes, measured: Collection[str]) -> rrb.Vertical:
     has_cage = MEASURED in measured
-    rows = [_speeds(axes, has_cage), _slips(scene, axes, has_cage), _rollers(axes), _lives(scene, axes), _loads(scene, axes)]
+    rows = [_slips(scene, axes, has_cage), _lives(scene, axes), _loads(scene, axes), _courses(scene, axes, measured)]
     title = "Residual slip [points]: measured less predicted (grey: none)"
     residual = [axes.plot(title, ["/slip/no_residual", "/slip/residual"])] if has_cage else []
     fields = field_plots(scene)
     learned = [axes.plot(f"{field_title(path)}, 5 to 95 %", [plot.path, plot.line], from_zero=False) for path, plot in fields.items()]
-    beside = [*residual, *([rrb.Tabs(*learned, active_tab=0)] if learned else [])]
-    if beside:
-        rows.insert(2, beside[0] if len(beside) == 1 else rrb.Horizontal(*beside))
-    return rrb.Vertical(*rows, *([_tilts(axes)] if scene.bodies_tilt else []))
+    if beside := [*residual, *learned]:
+        rows.insert(1, rrb.Tabs(*beside, active_tab=0))
+    return rrb.Vertical(*rows)
+
+
+def _courses(scene: Scene, axes: _Axes, measured: Collection[str]) -> rrb.Tabs:
+    """Return the plots of what acts on the bearing, and of what follows besides slip, life and loads."""
+    warmth = _temperatures(axes) if scene.uses_ring_temperatures else axes.plot("Oil [°C]", ["/oil/temperature"])
+    return rrb.Tabs(
+        _speeds(axes, MEASURED in measured),
+        axes.plot("Radial load [N]", ["/load/radial"]),
+        warmth,
+        _clearance(scene, axes, MEASURED_CLEARANCE in measured),
+        axes.plot("Plot [W]", [f"/power/{cause}" for cause in causes_of(scene)]),
+        axes.plot("Frequencies [Hz]", [f"/frequency/{each.name}" for each in FREQUENCIES], legend=True),
+        *([axes.plot("Oil [°C]", ["/oil/temperature"])] if scene.uses_ring_temperatures else []),
+        *(_tilts(axes) if scene.bodies_tilt else []),
+        active_tab=0,
+    )
 
 
 def _speeds(axes: _Axes, has_cage: bool) -> rrb.TimeSeriesView:
@@ -203,22 +214,23 @@ def _slips(scene: Scene, axes: _Axes, has_cage: bool) -> rrb.Tabs:
     return rrb.Tabs(axes.plot(title, paths), pocket, *whirl, active_tab=0)
 
 
-def _rollers(axes: _Axes) -> rrb.Tabs:
-    """Return the plots with a line for each roller's slip and spin, coloured around the bearing, and that of characteristic frequencies."""
-    return rrb.Tabs(
+def _rollers(scene: Scene, axes: _Axes) -> list[rrb.TimeSeriesView]:
+    """Return the plots with a line for each roller's slip and spin, coloured around the bearing; level ``steady`` computes neither."""
+    if scene.level == "steady":
+        return []
+    return [
         axes.plot("Slip of each roller on inner ring [m/s]", ["/rollers/inner_sliding"]),
         axes.plot("Outer [m/s]", ["/rollers/outer_sliding"]),
         axes.plot("Spin [rpm]", ["/rollers/spin"]),
-        axes.plot("Frequencies [Hz]", [f"/frequency/{each.name}" for each in FREQUENCIES], legend=True),
-        active_tab=0,
-    )
+    ]
 
 
 def _loads(scene: Scene, axes: _Axes) -> rrb.Tabs:
     places = ("inner", "outer", "inner_edge", "outer_edge")
     pressure = [axes.plot("Pressure [MPa]", [f"/pressure/{place}" for place in places])] if scene.bodies_tilt else []
     return rrb.Tabs(
-        axes.plot("Largest load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
+        axes.plot("Largest roller load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
+        *_rollers(scene, axes),
         axes.plot("Inner [N]", ["/loads/each/inner"]),
         axes.plot("Outer [N]", ["/loads/each/outer"]),
         axes.plot("Pockets [N]", ["/loads/each/pocket"]),
@@ -227,7 +239,7 @@ def _loads(scene: Scene, axes: _Axes) -> rrb.Tabs:
     )
 
 
-def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView | rrb.Tabs:
+def _lives(scene: Scene, axes: _Axes) -> rrb.Tabs:
     """Return the plot of the life by the scene's method, that of another standard, and the modified one where the scene wants it.
 
     Where there are bands, the remaining life has a plot, too.
@@ -238,41 +250,28 @@ def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView | rrb.Tabs:
     paths = ["/life/warning", "/life/error", f"/life/{other}_log10_hours", "/life/log10_hours"]
     if not scene.life.is_basic:
         paths, shown = [*paths, "/life/modified_log10_hours"], [*shown, f"purple {modified}"]
+    used = axes.plot("Life used [ppm]", ["/damage/ppm"])
     if not scene.estimation.bands:
-        return axes.plot(f"Lives, log10 of hours ({', '.join(shown)})", paths, from_zero=False)
+        return rrb.Tabs(axes.plot(f"Lives, log10 of hours ({', '.join(shown)})", paths, from_zero=False), used, active_tab=0)
     shaded = f"shaded: 5 to 95 %){without_dimensions(one.field for one in ranges_of(scene))}"
     lives = axes.plot(f"Lives, log10 of hours ({', '.join(shown)}, {shaded}", ["/life/band", *paths], from_zero=False)
     remaining = axes.plot(f"Remaining life, log10 of hours ({shaded}", [REMAINING_LIFE.path, REMAINING_LIFE.line], from_zero=False)
-    return rrb.Tabs(lives, remaining, active_tab=0)
+    return rrb.Tabs(lives, remaining, used, active_tab=0)
 
 
-def _tilts(axes: _Axes) -> rrb.Tabs:
-    return rrb.Tabs(
+def _tilts(axes: _Axes) -> list[rrb.TimeSeriesView]:
+    return [
         axes.plot("Roller tilt [mrad]", ["/tilt/each/tilt"]),
         axes.plot("Roller skew [mrad]", ["/tilt/each/skew"]),
         axes.plot("Ring [mrad]: blue y, orange z", ["/tilt/ring_y", "/tilt/ring_z"]),
         axes.plot("Cage [mrad]", ["/tilt/cage_y", "/tilt/cage_z"]),
-        active_tab=0,
-    )
+    ]
 
 
-def _right(scene: Scene, axes: _Axes, measured: Collection[str]) -> rrb.Vertical:
-    bars = _flat("/power_now", f"Power: mean of {SAMPLES} samples", bar_bounds(len(causes_of(scene))))
-    clearance_bars = _flat("/clearance_now", "Running clearance", bar_bounds(len(CLEARANCES), signed=True))
-    clearance = _clearance(scene, axes, MEASURED_CLEARANCE in measured)
-    load, damage = axes.plot("Radial load [N]", ["/load/radial"]), axes.plot("Damage [millionths of the life]", ["/damage/ppm"])
-    oil = axes.plot("Oil [°C]", ["/oil/temperature"])
-    texts = rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About"))
-    plot = axes.plot("Plot [W]", [f"/power/{cause}" for cause in causes_of(scene)])
-    if scene.uses_ring_temperatures:
-        clearances, powers = rrb.Tabs(clearance_bars, clearance, active_tab=0), rrb.Tabs(bars, plot, active_tab=0)
-        courses = rrb.Tabs(_temperatures(axes), load, damage, oil, active_tab=0)
-        return rrb.Vertical(texts, powers, clearances, courses, row_shares=[0.26, 0.3, 0.23, 0.21])
-    powers = rrb.Tabs(bars, plot, active_tab=0)
-    if scene.bodies_tilt:  # with so many numbers now
-        return rrb.Vertical(texts, powers, rrb.Tabs(load, clearance_bars, clearance, damage, oil, active_tab=0), row_shares=[0.53, 0.27, 0.2])
-    loads = rrb.Tabs(load, clearance_bars, clearance, active_tab=0)
-    return rrb.Vertical(texts, powers, loads, rrb.Tabs(damage, oil, active_tab=0), row_shares=[0.39, 0.295, 0.1575, 0.1575])
+def _right(axes: _Axes) -> rrb.Vertical:
+    texts = rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About"), active_tab=0)
+    lanes = rrb.StateTimelineView(origin="/", contents=["/regime", "/level"], name="Regime by the slip's thresholds, level", time_view=axes.time)
+    return rrb.Vertical(texts, rrb.Tabs(log_view(), lanes, active_tab=0), row_shares=[0.7, 0.3])
 
 
 def _clearance(scene: Scene, axes: _Axes, is_measured: bool) -> rrb.TimeSeriesView:

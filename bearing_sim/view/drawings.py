@@ -10,6 +10,7 @@ import numpy as np
 import rerun as rr
 
 from bearing_sim.messages.topics import ZERO_CELSIUS
+from bearing_sim.scene.display import force, quantity_text
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import colours, section
 from bearing_sim.view.section import MILLIMETRE, picture, polar
@@ -138,8 +139,8 @@ class SectionDrawing(_Drawing):
         length = min(max(LOAD_ARROW_FACTOR * load * per_newton, 0.12 * self._bore), 0.42 * self._bore) if load > 0 else 0.0
         vector = polar(length, math.atan2(sample["load_z"], sample["load_y"]))
         self._log("forces/radial_load", rr.Arrows2D.from_fields(origins=np.zeros((1, 2)), vectors=vector[None]))
-        beside = picture(0.25 * self._bore, (0.22 if sample["load_z"] <= 0 else -0.09) * self._bore)  # where the arrow is not
-        self._log("forces/radial_load_text", labels([beside], [f"radial load {load:.0f} N"]))
+        beside = picture(0.25 * self._bore, (0.25 if sample["load_z"] <= 0 else -0.05) * self._bore)  # where the arrow is not
+        self._log("forces/radial_load_text", labels([beside], [f"radial load {quantity_text('radial_load', load)}"]))
 
     def _draw_pocket_forces(self, sample, centres: np.ndarray) -> None:
         largest = _largest(np.abs(sample["pocket_force"]))
@@ -152,11 +153,11 @@ class SectionDrawing(_Drawing):
 
     def _draw_pocket_legend(self) -> None:
         self._pocket_legend_scale = self._pocket_scale
-        level, start = -0.75 * self._bore, -0.5 * self._bore
+        level, start = -0.77 * self._bore, -0.55 * self._bore
         arrow = picture(self._pocket_length, 0.0)
         self._log("legend/pocket", rr.Arrows2D(origins=[picture(start, level)], vectors=[arrow], radii=0.22, colors=colours.PURPLE))
         self._log(
-            "legend/pocket_text", labels([picture(0.19 * self._bore, level + 0.05 * self._bore)], [f"{self._pocket_scale:g} N on roller by pocket"])
+            "legend/pocket_text", labels([picture(0.15 * self._bore, level + 0.11 * self._bore)], [f"pocket force {force(self._pocket_scale)}"])
         )
 
     @property
@@ -166,10 +167,10 @@ class SectionDrawing(_Drawing):
 
     def _draw_axes(self) -> None:
         unit = self._bore
-        origin, vectors = picture(-0.6 * unit, 0.32 * unit), [picture(0.22 * unit, 0.0), picture(0.0, 0.22 * unit)]
+        origin, vectors = picture(-0.6 * unit, 0.42 * unit), [picture(0.2 * unit, 0.0), picture(0.0, 0.2 * unit)]
         self._still("axes/arrows", rr.Arrows2D(origins=[origin, origin], vectors=vectors, radii=0.2, colors=colours.WHITE))
-        places = [picture(-0.27 * unit, 0.38 * unit), picture(-0.6 * unit, 0.7 * unit), picture(-0.46 * unit, 0.27 * unit)]
-        self._still("axes/names", labels(places, ["Y", "Z", "X towards you"]))
+        places = [picture(-0.28 * unit, 0.52 * unit), picture(-0.6 * unit, 0.84 * unit)]
+        self._still("axes/names", labels(places, ["Y", "Z"]))
 
     @property
     def _bore(self) -> float:
@@ -184,13 +185,10 @@ class SectionDrawing(_Drawing):
     def _draw_legend(self) -> None:
         self._legend_scale = self.load_scale
         unit, steps = self._bore, 64
-        edges, level = np.linspace(-0.45 * unit, 0.45 * unit, steps + 1), -0.46 * unit
+        edges, level = np.linspace(-0.45 * unit, 0.45 * unit, steps + 1), -0.36 * unit
         strips = np.stack((picture(edges[:-1], level), picture(edges[1:], level)), axis=1)
         self._log("legend/map", rr.LineStrips2D(strips, radii=0.03 * unit, colors=colours.load_palette(steps)))
-        loads = np.linspace(0.0, self.load_scale, 3)
-        names = [f"{load:g}" for load in loads[:-1]] + [f"{loads[-1]:g} N"]
-        self._log("legend/ticks", labels(picture(np.linspace(edges[0], edges[-1], len(loads)), level - 0.06 * unit), names))
-        self._log("legend/title", labels([picture(0.0, level + 0.19 * unit)], ["load of roller on inner ring"]))
+        self._log("legend/title", labels([picture(0.0, level - 0.05 * unit)], [f"roller load 0 to {force(self.load_scale)}"]))
 
 
 def _bar_colours(count: int) -> np.ndarray:
@@ -523,7 +521,7 @@ class BarDrawing(_Drawing):
 
 def bar_bounds(count: int, signed: bool = False) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the horizontal and vertical range of so many bars with their texts."""
-    return (-(1.56 if signed else 0.56) * _WIDTH, 1.46 * _WIDTH), (-0.8 * _PITCH, (count - 0.1) * _PITCH)
+    return (-(1.56 if signed else 0.56) * _WIDTH, (1.62 if signed else 1.46) * _WIDTH), (-0.8 * _PITCH, (count - 0.1) * _PITCH)
 
 
 def causes_of(scene: Scene) -> dict[str, tuple]:
@@ -632,7 +630,7 @@ class HeatDrawing(_Drawing):
 def heat_bounds(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the horizontal and vertical range of the temperatures' picture with its numbers [mm]."""
     edge = section.heat_radii(scene.bearing)["housing"][1]
-    return (-1.05 * edge, 3.1 * edge), (-1.05 * edge, 1.05 * edge)
+    return (-1.05 * edge, 3.35 * edge), (-1.05 * edge, 1.05 * edge)
 
 
 def _celsius(value: float, digits: int = 1) -> str:

@@ -135,7 +135,7 @@ def map_size(narrow: bool = False) -> tuple[int, int]:
 
 def label_distance(narrow: bool = False) -> float:
     """Return how far left of the map the middle of its labels stands [px]: they keep their size on the screen."""
-    return (0.11 if narrow else 0.06) * map_size(narrow)[0]
+    return (0.11 if narrow else 0.085) * map_size(narrow)[0]
 
 
 def _pixels(narrow: bool) -> tuple[int, int]:
@@ -145,7 +145,7 @@ def _pixels(narrow: bool) -> tuple[int, int]:
 def map_bounds(narrow: bool = False) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the horizontal and vertical range [px] of the map with the labels of its axes."""
     width, height = map_size(narrow)
-    return (-1.92 * label_distance(narrow), width + 0.83 * label_distance(narrow)), (-0.06 * height, 1.2 * height)
+    return (-1.92 * label_distance(narrow), width + 0.9 * label_distance(narrow)), (-0.06 * height, 1.2 * height)
 
 
 def palette_png(index: np.ndarray, palette: np.ndarray) -> bytes:

@@ -26,6 +26,7 @@ from bearing_sim.messages.topics import (
     largest_loads,
     turns,
 )
+from bearing_sim.scene.display import number, quantity_text, shown
 from bearing_sim.scene.fidelity import LEVELS, level_of
 from bearing_sim.scene.scene import NO_CLEARANCE_LIMIT, Scene
 from bearing_sim.view import colours, section
@@ -51,7 +52,7 @@ LINES = {
     "/speed/cage_measured": ("cage, measured", colours.WHITE, 1.5),
     "/life/warning": ("warning", colours.YELLOW, 1.0),
     "/life/error": ("error", colours.VERMILION, 1.0),
-    "/damage/ppm": ("damage", colours.PURPLE, 2.5),
+    "/damage/ppm": ("life used", colours.PURPLE, 2.5),
     "/load/radial": ("radial load", colours.YELLOW, 2.0),
     "/oil/temperature": ("oil", colours.VERMILION, 2.0),
     "/loads/inner_largest": ("inner, largest", colours.BLUE, 2.0),
@@ -411,6 +412,43 @@ def log_event(recording: rr.RecordingStream, event: Event) -> None:
     recording.log("/log", rr.TextLog(f"{event.text}  [{event.kind}]", level=LOG_LEVELS[Level(event.level)]))
 
 
+RINGS = ("inner", "outer")
+_MOST_OF_A_PASSAGE = 256  # samples
+
+
+class PassageLoads:
+    """The largest roller loads while one roller takes the place of the next.
+
+    Those since the sample before swing with the places of the rollers, where samples are finer than that.
+
+    Parameters
+    ----------
+    count : number of rollers.
+
+    Attributes
+    ----------
+    rows : largest load on the inner and the outer raceway [N] at the newest samples, shape (n, 2).
+    """
+
+    def __init__(self, count: int):
+        self._count = count
+        self._tail = np.empty((0, 1 + len(RINGS)))  # time and loads
+        self.rows = self._tail[:, 1:]
+
+    def add(self, block: np.ndarray) -> np.ndarray:
+        """Add the samples of a block, and return ``rows`` at them."""
+        if not len(block):
+            return self.rows[:0]
+        known = np.concatenate((self._tail, np.stack([block["time"], *(largest_loads(block, ring) for ring in RINGS)], axis=1)))
+        interval = float(np.median(np.diff(known[:, 0]))) if len(known) > 1 else math.inf
+        passages = self._count * float(np.median(np.abs(block["cage_speed"]))) * interval / (2 * math.pi)  # from sample to sample
+        size = min(math.ceil(1.0 / passages) + 1, _MOST_OF_A_PASSAGE) if 0.0 < passages < 1.0 else 1
+        padded = np.concatenate((np.repeat(known[:1, 1:], size - 1, axis=0), known[:, 1:]))
+        self.rows = np.lib.stride_tricks.sliding_window_view(padded, size, axis=0).max(axis=-1)[-len(block) :]
+        self._tail = known[-_MOST_OF_A_PASSAGE:]
+        return self.rows
+
+
 class RunSeries:
     """Series of one run into one recording.
 
@@ -435,6 +473,7 @@ class RunSeries:
         self._measured_overviews: dict[str, Overview] = {}  # by channel
         self._chosen = False  # whether it is known if the run is thinned out
         self._regime, self._level = "", math.nan
+        self._plotted, self._latest = (PassageLoads(scene.bearing.roller.count) for _ in range(2))
         self._ranges: dict[str, tuple[float, float]] = {}  # lowest and highest value so far, by entity path
         self._slip_ranges: dict[int, tuple[float, float]] = {}  # the same for the slip, by octave of the shaft speed
         self._waiting: dict[str, list[tuple[float, ...]]] = {}  # time and numbers of measurements, by channel
@@ -465,7 +504,11 @@ class RunSeries:
     def write(self, block: np.ndarray) -> None:
         """Send the columns of a block, in one piece per series."""
         self._started = float(block["time"][0]) if self._started is None else self._started
-        values = series(block, self._scene.thresholds.slip_from_speed) | roller_series(self._scene, block) | further_series(self._scene, block)
+        values = series(block, self._scene.thresholds.slip_from_speed)
+        values |= {f"/loads/{ring}_largest": column for ring, column in zip(RINGS, self._plotted.add(block).T)}
+        values |= further_series(self._scene, block)
+        if self._scene.level != "steady":  # which computes neither slip nor spin of rollers
+            values |= roller_series(self._scene, block)
         lines = Lines(block["time"], {path: plottable(rows) for path, rows in values.items()})
         for path, rows in lines.values.items():
             _widen(self._ranges, path, rows)
@@ -596,40 +639,45 @@ class RunSeries:
         log_event(self._recording, event)
         self._keep_around(event.time)
 
+    def follow(self, samples: np.ndarray) -> None:
+        """Take the samples up to the next readout, whether they are drawn or not; they are written besides."""
+        self._latest.add(samples)
+
     def write_readout(self, sample: np.void, dropped: int) -> None:
         """Log the numbers of one sample as text at the recording's present time."""
-        limits = self._scene.thresholds
+        limits, basic = self._scene.thresholds, self._scene.life.symbols[0]
         slip = float(sample["cage_slip"]) if turns(sample["shaft_speed"], limits.slip_from_speed) else math.nan
-        life = float(sample["rating_life"])
-        lines = [
-            ("level", _level_state(level_of(sample), self._scene.level)),
-            ("cage slip", f"**{100 * slip:.2f} %**" if math.isfinite(slip) else "none (at rest)"),
-            (f"life, {self._scene.life.symbols[0]}", f"**{_hours(life)}**"),
+        load = math.hypot(sample["load_y"], sample["load_z"])
+        inner, outer = self._latest.rows[-1] if len(self._latest.rows) else (math.nan, math.nan)
+        lines = [  # in the order of their importance: what a small window has no room for stands last
+            ("cage slip", f"**{quantity_text('cage_slip', slip)}**" if math.isfinite(slip) else "none (at rest)"),
+            (f"life, {basic}", f"**{_life_text(sample['rating_life'])}**"),
+            ("largest roller load", quantity_text("inner_load_maximum", inner)),
+            ("shaft speed", quantity_text("shaft_speed", float(sample["shaft_speed"]))),
+            ("radial load", quantity_text("radial_load", load)),
+            ("oil temperature", quantity_text("oil_temperature", float(sample["oil_temperature"]))),
+            ("cage", section.regime(slip, limits.slip_warning, limits.slip_error)),
+            *((shown(name).name, quantity_text(name, float(sample[name]))) for name in ("cage_speed", "running_clearance")),
             *self._further_readout(sample),
-            ("damage", f"{1e6 * float(sample['damage']):.3g} millionths of the life"),
-            ("shaft", f"{round(RPM * float(sample['shaft_speed'])):,} rpm"),
-            ("cage", f"{round(RPM * float(sample['cage_speed'])):,} rpm"),
-            ("radial load", f"{math.hypot(sample['load_y'], sample['load_z']):,.0f} N"),
-            ("running clearance", _micrometres(float(sample["running_clearance"]))),
-            ("oil", f"{float(sample['oil_temperature']) - ZERO_CELSIUS:.1f} °C"),
-            ("rollers loaded", f"{np.count_nonzero(sample['inner_load'] > 0)} of {len(sample['inner_load'])}"),
-            ("largest load", ", ".join(f"{ring} {_newton(largest_loads(sample, ring))}" for ring in ("inner", "outer"))),
+            ("life used", f"{number(1e6 * float(sample['damage']), 3)} ppm"),
+            ("load, outer raceway", quantity_text("outer_load_maximum", outer)),
+            ("rollers under load", f"{np.count_nonzero(sample['inner_load'] > 0)} of {len(sample['inner_load'])}"),
+            ("level", _level_state(level_of(sample), self._scene.level)),
         ]
         if dropped:
-            lines.append(("not shown", f"{dropped} blocks dropped"))
-        regime = section.regime(slip, limits.slip_warning, limits.slip_error)
-        table = "\n".join([f"| cage is | {regime} |", "|---|---|"] + [f"| {name} | {value} |" for name, value in lines])
-        self._recording.log("/now", rr.TextDocument(table, media_type=rr.MediaType.MARKDOWN))
+            lines.insert(0, ("not shown", f"{dropped} blocks dropped"))
+        head, *rest = (f"| {name} | {value} |" for name, value in lines)
+        self._recording.log("/now", rr.TextDocument("\n".join([head, "|---|---|", *rest]), media_type=rr.MediaType.MARKDOWN))
 
     def _further_readout(self, sample: np.void) -> list[tuple[str, str]]:
         """Return the readout's lines that only some scenes have."""
         lines = []
         if not self._scene.life.is_basic:
-            lines.append((f"modified, {self._scene.life.symbols[1]}", f"**{_hours(float(sample['modified_rating_life']))}**"))
+            lines.append((f"modified, {self._scene.life.symbols[1]}", _life_text(sample["modified_rating_life"])))
         compared = compared_life(self._scene)
-        lines.append((LIFE_SYMBOLS[compared], _hours(float(sample[compared]))))
+        lines.append((LIFE_SYMBOLS[compared], _life_text(sample[compared])))
         if self._scene.bodies_tilt:
-            edge, largest = (1e-6 * max(float(sample[f"{ring}_{kind}"]) for ring in ("inner", "outer")) for kind in ("edge_pressure", "pressure"))
+            edge, largest = (1e-6 * max(float(sample[f"{ring}_{kind}"]) for ring in RINGS) for kind in ("edge_pressure", "pressure"))
             tilt, skew = (1e3 * float(np.abs(sample[name]).max()) for name in ("roller_tilt", "roller_skew"))
             known = math.isfinite(largest + edge), math.isfinite(tilt + skew)  # an older recording holds neither
             lines.append(("pressure", f"{largest:.0f} MPa, ends {edge:.0f} MPa" if known[0] else "unknown"))
@@ -656,15 +704,5 @@ def _widen(ranges: dict, key, values: np.ndarray) -> None:
         ranges[key] = min(low, float(finite.min())), max(high, float(finite.max()))
 
 
-def _hours(life: float) -> str:
-    if not math.isfinite(life):
-        return "endless (at rest)" if life > 0 else "unknown"
-    return f"{life:,.0f} h" if life < ENDLESS else "endless"
-
-
-def _micrometres(clearance: float) -> str:
-    return f"{1e6 * clearance:.1f} µm" if math.isfinite(clearance) else "unknown"
-
-
-def _newton(loads: np.ndarray) -> str:
-    return f"{float(loads.max()):.0f} N" if np.isfinite(loads).any() else "unknown"
+def _life_text(life: float) -> str:
+    return quantity_text("rating_life", float(life))

@@ -317,6 +317,7 @@ class RunView:
 
     def _follow(self, samples: np.ndarray) -> None:
         """Add samples to what a picture shows of the time before it."""
+        self._series.follow(samples)
         for bars in self._bars:
             bars.add(samples)
         if self._cage is not None:

@@ -7,15 +7,9 @@ the line is replaced by the Markdown that the function of this name in `PARTS` r
 """
 
 import ast
-import dataclasses
-import inspect
-import io
 import math
 import re
 import sys
-import tokenize
-import types
-import typing
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
@@ -47,119 +41,39 @@ def code(text: object) -> str:
 
 def prose(docstring: str | None) -> str:
     """Return a docstring's text as Markdown paragraphs, without its numpydoc sections."""
-    text = re.split(r"\n[A-Z]\w+\n-{3,}\n", inspect.cleandoc(docstring or ""))[0]
-    return re.sub(r"([<*$])", r"\\\1", re.sub(r"``([^`]+)``", r"`\1`", text)).strip()
+    from bearing_sim.scene import fields
+
+    return re.sub(r"([<*$])", r"\\\1", fields.prose(docstring))
 
 
 # ------------------------------------------------------------------------------------------------------------ scene fields
 
 
-def _comments(record: type) -> dict[str, str]:
-    """Return the comment beside each field of a record, or the one directly above it, by field name."""
-    source = inspect.getsource(sys.modules[record.__module__])
-    node = next(item for item in ast.walk(ast.parse(source)) if isinstance(item, ast.ClassDef) and item.name == record.__name__)
-    found = {token.start[0]: token for token in tokenize.generate_tokens(io.StringIO(source).readline) if token.type == tokenize.COMMENT}
-    comments = {}
-    for item in node.body:
-        if isinstance(item, ast.AnnAssign):
-            beside = [found[line].string for line in range(item.lineno, item.end_lineno + 1) if line in found]
-            above, line = [], item.lineno - 1
-            while line in found and found[line].line.strip().startswith("#"):
-                above.insert(0, found[line].string)
-                line -= 1
-            comments[item.target.id] = " ".join(text.lstrip("# ") for text in beside or above)
-    return comments
-
-
-def _parts(hint: object) -> tuple[list, list]:
-    """Return the alternatives of a type hint, unions and annotations taken apart, and all metadata on the way."""
-    if typing.get_origin(hint) is typing.Annotated:
-        inner, *metadata = typing.get_args(hint)
-        alternatives, more = _parts(inner)
-        return alternatives, [*metadata, *more]
-    if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
-        taken = [_parts(option) for option in typing.get_args(hint)]
-        return [option for options, _ in taken for option in options], [item for _, metadata in taken for item in metadata]
-    return [hint], []
-
-
-def _default(field: dataclasses.Field, quantity) -> str:
-    if field.default is not dataclasses.MISSING:
-        value = field.default
-        if quantity is not None and isinstance(value, float):
-            return code(quantity.show(value))
-        return code({None: "null", True: "true", False: "false", "": '""', (): "[]"}.get(value, value) if not isinstance(value, float) else value)
-    if field.default_factory is dataclasses.MISSING:
-        return "required"
-    return code(getattr(field.default_factory(), "law", "")) or "its defaults"
-
-
-def _bounds(quantity, metadata: Iterable[object]) -> str:
-    if quantity is not None:
-        low, high = quantity.minimum, quantity.maximum
-        if math.isinf(low) and math.isinf(high):
-            return ""
-        return f"{quantity.show(low)} to {quantity.show(high)}"
-    constraints = [item for annotation in metadata for item in getattr(annotation, "metadata", [annotation])]
-    low = [item.ge for item in constraints if hasattr(item, "ge")]
-    high = [item.le for item in constraints if hasattr(item, "le")]
-    return f"{low[0]} to {high[0]}" if low and high else ""
-
-
-def _record_sections(record: type, path: str, depth: int = 2) -> Iterator[str]:
+def _record_sections(record: type) -> Iterator[str]:
     """Yield the sections of a record and of the records inside it, as Markdown."""
-    from bearing_sim.scene.quantity import Quantity
+    from bearing_sim.scene.fields import blocks
 
-    hints, comments, rows, inner = typing.get_type_hints(record, include_extras=True), _comments(record), [], []
-    for field in dataclasses.fields(record):
-        if field.name == "law":  # the heading has it
-            continue
-        place = f"{path}.{field.name}".lstrip(".")
-        alternatives, metadata = _parts(hints[field.name])
-        quantity = next((item for item in metadata if isinstance(item, Quantity)), None)
-        records = [option for option in alternatives if dataclasses.is_dataclass(option)]
-        element = next((typing.get_args(option)[0] for option in alternatives if typing.get_origin(option) is tuple), None)
-        choices = [str(choice) for option in alternatives if typing.get_origin(option) is typing.Literal for choice in typing.get_args(option)]
-        if element is not None and quantity is None:
-            quantity = next((item for item in _parts(element)[1] if isinstance(item, Quantity)), None)
-        blocks = records or ([element] if dataclasses.is_dataclass(element) else [])
-        first_sentence = re.split(r"(?<=[.;:])\s", prose(blocks[0].__doc__))[0].rstrip(".;:") if len(blocks) == 1 else ""
-        meaning = quantity.meaning if quantity is not None else comments.get(field.name) or first_sentence
-        if not meaning and not records:
-            raise LookupError(f"{record.__module__}: the field {record.__name__}.{field.name} has no meaning; write it as a comment beside the field")
-        if records:
-            laws = [getattr(option, "law", "") for option in records]
-            kind = "block, by `law`: " + ", ".join(code(law) for law in laws) if len(records) > 1 else f"block, see `{place}` below"
-            inner += [(option, place, law if len(records) > 1 else "") for option, law in zip(records, laws, strict=True)]
-        elif dataclasses.is_dataclass(element):
-            kind = "list of blocks"
-            inner.append((element, f"{place}[]", ""))
-        elif quantity is not None:
-            kind = ("list of " if element is not None else "") + (quantity.shown_in or quantity.unit or "number")
-        elif choices:
-            kind = ", ".join(map(code, choices)) if len(choices) < 12 else "one of the names below"
-        else:
-            kind = {bool: "true or false", int: "whole number", str: "text", float: "number"}.get(alternatives[0], "list")
-        rows.append([code(field.name), kind, _default(field, quantity), _bounds(quantity, metadata), meaning])
-    yield prose(record.__doc__)
-    yield table(["field", "unit or kind", "default", "range", "meaning"], rows)
-    for option, place, law in inner:
-        yield f"{'#' * min(depth, 4)} `{place}`" + (f" with `law: {law}`" if law else "")
-        yield from _record_sections(option, place, depth + (place.count(".") > 1))
+    for block in blocks(record):
+        if block.path:
+            depth = min(2 + max(block.path.count(".") - 2, 0), 4)
+            yield f"{'#' * depth} `{block.path}`" + (f" with `law: {block.law}`" if block.law else "")
+        yield prose(block.record.__doc__)
+        rows = [[code(fact.path.rpartition(".")[2]), *fact[1:]] for fact in block.fields]
+        yield table(["field", "unit or kind", "default", "range", "meaning"], rows)
 
 
 def scene_fields() -> str:
     """Return every field of a scene: unit, default, range and meaning, block by block."""
     from bearing_sim.scene.scene import Scene
 
-    return "\n\n".join(_record_sections(Scene, ""))
+    return "\n\n".join(_record_sections(Scene))
 
 
 def mapping_fields() -> str:
     """Return every field of a mapping of a table: unit, default, range and meaning, block by block."""
     from bearing_sim.inputs.csv_import import Mapping, SpeedColumn
 
-    parts, kept, has_column = list(_record_sections(Mapping, "")), [], False
+    parts, kept, has_column = list(_record_sections(Mapping)), [], False
     while parts:
         part = parts.pop(0)
         if part.startswith("#") and parts[0] == prose(SpeedColumn.__doc__):  # all columns have the same fields, each in its own unit

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from bearing_sim.recording.reader import Recording
-from bearing_sim.sweep.table import new_figure
+from bearing_sim.sweep.pictures import new_figure
 
 TEMPERATURES = ("shaft", "inner_ring", "roller", "outer_ring", "housing", "oil_outlet")
 CLEARANCES = ("running", "initial", "fit", "rotation", "heat")

@@ -1,0 +1,65 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim fields``: the fields of a scene, with unit, range, default and meaning."""
+
+import click
+
+from bearing_sim.cli.options import json_option
+from bearing_sim.cli.reporting import UsageError, print_json, print_rows
+
+_COLUMNS = ("field", "unit or kind", "default", "range", "meaning")
+
+
+@click.command("fields")
+@click.argument("path", required=False, default="", metavar="[PATH]")
+@json_option
+def fields(path, as_json):
+    """Show the fields of a scene below PATH, such as lubricant or bearing.cage; without PATH the blocks of a scene.
+
+    For each: the unit in which messages show it, or what else may stand there; its default; its range; what it means.  A file and --set take any
+    unit of the kind.
+    """
+    from bearing_sim.scene.diameters import diameters
+    from bearing_sim.scene.fields import blocks
+    from bearing_sim.scene.scene import Scene
+    from bearing_sim.scene.uncertainty import nearest
+
+    path = path.strip().strip(".")
+    everything = blocks(Scene)
+    found = [each for each in everything if _place(each) == path or path and _place(each).startswith(f"{path}.")]
+    if not found:  # a single field
+        held = [each._replace(fields=tuple(fact for fact in each.fields if _bare(fact.path) == path)) for each in everything]
+        found = [each for each in held if each.fields]
+    if not found and (half := diameters(Scene).get(path)):
+        raise UsageError(f"{path} is {half.quantity.meaning}; see: bearing-sim fields {half.radius}")
+    if not found:
+        known = dict.fromkeys(_bare(fact.path) for each in everything for fact in each.fields)
+        raise UsageError(f"{path}: no field of a scene{nearest(path, known)}; bearing-sim fields lists the blocks")
+    if as_json:
+        print_json({"fields": [{"law": each.law or None, **_plain(fact._asdict())} for each in found for fact in each.fields]})
+        return
+    for each in found if path else found[:1]:
+        _print(each)
+    if not path:
+        click.echo("bearing-sim fields BLOCK shows the fields of a block and of those within it, such as: bearing-sim fields lubricant.supply")
+
+
+def _bare(path: str) -> str:
+    return path.replace("[]", "")
+
+
+def _place(block) -> str:
+    return _bare(block.path)
+
+
+def _plain(fact: dict) -> dict:
+    return {name: text.replace("`", "") for name, text in fact.items()}
+
+
+def _print(block) -> None:
+    """Print the fields of one block; texts of files stand between backticks in the documents, and without them here."""
+    title = f"{block.path or 'scene'}" + (f" with law: {block.law}" if block.law else "")
+    rows = [tuple(_plain(fact._replace(path=fact.path.rpartition(".")[2])._asdict()).values()) for fact in block.fields]
+    if not rows:
+        click.echo(f"{title}: no other fields\n")
+        return
+    print_rows(title, _COLUMNS, rows, words=_COLUMNS, keys=1)
