@@ -235,6 +235,7 @@ def test_the_sheet_has_p_its_rule_the_limits_and_what_the_life_by_laminae_counts
     rows = dict(row for group in sheet(scene, numbers) for row in group)
     assert numbers["equivalent_load"] == pytest.approx(0.92 * 5e3 + 0.6 * 1.7e3) and numbers["axial_load_permitted"]
     assert numbers["life_hours"] == pytest.approx(1e6 / (60 * 3000) * (73.5 / 5.62) ** (10 / 3), rel=1e-3)
+    assert "by the radial and the axial load on the bearing" in rows["life"]
     assert "P 5.62 kN by SKF: 0.92 F_r + 0.6 F_a" in rows["axial load"] and "level spatial counts the moment" in rows["axial load"]
     assert rows["flanges may carry"].startswith("by heat 1.73 kN; by strength, all the time 3.84 kN") and ": met; " in rows["flanges may carry"]
     assert "Schaeffler 864 N (exceeded)" in rows["flanges may carry"]

@@ -8,6 +8,7 @@ from click.testing import CliRunner
 
 from bearing_sim.cli.main import main
 from bearing_sim.scene.loader import load_bearing, load_scene
+from bearing_sim.scene.uncertainty import ranges_of
 from bearing_sim.studies import bearing_drawing
 from bearing_sim.sweep.pictures import new_figure
 
@@ -96,6 +97,26 @@ def test_fast_bearings_get_a_jet_and_heavy_loads_a_tighter_fit():
     assert "supply: oil_jet" in made and "fit: k6" in made
     given = called("new", "NU 210", "--oil", "ISO VG 10", "--speed", "9000rpm", "--load", "15kN", "--temperature", "70degC").stdout
     assert "temperature: 70degC" in given and "heat:" not in given
+
+
+@pytest.mark.parametrize("supply", ["circulating", "oil_jet", "oil_air", "oil_bath"])
+def test_a_supply_by_name_keeps_the_temperatures_computed(tmp_path, supply):
+    out = tmp_path / "supplied.yaml"
+    called("new", "N 1014", "--oil", "ISO VG 68", "--supply", supply, "--speed", "3000rpm", "--load", "2kN", "-o", out)
+    assert load_scene(out).lubricant.supply.law == supply and load_scene(out).heat.law == "network"
+
+
+@pytest.mark.parametrize("shaft", ["motor", "gear", "cold"])
+def test_what_heats_or_cools_the_shaft_is_written_with_its_ranges(tmp_path, shaft):
+    out = tmp_path / "shaft.yaml"
+    called("new", "NU 210/C3", "--oil", "ISO VG 68", "--speed", "3000rpm", "--load", "5kN", "--shaft", shaft, "-o", out)
+    scene = load_scene(out)
+    ranges = {each.field: each for each in ranges_of(scene)}
+    for field, value in (("heat.shaft.back_temperature", scene.heat.shaft.back_temperature), ("heat.shaft.back", scene.heat.shaft.back)):
+        assert ranges[field].low < value < ranges[field].high
+    assert "assumption" in out.read_text()
+    refused = called("new", "NU 210", "--oil", "ISO VG 68", "--speed", "1rpm", "--load", "1N", "--shaft", shaft, "--temperature", "70degC", code=2)
+    assert "--shaft is for temperatures that are computed" in refused.output
 
 
 @pytest.mark.parametrize("designation", ["NU 210", "NU 1010", "N 2310 ECP"])

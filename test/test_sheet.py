@@ -5,10 +5,13 @@ import math
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from bearing_sim.cli.main import main
+from bearing_sim.cli.reporting import UsageError, refuse_idle_temperature
 from bearing_sim.model.params import pack
 from bearing_sim.scene.grease_life import relubrication_interval
-from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.loader import load_scene, scene_to_yaml
 from bearing_sim.studies.sheet import aligned_pressures, results, sheet
 from bearing_sim.sweep.point import run_until_settled
 
@@ -153,3 +156,24 @@ def test_heat_of_an_equilibrium_is_the_friction_and_a_colder_inner_ring_is_said(
     assert "colder than the outer" in rows["rings"] and "heated shaft" in rows["rings"]
     warm = load_scene(scene, ["heat.shaft.back=20 mm", "heat.shaft.back_temperature=140 degC"])
     assert "heated shaft" not in dict(row for group in sheet(warm, numbers) for row in group)["rings"]
+
+
+@pytest.mark.parametrize("command", ["run", "loads", "uncertainty", "study friction", "sweep"])
+def test_an_oil_temperature_that_the_network_computes_is_refused_where_it_would_do_nothing(command, tmp_path):
+    file = tmp_path / "bath.yaml"
+    file.write_text(scene_to_yaml(scene_of("NU 210/C3", "heat={law: network}")))
+    given = (
+        ["--vary", "lubricant.temperature=0degC:60degC:2", "-o", str(tmp_path / "s")]
+        if command == "sweep"
+        else ["--set", "lubricant.temperature=0degC"]
+    )
+    refused = CliRunner().invoke(main, [*command.split(), str(file), *given])
+    assert refused.exit_code == 2 and "heat.law network computes how warm it gets" in refused.output and "heat.law=none" in refused.output
+
+
+def test_an_oil_temperature_counts_where_oil_flows_through_or_nothing_computes_it():
+    flowing = scene_of("NU 232", "heat={law: network}", "lubricant.temperature=20 degC")
+    refuse_idle_temperature(flowing, ["lubricant.temperature=20 degC"])
+    refuse_idle_temperature(scene_of("NU 210/C3"), ["lubricant.temperature=20 degC"])
+    with pytest.raises(UsageError):
+        refuse_idle_temperature(scene_of("NU 210/C3", "heat={law: network}"), ["lubricant.temperature=20 degC"])

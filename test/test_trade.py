@@ -157,7 +157,8 @@ def test_a_trade_names_the_levels_that_it_did_not_measure(capsys):
     assert "not measured: spatial (needs slices)" in capsys.readouterr().out
 
 
-def test_a_trade_prints_failed_settings_last_and_no_number_where_there_is_none(capsys):
+def test_a_trade_prints_failed_settings_last_and_no_number_where_there_is_none(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "300")  # wide enough for all in one part
     failed = Traded(SETTING, math.nan, NO_ERRORS, "ran out of steps")
     sliced = measured([(3.0, 0.1)])[0]
     sliced = sliced._replace(errors=sliced.errors._replace(edge=0.01))

@@ -104,7 +104,7 @@ NETWORK = ("heat.law=network", "level=steady")
 def carried(stiffness, length, clearance):
     """Overrides for an outer ring on a spring [N/m] in a squeeze film of a length [mm] and a radial clearance [um]."""
     film = f"{{radius: 40 mm, length: {length} mm, clearance: {clearance} um}}"
-    return "level=planar", f"support.outer_ring={{stiffness: {stiffness}, squeeze_film: {film}}}"
+    return "level=planar", f"support.outer_ring={{stiffness: {stiffness} N/m, squeeze_film: {film}}}"
 
 
 NJ = "bearing.flanges={inner: one, outer: both}"
@@ -190,6 +190,15 @@ CASES = {
     "life_laminae": (("run", "motor", "life.laminae=20"), ("run", "motor")),
     "roller_profile": (("run", "motor", "bearing.roller.crown=none"), ("run", "motor")),
     "oil_temperature": (("run", PAPER, "lubricant.temperature=220 degC"), ("run", PAPER)),
+    "polyamide_cage": (("loads", "motor", "bearing=NU 210 ECP", "lubricant.temperature=130 degC"), ("loads", "motor", "bearing=NU 210 ECP")),
+    "ring_stabilisation": (
+        ("loads", "motor", "bearing=NU 210 ECM", "lubricant.temperature=130 degC"),
+        ("loads", "motor", "bearing=NU 210 ECM/S1", "lubricant.temperature=130 degC"),
+    ),
+    "mineral_oil": (
+        ("loads", "motor", "lubricant.oil=ISO VG 220", "lubricant.temperature=110 degC"),
+        ("loads", "motor", "lubricant.oil=ISO VG 220 PAO", "lubricant.temperature=110 degC"),
+    ),
     "local_temperature": (("run", PAPER, *HOT, "heat.inner_ring=250 degC"), ("run", PAPER, *HOT, "heat.inner_ring=150 degC")),
     "shaft_in_air": (
         ("run", PAPER, *NETWORK, "operating.shaft_speed=60000 rpm", "bearing.inner_raceway.bore_radius=27 mm"),

@@ -132,7 +132,7 @@ def _print_loads(scene, slices, found) -> None:
 
     from bearing_sim.scene.display import force, number
     from bearing_sim.studies.clearance import clearance_text
-    from bearing_sim.studies.sheet import life_rows, temperatures, temperatures_text
+    from bearing_sim.studies.sheet import axial_rows, life_rows, temperatures, temperatures_text
 
     def lean(amount, azimuth, unit):
         return f"{number(amount)} {unit}, +x end towards {number(round(math.degrees(azimuth), 1))}°" if amount > 1e-9 else "none"
@@ -152,6 +152,7 @@ def _print_loads(scene, slices, found) -> None:
             ("running clearance", clearance_text(scene, _clearance(scene, found))),
             *([("temperatures", warmth)] if (warmth := temperatures_text(temperatures(found.sample[0]))) else []),
             *life_rows(scene, lives),
+            *axial_rows(scene, lives | {"axial_load": operating.axial_load, "radial_load": operating.radial_load}),
             ("static safety", f"S_0 {number(lives['static_safety'], 3)}"),
             ("lubrication", f"kappa {number(lives['viscosity_ratio'], 3)}, least film {number(lives['film_um'], 3)} µm"),
         ],
@@ -283,13 +284,13 @@ def _report_machine(section, pressing, machined) -> dict:
 
 def _print_machine(report) -> None:
     def points(kind):
-        return ", ".join(f"{point['radius_mm']:.4f} mm at {point['angle_deg']:.1f} deg" for point in report[f"{kind}_points"])
+        return ", ".join(f"{point['radius_mm']:.4f} mm at {point['angle_deg']:.1f}°" for point in report[f"{kind}_points"])
 
     print_table(
         "raceway after release",
         [
-            ("D-value, mean of highs minus mean of lows", f"{report['d_value_mm']:.4f} mm"),
-            ("roundness of the low points", f"{report['roundness_um']:.2f} um"),
+            ("D value, mean of highs minus mean of lows", f"{report['d_value_mm']:.4f} mm"),
+            ("roundness of the low points", f"{report['roundness_um']:.2f} µm"),
             ("low points", points("low")),
             ("high points", points("high")),
             ("ground to", f"{report['ground_radius_mm']:.4f} mm under load"),

@@ -17,6 +17,7 @@ from bearing_sim.cli.reporting import (
     print_json,
     print_rows,
     quantity_of,
+    refuse_idle_temperature,
     warn,
 )
 
@@ -169,6 +170,8 @@ def _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tole
         raise UsageError("--point and --points contradict each other; give one of them")
     with as_usage_error(PointError), as_file_error():
         mission = read_points(points_file) if points_file else tuple(map(read_point, points))
+        if any(point.oil_temperature is not None for point in mission):
+            refuse_idle_temperature(scene, ["lubricant.temperature"])
         off = tuple(read_tolerance(text, scene) for text in tolerances)
     for name in {each.field for each in off}:
         if sum(each.field == name for each in off) > 1:

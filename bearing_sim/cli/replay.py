@@ -22,6 +22,7 @@ from bearing_sim.cli.reporting import (
     print_table,
     progress_bar,
     suggest_level,
+    tell_idle_temperature,
     tell_use,
     unknown_report,
     warn_of_limits,
@@ -110,6 +111,7 @@ def replay(
         recorded = read_input_log(logs, names, joint, stamps, constants=constants)
         held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
         course = judge(recorded, scene.accepted_inputs, held, longest_gap, scene.heat.law)
+        tell_idle_temperature(scene, recorded)
         seconds = course.end * 1e-9
         with ExitStack() as stack:
             recording, names_of = None, [log.name for log in logs]

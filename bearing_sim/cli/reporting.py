@@ -154,6 +154,7 @@ def judged(log, scene, longest_gap: float | None = None):
 
     held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
     profile = judge(log, scene.accepted_inputs, held, longest_gap, scene.heat.law)
+    tell_idle_temperature(scene, log)
     tell_use(profile.tally, log.path, *([profile.unknown_event.text] if profile.unknown_seconds else []))
     return profile
 
@@ -252,6 +253,18 @@ def refuse_idle_temperature(scene, fields: Iterable[str]) -> None:
         "bearing and oil of this temperature add --set heat.law=none; for a cold or warm place set heat.ambient_temperature; for oil that flows "
         "through set heat.oil_flow"
     )
+
+
+def tell_idle_temperature(scene, log) -> None:
+    """Warn where a log has oil temperatures that the thermal network of a scene computes: they are where it begins, and no more."""
+    if "oil_temperature" in log.series and scene.heat.law == "network" and not oil_flows(scene):
+        supply = scene.lubricant.supply.law
+        warn(
+            [
+                f"oil_temperature: no oil flows through (supply {supply}), and heat.law network computes how warm it gets: the log's temperatures "
+                "are only where it begins; to run at them add --set heat.law=none"
+            ]
+        )
 
 
 def oil_flows(scene) -> bool:

@@ -29,6 +29,7 @@ from bearing_sim.cli.reporting import (
     print_json,
     print_rows,
     print_table,
+    refuse_idle_temperature,
     seconds_of,
     warn,
     warn_of_scene,
@@ -81,6 +82,8 @@ def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamp
             if names or constants:
                 raise UsageError(f"{data} is a table of operating points; --speed, --load and the other options of logs do not go with it")
             found = read_spectrum(data)
+            if any(point.oil_temperature is not None for point in found.points):
+                refuse_idle_temperature(scene, ["lubricant.temperature"])
         else:
             from bearing_sim.inputs.log import read_input_log
 

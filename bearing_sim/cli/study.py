@@ -34,6 +34,7 @@ from bearing_sim.cli.reporting import (
     print_table,
     progress_bar,
     quantity_of,
+    refuse_idle_temperature,
     seconds_of,
     unknown_report,
     warn_of_scene,
@@ -503,6 +504,7 @@ def friction(scene_name, overrides, series, table, as_json):
         return
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
+    refuse_idle_temperature(scene, overrides)
     series = " ".join(series.upper().split()) if series else series_of(scene.bearing.designation or scene.bearing.name)
     if series not in SERIES:
         named = scene.bearing.designation or scene.bearing.name

@@ -18,6 +18,7 @@ from bearing_sim.cli.reporting import (
     command_line,
     print_json,
     print_rows,
+    refuse_idle_temperature,
     seconds_of,
     warn,
 )
@@ -71,6 +72,8 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
     points = Points("sweep", count)
     with as_file_error(), as_usage_error(SceneError, ClusterError, JournalInUse):
         plan = plan_sweep(scene_name, [*overrides, *([f"level={level}"] if level else [])], varied, seconds)
+        first = next(each for each in plan.scenes if not isinstance(each, SceneError))
+        refuse_idle_temperature(first, [*overrides, *(axis.field.path for axis in varied)])
         study = study_digest("sweep", [(axis.field.path, axis.values) for axis in plan.axes], plan.duration, list(map(_defined, plan.scenes)))
         require_same_study(out, study)
         with Journal(out.path.with_suffix(".journal")) as journal, points:

@@ -16,6 +16,7 @@ from bearing_sim.cli.reporting import (
     judged,
     print_json,
     print_table,
+    refuse_idle_temperature,
     unknown_report,
     warn_of_scene,
     write_csv,
@@ -51,6 +52,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
 
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
+    refuse_idle_temperature(scene, overrides)
     warn_of_scene(scene, before_results=False)
     scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
     with as_file_error(), as_usage_error(JournalInUse):

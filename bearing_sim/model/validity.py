@@ -1716,7 +1716,7 @@ UNWATCHED = (
 
 MINIMUM_LOAD = Law(
     "minimum_load",
-    "validity.load",
+    "validity.life",
     "rollers driven by their load",
     "the radial load over the makers' minimum",
     "",

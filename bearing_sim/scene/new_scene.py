@@ -140,7 +140,8 @@ def _choose(tree: dict, scene: Scene, wish: Wish) -> None:
         fast = abs(scene.operating.shaft_speed) * 30 / math.pi * 1e3 * scene.bearing.pitch_diameter >= 1e6 * _JET_FROM
         lubricant["supply"] = "oil_jet" if fast else "oil_bath"
     if wish.temperature is None:
-        law = "grease" if is_grease else lubricant["supply"]
+        supply = "grease" if is_grease else lubricant["supply"]
+        law = supply["law"] if isinstance(supply, dict) else supply
         lubricant["temperature"] = _TEMPERATURES.get(law, _TEMPERATURES["oil_jet"])
         tree["heat"] = {"law": "network", "ambient_temperature": "20 degC", **_shaft_block(tree, scene, wish)}
     tree["life"] = {"a_iso": _CLEANLINESS["grease" if is_grease else "oil"]}

@@ -25,6 +25,8 @@ FACTORS = ARRAYS["life_factors"].fields
 def loads_text(scene: Scene) -> str:
     """Return by which loads the life of a scene is rated, in words: those of rollers contain the preload of its raceways, if it has any."""
     bearing, loads = scene.bearing, scene.life.loads
+    if scene.life.method == "iso281" and scene.operating.axial_load and bearing.ratings.axial_load != "none":
+        return "the radial and the axial load on the bearing"
     if scene.life.method == "iso281" or clearance_at_speed(bearing, scene.mounting, scene.operating.shaft_speed) >= 0.0:
         return loads
     outer = bearing.outer_raceway

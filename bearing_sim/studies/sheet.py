@@ -166,7 +166,7 @@ def sheet(scene: Scene, found: Mapping, states: list[Row] = ()) -> list[list[Row
     return [
         _bearing_rows(scene, found),
         _condition_rows(scene, found),
-        [*life_rows(scene, found), *_axial_rows(scene, found)],
+        [*life_rows(scene, found), *axial_rows(scene, found)],
         _strength_rows(scene, found),
         _lubrication_rows(scene, found),
         _limit_rows(scene, found),
@@ -275,7 +275,7 @@ def _oil(scene: Scene, found: Mapping) -> str:
     return f", a_ISO {number(found['a_iso'], 3)} (e_C {number(found['contamination_factor'], 3)}, {scene.life.a_iso})"
 
 
-def _axial_rows(scene: Scene, found: Mapping) -> list[Row]:
+def axial_rows(scene: Scene, found: Mapping) -> list[Row]:
     """Return what the makers' rules say about the axial load; nothing without one."""
     axial, radial = abs(found["axial_load"]), found["radial_load"]
     if not axial:

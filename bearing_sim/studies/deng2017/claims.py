@@ -273,7 +273,7 @@ def preload(tables: Tables, level: str) -> Judged:
     answered = lives[0] < 300 <= min(lives[1:])
     wrong = [(each, k) for each in (rollers, inner) for k in each.backward(rising=False)]
     gives = f"life {', '.join(f'{hours:.0f}' for hours in lives)} h at R_low = 34.8600, 34.8625, 34.8650 mm"
-    gives += f"; from 34.8600 to 34.8675 mm loaded rollers {_ends(rollers)}, largest inner load {_ends(inner, '.0f')} N"
+    gives += f"; from 34.8600 to 34.8675 mm loaded rollers {_ends(rollers)}, largest roller load {_ends(inner, '.0f')} N"
     off, why = _deviation(wrong, "mm")
     if not answered:
         off = _joined("the radii that meet 300 h differ from Deng's", off)

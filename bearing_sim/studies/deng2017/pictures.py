@@ -269,7 +269,9 @@ def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Ma
             f"Slip, largest loads. {both} The inner ring vibrates (planar) around 25,000 rpm, and above 42,000 where R_low is large.",
             ("speed_slip", "speed_planar"),
         ),
-        Pictured("fig17_18.png", "Figures 17, 18: radial load", f"Slip, life and largest inner load. {both}", ("load_slip", "load_planar")),
+        Pictured(
+            "fig17_18.png", "Figures 17, 18: radial load", f"Slip, life and largest roller load, inner raceway. {both}", ("load_slip", "load_planar")
+        ),
         Pictured(
             "fig19_20.png",
             "Figures 19, 20: installation angle",
