@@ -509,16 +509,16 @@ def clearance_scene(name, clearance, *overrides):
 @pytest.mark.parametrize("name", ["NU 210", "NJ 2308", "NU 232", "lobed"])
 def test_a_bearing_of_more_clearance_runs_as_one_of_less_that_has_grown_less(name):
     lobes = ["bearing.outer_raceway={d_value: 30 um, lobes: 3}"] if name == "lobed" else []
-    scene = clearance_scene("NU 210" if lobes else name, 48, *lobes)
+    scene = clearance_scene("NU 210" if lobes else name, 44, *lobes)
     reference = reference_of(scene, span_of(scene))
-    assert reference.offset == pytest.approx(0.5 * (48e-6 - 40e-6))
+    assert reference.offset == pytest.approx(0.5 * (44e-6 - 40e-6))
     where = np.array([[150.0, 3000.0, 333.15, 0.0, growth] for growth in (-2e-5, 0.0, 1e-5)] + [[60.0, 800.0, 333.15, 0.3, 5e-6]])
     there = where - [0.0, 0.0, 0.0, 0.0, reference.offset]
     own, other = solve_points(scene, where), solve_points(reference.scene, there)
     assert other[:, ANSWER.cage_slip] == pytest.approx(own[:, ANSWER.cage_slip], abs=5e-5)
-    assert other[:, ANSWER.inner_lamina_load] == pytest.approx(own[:, ANSWER.inner_lamina_load], rel=1e-3)
     unshifted = solve_points(reference.scene, where)
-    assert np.abs(unshifted[:, ANSWER.inner_lamina_load] / own[:, ANSWER.inner_lamina_load] - 1.0).max() > 5e-3, "the shift counts"
+    errors = [np.abs(each[:, ANSWER.inner_lamina_load] / own[:, ANSWER.inner_lamina_load] - 1.0).max() for each in (other, unshifted)]
+    assert errors[0] < 5e-4 < 2e-3 < errors[1], "the shift counts"
 
 
 def test_clearances_within_a_step_share_a_table_and_others_do_not():
@@ -526,25 +526,25 @@ def test_clearances_within_a_step_share_a_table_and_others_do_not():
         scene = clearance_scene("NU 210", clearance, *overrides)
         return table_path(scene, span_of(scene))
 
-    assert path(52) == path(60) == path(69) and path(52) != path(71) and path(52) != path(52, "table.tolerance=40 %")
+    assert path(56) == path(60) == path(64) and path(56) != path(66) and path(56) != path(56, "table.tolerance=40 %")
     plain = "heat={law: none}"  # a table of one growth has nothing to shift along
-    assert path(52, plain) != path(60, plain)
+    assert path(56, plain) != path(60, plain)
     corrected = "table.correction=planar"
-    assert path(52, corrected) != path(60, corrected)
+    assert path(56, corrected) != path(60, corrected)
 
 
 @pytest.mark.timeout(600)
 def test_a_table_is_taken_for_another_clearance_and_for_another_machine(monkeypatch, tmp_path):
     monkeypatch.setattr(store, "FOLDER", tmp_path)
     monkeypatch.setattr(store, "_MOST_WARM_NODES", 1)
-    first, other = clearance_scene("NU 210", 52), clearance_scene("NU 210", 66)
+    first, other = clearance_scene("NU 210", 56), clearance_scene("NU 210", 64)
     told = []
     table, _ = obtain_table(first, workers=1, progress=lambda solved, wanted: told.append((solved, wanted)))
     assert all(solved <= wanted for solved, wanted in told) and told[-1][0] == told[-1][1]
     shifted, _ = cached_table(other)
-    assert shifted.growths - table.growths == pytest.approx(7e-6) and np.array_equal(shifted.nodes, table.nodes, equal_nan=True)
+    assert shifted.growths - table.growths == pytest.approx(4e-6) and np.array_equal(shifted.nodes, table.nodes, equal_nan=True)
     where = np.array([[150.0, 3000.0, shifted.temperatures[0], 0.0, 0.0]])
-    assert look_up(shifted, where) == pytest.approx(look_up(table, where - [0.0, 0.0, 0.0, 0.0, 7e-6]), nan_ok=True)
+    assert look_up(shifted, where) == pytest.approx(look_up(table, where - [0.0, 0.0, 0.0, 0.0, 4e-6]), nan_ok=True)
     file = tmp_path / "shared.npz"
     file.write_bytes(shared_table.shared_table(other, *cached_table(other)))
     (tmp_path / table_path(first, span_of(first)).name).unlink()
