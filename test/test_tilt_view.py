@@ -70,9 +70,9 @@ def test_series_of_tilts_lives_and_pressures_are_the_samples(tmp_path):
     assert lives == pytest.approx([life, life + np.log10(0.8), life + np.log10(0.2)], rel=1e-6)
     text = last_value(chunks, "/now", "TextDocument:text")[0]
     assert (
-        "| life, L10r |" in text
+        "| life, L_nmr |" in text
         and "| L10 |" in text
-        and "| modified, L_nmr |" in text
+        and "| without oil, L10r |" in text
         and "1500 MPa, ends 1700 MPa" in text
         and "0.50, 3.00 mrad" in text
     )

@@ -645,13 +645,14 @@ class RunSeries:
 
     def write_readout(self, sample: np.void, dropped: int) -> None:
         """Log the numbers of one sample as text at the recording's present time."""
-        limits, basic = self._scene.thresholds, self._scene.life.symbols[0]
+        limits, (basic, modified) = self._scene.thresholds, self._scene.life.symbols
+        counted = ("rating_life", basic) if self._scene.life.is_basic else ("modified_rating_life", modified)
         slip = float(sample["cage_slip"]) if turns(sample["shaft_speed"], limits.slip_from_speed) else math.nan
         load = math.hypot(sample["load_y"], sample["load_z"])
         inner, outer = self._latest.rows[-1] if len(self._latest.rows) else (math.nan, math.nan)
         lines = [  # in the order of their importance: what a small window has no room for stands last
             ("cage slip", f"**{quantity_text('cage_slip', slip)}**" if math.isfinite(slip) else "none (at rest)"),
-            (f"life, {basic}", f"**{_life_text(sample['rating_life'])}**"),
+            (f"life, {counted[1]}", f"**{_life_text(sample[counted[0]])}**"),
             ("largest roller load", quantity_text("inner_load_maximum", inner)),
             ("shaft speed", quantity_text("shaft_speed", float(sample["shaft_speed"]))),
             ("radial load", quantity_text("radial_load", load)),
@@ -673,7 +674,7 @@ class RunSeries:
         """Return the readout's lines that only some scenes have."""
         lines = []
         if not self._scene.life.is_basic:
-            lines.append((f"modified, {self._scene.life.symbols[1]}", _life_text(sample["modified_rating_life"])))
+            lines.append((f"without oil, {self._scene.life.symbols[0]}", _life_text(sample["rating_life"])))
         compared = compared_life(self._scene)
         lines.append((LIFE_SYMBOLS[compared], _life_text(sample[compared])))
         if self._scene.bodies_tilt:
