@@ -267,11 +267,12 @@ def test_a_d_value_at_which_planar_refuses_all_is_withdrawn(elliptical):
     assert max(lives) < 400.0
 
 
-def test_both_bands_and_both_levels_stand_in_text_tables_and_picture(elliptical):
+def test_both_bands_and_both_levels_stand_in_text_tables_and_picture(elliptical, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "300")  # no heading is broken
     report, folder = elliptical
     words = [*ELLIPTICAL, "--level", "slip", "-o", str(folder / "d.parquet")]
     result = CliRunner().invoke(main, words, catch_exceptions=False)
-    for text in ("R_low at slip, mm", "verified at planar, mm", "narrowed", "withdrawn", "refused at planar", "life at slip, h"):
+    for text in ("R_low at slip [mm]", "verified at planar [mm]", "narrowed", "withdrawn", "refused at planar", "life at slip [h]"):
         assert text in result.output
     designed = read_design(folder / "d.parquet")
     assert len(designed.checks) == len(report["checks"]) >= 3 * 4

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bearing_sim.cli import reporting
 from bearing_sim.cli.reporting import print_rows
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.scene.display import force, heading, hours, larger_unit, number, power, quantity_text, with_sign
@@ -76,3 +77,15 @@ def test_a_table_keeps_every_digit_at_any_width(width, monkeypatch, capsys):
         assert all(text in printed for text in row[:-1])
     parts = printed.count("a wide table")
     assert printed.count("1,000") >= parts and (parts > 1) == (width < 200)
+
+
+@pytest.mark.parametrize("width", [40, 80, 140])
+def test_without_rich_names_and_values_are_broken_between_words_and_keep_every_one(width, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", str(width))
+    monkeypatch.setattr(reporting.importlib.util, "find_spec", lambda name: None)
+    values = {"life": " ".join(f"{1000 + k:,} h" for k in range(60)), "bearing": "NU 210/C3"}
+    reporting.print_groups("a sheet", [[("life", values["life"])], [], [("bearing", values["bearing"])]])
+    printed = capsys.readouterr().out
+    assert max(map(len, printed.splitlines())) <= width
+    assert all(word in printed.split() for value in values.values() for word in value.split())
+    assert printed.index("life") < printed.index("\n\nbearing"), "groups stand apart"

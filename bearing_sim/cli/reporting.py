@@ -10,6 +10,7 @@ import shlex
 import shutil
 import signal
 import sys
+import textwrap
 import threading
 import time
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
@@ -361,7 +362,7 @@ def print_groups(title: str, groups: Iterable[Sequence[tuple[str, str]]]) -> Non
     """Print a table of names and values with a line between groups; empty groups are left out."""
     groups = [group for group in groups if group]
     if not importlib.util.find_spec("rich"):
-        _print_plain(title, ("", ""), [row for group in groups for row in group], words=("",))
+        _print_plain_groups(title, groups)
         return
     from rich.table import Table
 
@@ -371,6 +372,18 @@ def print_groups(title: str, groups: Iterable[Sequence[tuple[str, str]]]) -> Non
             table.add_row(name, value)
         table.add_section()
     _show(table)
+
+
+def _print_plain_groups(title: str, groups: Sequence[Sequence[tuple[str, str]]]) -> None:
+    """Print names and values where rich is not installed: values broken between words, a blank line between groups."""
+    names = max((len(name) for group in groups for name, _ in group), default=0) + 2
+    width = max(shutil.get_terminal_size((150, 24)).columns, names + _LEAST_OF_WORDS)
+    click.echo(title)
+    for group in groups:
+        click.echo()
+        for name, value in group:
+            for line in textwrap.wrap(name.ljust(names) + value, width, subsequent_indent=" " * names, break_on_hyphens=False):
+                click.echo(line)
 
 
 def print_rows(
