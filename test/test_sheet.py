@@ -177,3 +177,13 @@ def test_an_oil_temperature_counts_where_oil_flows_through_or_nothing_computes_i
     refuse_idle_temperature(scene_of("NU 210/C3"), ["lubricant.temperature=20 degC"])
     with pytest.raises(UsageError):
         refuse_idle_temperature(scene_of("NU 210/C3", "heat={law: network}"), ["lubricant.temperature=20 degC"])
+
+
+@pytest.mark.parametrize("designation", ["NU 210 ECX", "NU 99999", "our own 7"])
+def test_a_designation_that_nobody_can_read_takes_no_rule_of_a_series_and_stops_nothing(designation):
+    tree = {"name": "tried", "bearing": "NJ 2308", "lubricant": {"grease": "lithium_mineral_nlgi_2", "temperature": "70 degC"}}
+    tree["operating"] = {"shaft_speed": "1000 rpm", "radial_load": "4 kN", "axial_load": "1.5 kN"}
+    scene = load_scene(tree, [f"bearing.designation={designation!r}"])
+    numbers = results(scene, run_until_settled(scene).window)
+    assert numbers["equivalent_load"] == pytest.approx(0.92 * 4e3 + 0.6 * 1.5e3), "that of series 2, which is the larger one"
+    assert numbers["makers_moment"] is None and "want of a designation" in dict(row for group in sheet(scene, numbers) for row in group)["axial load"]

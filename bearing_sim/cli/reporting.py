@@ -247,33 +247,29 @@ def refuse_idle_temperature(scene, fields: Iterable[str]) -> None:
     fields : that the command line sets or varies, or ``FIELD=VALUE``.
     """
     named = {each.partition("=")[0].strip() for each in fields}
-    if "lubricant.temperature" not in named or scene.heat.law != "network" or oil_flows(scene):
-        return
-    raise UsageError(
-        f"lubricant.temperature: no oil flows through (supply {scene.lubricant.supply.law}), and heat.law network computes how warm it gets; for a "
-        "bearing and oil of this temperature add --set heat.law=none; for a cold or warm place set heat.ambient_temperature; for oil that flows "
-        "through set heat.oil_flow"
-    )
+    if "lubricant.temperature" in named and (reason := _idle_temperature(scene)):
+        raise UsageError(
+            f"lubricant.temperature: {reason}; for a bearing and oil of this temperature add --set heat.law=none; for a cold or warm place set "
+            "heat.ambient_temperature; for oil that flows through set heat.oil_flow"
+        )
 
 
 def tell_idle_temperature(scene, log) -> None:
     """Warn where a log has oil temperatures that the thermal network of a scene computes: they are where it begins, and no more."""
-    if "oil_temperature" in log.series and scene.heat.law == "network" and not oil_flows(scene):
-        supply = scene.lubricant.supply.law
-        warn(
-            [
-                f"oil_temperature: no oil flows through (supply {supply}), and heat.law network computes how warm it gets: the log's temperatures "
-                "are only where it begins; to run at them add --set heat.law=none"
-            ]
-        )
+    if "oil_temperature" in log.series and (reason := _idle_temperature(scene)):
+        warn([f"oil_temperature: {reason}: the log's temperatures are only where it begins; to run at them add --set heat.law=none"])
 
 
-def oil_flows(scene) -> bool:
-    """Return whether oil comes into a scene's thermal network from outside, so that its temperature counts."""
+def _idle_temperature(scene) -> str:
+    """Return why the temperature of the oil that comes in does not count in a scene; empty where it does."""
+    if scene.heat.law != "network":
+        return ""
     from bearing_sim.model.thermal_network import oil_flow
 
     given = scene.heat.conductances.oil_flow
-    return (oil_flow(scene) if given is None else given) > 0.0
+    if (oil_flow(scene) if given is None else given) > 0.0:
+        return ""
+    return f"no oil flows through (supply {scene.lubricant.supply.law}), and heat.law network computes how warm it gets"
 
 
 def warn(lines: Iterable[str]) -> None:

@@ -31,7 +31,7 @@ from bearing_sim.physics.film import DOWSON_TOYODA
 from bearing_sim.scene.axial_load import heat_limits, strength_limit
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.crown import NoCrown
-from bearing_sim.scene.designation import is_designation, parse_designation
+from bearing_sim.scene.designation import readable_designation
 from bearing_sim.scene.display import number, unit_sign
 from bearing_sim.scene.flanges import flange_geometry
 from bearing_sim.scene.lubricant import ConstantTraction, CustomOil, EyringTraction, KragelskiiTraction, Oil, Oil4109Traction
@@ -680,7 +680,7 @@ def _has_polyamide_cage(scene: Scene) -> bool:
 
 def _stabilised_to(scene: Scene) -> float:
     """Return the temperature to which the rings keep their dimensions [K], by the suffix of the designation (DIN 623-1)."""
-    suffixes = parse_designation(scene.bearing.designation).unmodelled
+    suffixes = readable_designation(scene.bearing.designation).unmodelled
     return _STABILISED.get(next((each for each in suffixes if each in _STABILISED), "SN"), math.inf)
 
 
@@ -1426,7 +1426,7 @@ LAWS = (
         _stabilised_to,
         "DIN 623-1: rings without a suffix keep their dimensions to 120 degC (many makers': 150 degC), S0 to 150, S1 to 200, S2 to 250, S3 to 300",
         "take a bearing with a suffix of stabilisation that reaches this temperature",
-        lambda scene: is_designation(scene.bearing.designation),
+        lambda scene: readable_designation(scene.bearing.designation) is not None,
         lambda at: np.fmax(part_temperature(at.samples, "inner_ring_temperature"), part_temperature(at.samples, "outer_ring_temperature")),
         expected="at most 120 degC, or what the suffix S0 to S4 says",
     ),

@@ -10,6 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.scene.designation import readable_designation
+from bearing_sim.scene.ratings import rate
+
 _SKF, _KRW = (0.2, 0.6), (0.11, 0.69)  # e and Y of the first group below
 _FACTORS = {  # maker -> X, e and Y by dimension series, those of other series, and up to which F_a/F_r; NKE, URB and ZVL print SKF's
     "skf": (0.92, dict.fromkeys(("10", "2", "3", "4"), _SKF), (0.3, 0.4), 0.5),
@@ -80,9 +83,8 @@ def results_without_rule(scene, radial_load: float) -> tuple[str, ...]:
 
 
 def _series(bearing) -> str | None:
-    from bearing_sim.scene.designation import is_designation, parse_designation
-
-    return parse_designation(bearing.designation).series if is_designation(bearing.designation) else None
+    found = readable_designation(bearing.designation)
+    return None if found is None else found.series
 
 
 class AxialLimit(NamedTuple):
@@ -155,8 +157,6 @@ def strength_limit(bearing) -> float:
 
 def heat_limits(scene, speeds, radial_loads, viscosity_ratios) -> np.ndarray:
     """Return the axial loads that flanges may carry by their heat [N], NaN where SKF states none; parameters as of `axial_limits`, or arrays."""
-    from bearing_sim.scene.ratings import rate
-
     bearing = scene.bearing
     diameters = 1e3 * (bearing.bore_diameter + bearing.outside_diameter)
     rpm = np.abs(np.asarray(speeds, float)) * 30.0 / math.pi

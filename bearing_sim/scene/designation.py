@@ -301,6 +301,14 @@ def _latin(plain: str) -> tuple[str, str, str] | None:
     return (found[1], found[2] + " " + found[3], found[4]) if len(found.groups()) == 4 else (found[1], found[2], found[3])
 
 
+def readable_designation(text) -> Designation | None:
+    """Return what a designation says as by `parse_designation`; None where there is none, or one that cannot be read."""
+    try:
+        return parse_designation(text)
+    except DesignationError:
+        return None
+
+
 def is_designation(text) -> bool:
     """Return whether a text or a whole number has the form of a bearing's designation: letters of a type and a number, or a number of ISO or GOST.
 

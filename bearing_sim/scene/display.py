@@ -225,7 +225,7 @@ def with_sign(value: float, digits: int = 3) -> str:
     return text if text.startswith("-") or text in ("0", NO_NUMBER) else f"+{text}"
 
 
-SIGNS = {"um": "µm", "degC": "°C", "deg": "°", "1": "", "um/m": "µm/m", "N*m": "N m", "m^2/s": "m²/s", "mm^2/s": "mm²/s", "W/K": "W/K", "K/W": "K/W"}
+SIGNS = {"um": "µm", "degC": "°C", "deg": "°", "1": "", "um/m": "µm/m", "N*m": "N m", "m^2/s": "m²/s", "mm^2/s": "mm²/s"}
 """Units as people read them, by the spelling of files."""
 
 

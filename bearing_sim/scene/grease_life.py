@@ -4,12 +4,14 @@
 import math
 from typing import NamedTuple
 
+from bearing_sim.scene.designation import readable_designation
+
 _TYPE_FACTOR = 5.0  # of cylindrical roller bearings in the empirical interval; 10 of deep groove ball bearings, 1 of spherical roller bearings
 _AT = 343.15  # [K] for which the interval holds
 _HALVED_BY = 15.0  # K above that, by which it is halved (SKF, Rolling bearings: adjustments of relubrication intervals)
 _MOST_GAIN = 2.0  # of a colder bearing (SKF); a full complement gains nothing
 _LONGEST = 30_000.0  # h, beyond which SKF advises against any interval
-_FULL_FILL_CAGES = ("J", "MA", "MB")  # pressed steel, and brass guided by rings: half the interval (SKF)
+_HALVING_CAGES = ("J", "MA", "MB")  # pressed steel, and brass guided by rings: half the interval (SKF)
 
 
 class GreaseInterval(NamedTuple):
@@ -37,10 +39,6 @@ def relubrication_interval(scene, speed: float, temperature: float) -> GreaseInt
     bore = 1e3 * bearing.bore_diameter
     at_70 = max(_TYPE_FACTOR * (14e6 / (rpm * math.sqrt(bore)) - 4.0 * bore), 0.0)
     gain = min(2.0 ** ((_AT - temperature) / _HALVED_BY), 1.0 if bearing.cage.is_absent else _MOST_GAIN)
-    return GreaseInterval(min(at_70 * gain * (0.5 if _halves(bearing) else 1.0), _LONGEST), temperature)
-
-
-def _halves(bearing) -> bool:
-    from bearing_sim.scene.designation import is_designation, parse_designation
-
-    return is_designation(bearing.designation) and parse_designation(bearing.designation).cage in _FULL_FILL_CAGES
+    found = readable_designation(bearing.designation)
+    halved = found is not None and found.cage in _HALVING_CAGES
+    return GreaseInterval(min(at_70 * gain * (0.5 if halved else 1.0), _LONGEST), temperature)

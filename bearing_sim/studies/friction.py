@@ -19,7 +19,7 @@ from bearing_sim.model.params import pack
 from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.physics.drag import bath_moment
 from bearing_sim.physics.rating_life import viscosity_ratio
-from bearing_sim.scene.designation import DesignationError, parse_designation
+from bearing_sim.scene.designation import readable_designation
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.lubricant import NoRollingResistance
 from bearing_sim.scene.ratings import rate
@@ -102,9 +102,8 @@ def dimensions_of(scene: Scene) -> Dimensions:
 
 def series_of(name: str) -> str | None:
     """Return the series of `SERIES` by the designation of a bearing, such as 22 of NU 2210; None where there is none."""
-    try:
-        found = parse_designation(name)
-    except DesignationError:
+    found = readable_designation(name)
+    if found is None:
         return None
     series = f"{found.type} {found.series}" if found.is_full_complement else found.series
     return series if series in SERIES else None

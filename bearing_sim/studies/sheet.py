@@ -48,12 +48,13 @@ def results(scene: Scene, window: np.ndarray) -> dict:
     window : settled samples, shape (n,), see `bearing_sim.model.sample`.
     """
     last, slip = window[-1], window["cage_slip"]
+    radial_load, viscosities = float(np.hypot(window["load_y"], window["load_z"]).mean()), _viscosities(scene, last)
     return {
         "scene": scene.name,
         "level": scene.level,
         "estimated": [each.field for each in scene.bearing.estimated],
         "shaft_speed_rpm": RPM * float(window["shaft_speed"].mean()),
-        "radial_load": float(np.hypot(window["load_y"], window["load_z"]).mean()),
+        "radial_load": radial_load,
         "axial_load": scene.operating.axial_load,
         "oil_temperature_c": float(window["oil_temperature"].mean()) - ZERO_CELSIUS,
         "cage_slip": float(slip.mean()),
@@ -63,7 +64,7 @@ def results(scene: Scene, window: np.ndarray) -> dict:
         **temperatures(last),
         **_heat(scene, window),
         **life_report(scene, window),
-        **_viscosities(scene, last),
+        **viscosities,
         "damage": float(last["damage"]),
         "cage_speed_rpm": RPM * float(window["cage_speed"].mean()),
         "characteristic_frequencies_hz": mean_frequencies(window),
@@ -71,7 +72,7 @@ def results(scene: Scene, window: np.ndarray) -> dict:
         "inner_load_maximum": float(window["inner_load_maximum"].max()),
         "outer_load_maximum": float(window["outer_load_maximum"].max()),
         **_pressures(scene, window),
-        **_limits(scene, window),
+        **_limits(scene, window, radial_load, 1e-6 * viscosities["viscosity_mm2_s"]),
     }
 
 
@@ -136,10 +137,16 @@ def aligned_pressures(load: float, ring: str, params) -> tuple[float, float]:
     return float(pressures.max()), float(max(pressures[0], pressures[-1]))
 
 
-def _limits(scene: Scene, window: np.ndarray) -> dict:
-    """Return the minimum load [N] and the makers' moments [N m], None where there is none; with grease the relubrication interval [h]."""
+def _limits(scene: Scene, window: np.ndarray, load: float, viscosity: float) -> dict:
+    """Return the minimum load [N] and the makers' moments [N m], None where there is none; with grease the relubrication interval [h].
+
+    Parameters
+    ----------
+    scene, window : as of `results`.
+    load : radial [N].
+    viscosity : kinematic, in the films [m^2/s].
+    """
     speed, sample = float(np.abs(window["shaft_speed"]).mean()), window[-1]
-    load, viscosity = float(np.hypot(window["load_y"], window["load_z"]).mean()), 1e-6 * _viscosities(scene, sample)["viscosity_mm2_s"]
     least, rule = minimum_load(scene, speed)
     makers = makers_moment(scene, speed, load, viscosity, scene.operating.axial_load)
     found = {"minimum_load": float(least), "minimum_load_rule": rule}
@@ -178,9 +185,7 @@ def sheet(scene: Scene, found: Mapping, states: list[Row] = ()) -> list[list[Row
 
 def _bearing_rows(scene: Scene, found: Mapping) -> list[Row]:
     bearing, roller = scene.bearing, scene.bearing.roller
-    guessed = {each.field for each in bearing.estimated}
-
-    guessed |= {
+    guessed = {each.field for each in bearing.estimated} | {
         name
         for name, given in (
             ("bore", bearing.inner_raceway.bore_radius),
@@ -217,19 +222,19 @@ def _condition_rows(scene: Scene, found: Mapping) -> list[Row]:
         loads += f"; {force(abs(found['axial_load']))} axial"
     supply = "" if lubricant.supply.law == "grease" else f", {_SUPPLIES[lubricant.supply.law]}"
     oil = f"{lubricant.oil.name}{' in grease' if lubricant.grease is not None else ''}{supply}"
-    rows = [("speed and load", f"{number(abs(found['shaft_speed_rpm']), 6)} rpm; {loads}"), ("lubricant", oil), *temperature_rows(scene, found)]
+    rows = [("speed and load", f"{number(abs(found['shaft_speed_rpm']), 6)} rpm; {loads}"), ("lubricant", oil), _temperature_row(scene, found)]
     if "heat_to_oil_w" in found:
         away = f"{power(found['heat_to_oil_w'])} to the oil that flows through, {power(found['heat_to_ambient_w'])} through housing and shaft"
         rows.append(("heat", away))
     return rows
 
 
-def temperature_rows(scene: Scene, found: Mapping) -> list[Row]:
+def _temperature_row(scene: Scene, found: Mapping) -> Row:
     """Return the row of the temperatures, and where they come from."""
     known = temperatures_text(found)
     if not known:
-        return [("temperatures", f"{number(round(found['oil_temperature_c'], 2), 3)} °C, given for the oil and taken for all parts")]
-    return [("temperatures", f"{known}, {'computed from the losses' if scene.heat.law == 'network' else 'given'}")]
+        return "temperatures", f"{number(round(found['oil_temperature_c'], 2), 3)} °C, given for the oil and taken for all parts"
+    return "temperatures", f"{known}, {'computed from the losses' if scene.heat.law == 'network' else 'given'}"
 
 
 def temperatures_text(found: Mapping) -> str:
