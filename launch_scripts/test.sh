@@ -13,12 +13,14 @@ install_package test
 
 cd "$here"
 case "$*" in
-"") chosen="not long" ;;
-"--long") chosen="long" ;;
-*) chosen="" ;;
+"" | "--long") "$venv/bin/python" -m bearing_sim.cli compile ;; # the code of the checkout, which the tests import
+*) exec "$venv/bin/python" -m pytest "$@" ;;
 esac
-if [ -n "$chosen" ]; then # on all cores
-    "$venv/bin/python" -m bearing_sim.cli compile # the code of the checkout, which the tests import
-    set -- -m "$chosen" -n auto --dist loadgroup
+on_all_cores=("$venv/bin/python" -m pytest -n auto --dist loadgroup -m)
+if [ -z "$*" ]; then
+    exec "${on_all_cores[@]}" "not long"
 fi
-exec "$venv/bin/python" -m pytest "$@"
+failed=0
+"${on_all_cores[@]}" "long and not alone" || failed=$?
+"$venv/bin/python" -m pytest -m "long and alone" || failed=$?
+exit "$failed"

@@ -40,6 +40,9 @@ _REAL_TIME = {
     "test_view",
 }
 
+# What draws beside a solver: on two cores with another test on one of them, the server of the view, in idle time, never gets to run.
+_ALONE = {"test_bench_view", "test_frozen_viewer", "test_view"}
+
 
 def pytest_configure():
     """Let SIGINT reach the programs that tests interrupt: a shell starts what runs in its background without it."""
@@ -54,6 +57,8 @@ def pytest_collection_modifyitems(items):
         name = item.path.stem
         is_real_time = name in _REAL_TIME or (name.startswith("test_node") and name != "test_node_lifecycle")  # which is long, and in no hurry
         item.add_marker(pytest.mark.xdist_group("real_time" if is_real_time else name))
+        if name in _ALONE:
+            item.add_marker(pytest.mark.alone)
 
 
 @pytest.fixture

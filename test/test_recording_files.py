@@ -169,15 +169,25 @@ def test_a_full_disk_is_told_and_nothing_written_is_lost(small_disk):
     assert len(samples(small_disk / "run.mcap")) == found.messages["/roller_loads"] and len(list(small_disk.iterdir())) == 1
 
 
+def test_on_a_full_disk_a_recording_is_completed_however_large_the_block_was_that_did_not_fit(small_disk):
+    sink = McapSink(small_disk / "run.mcap", SCENE, START, flush_every=60.0, limits=Limits(keep_free=0.0))
+    with pytest.raises(OSError, match="No space left on device"):
+        for _ in range(10):
+            sink.write(RUN[:2000])
+    sink.close()
+    found = contents(small_disk / "run.mcap")
+    assert found.is_sound and found.messages["/roller_loads"] > 300
+
+
 def test_a_disk_that_has_room_again_at_the_end_gets_the_whole_file(small_disk):
     (small_disk / "ballast").write_bytes(bytes(600_000))
     sink = McapSink(small_disk / "run.mcap", SCENE, START, flush_every=0.02, limits=Limits(keep_free=0.0))
     written = 0
     with pytest.raises(OSError, match="No space left"):
         for _ in range(3000):
-            sink.write(RUN[written % 3950 : written % 3950 + 50])
-            written += 50
-            time.sleep(0.005)
+            sink.write(RUN[written : written + 1])
+            written += 1
+            time.sleep(0.001)
     (small_disk / "ballast").unlink()
     sink.close()
     file = contents(small_disk / "run.mcap")

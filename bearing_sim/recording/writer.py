@@ -24,7 +24,7 @@ from bearing_sim.messages.sample_messages import BandMessages, InputMessages
 from bearing_sim.recording.append_file import AppendFile, set_aside
 from bearing_sim.recording.bag import ACTIVE, QOS_TEXT, UNLIMITED, Limits, Part, TopicCount, bag_metadata, write_bag_metadata
 from bearing_sim.recording.mcap_format import OWN_TOPIC, Message
-from bearing_sim.recording.mcap_writer import McapWriter, SampleRows, widened
+from bearing_sim.recording.mcap_writer import CHUNK_SIZE, McapWriter, SampleRows, widened
 from bearing_sim.recording.provenance import git_hash, package_version, versions
 from bearing_sim.scene.loader import scene_to_yaml
 from bearing_sim.scene.ratings import rate
@@ -513,8 +513,11 @@ class McapSink(AbstractContextManager):
         rollers = block["roller_angle"].shape[1]
         if rollers != self._rows.rollers:
             self._lay_out(rollers)
-        times_ns = np.uint64(self.start_ns) + np.rint(block["time"] * 1e9).astype(np.int64).astype(np.uint64)
-        self._files.current.write_rows(self._rows, block, times_ns, self._whole_rows, self._with_repeating(block["time"]))
+        # In parts of about a chunk: when the disk is full, no more is left to be written than the space that is reserved for the end of the file.
+        per_part = max(1, CHUNK_SIZE // self._whole_rows.size)
+        for part in (block[start : start + per_part] for start in range(0, len(block), per_part)):
+            times_ns = np.uint64(self.start_ns) + np.rint(part["time"] * 1e9).astype(np.int64).astype(np.uint64)
+            self._files.current.write_rows(self._rows, part, times_ns, self._whole_rows, self._with_repeating(part["time"]))
 
     def _lay_out(self, rollers: int) -> None:
         self._rows = SampleRows(self._topics, rollers, self._frame)
