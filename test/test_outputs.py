@@ -5,6 +5,8 @@ import errno
 import os
 import signal
 import stat
+import subprocess
+import sys
 import threading
 import time
 
@@ -279,3 +281,20 @@ def test_one_program_writes_a_file_at_a_time_and_what_a_killed_one_left_blocks_n
 def test_names_of_any_kind_are_written(tmp_path, name):
     Output(tmp_path / name).write_bytes(b"new")
     assert contents(tmp_path) == {name: b"new"}
+
+
+def test_on_a_system_without_posix_locks_a_scene_loads_and_an_output_is_refused_in_a_sentence(tmp_path):
+    code = f"""
+import sys
+sys.modules["fcntl"] = None  # as on Windows
+from bearing_sim import load_scene
+from bearing_sim.files.outputs import RefusedOutput, replaced
+load_scene("deng2017_table1")
+try:
+    with replaced({str(tmp_path / "kept")!r}):
+        pass
+except RefusedOutput as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert "which this system does not have" in done.stdout and not done.stderr and not list(tmp_path.iterdir())
