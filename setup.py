@@ -27,7 +27,7 @@ optional = {
     "tables": ["pandas>=2.2", "pyarrow>=18", "xarray>=2024.6"],
     "terminal": ["rich>=13"],
     "vibration": ["h5py>=3.11"],
-    "view": ["pillow>=10", "rerun-sdk==0.41.0"],
+    "view": ["pillow>=10", "rerun-sdk>=0.39,<0.42"],
 }
 full = [requirement for requirements in optional.values() for requirement in requirements]
 
@@ -41,6 +41,7 @@ setup(
             "__init__.pyi",
             "scene/catalog/*/*.yaml",
             "scene/catalog/designations/*.csv",
+            "scene/scenes/*.bands.npz",
             "scene/scenes/*.yaml",
             "ros/dds/*.xml",
             "ros/profiles/*.yaml",
@@ -62,7 +63,7 @@ setup(
         "mcap>=1.6,<2",
         "numba>=0.61,<0.69",
         "numpy>=2.0",
-        "pint>=0.24",
+        "pint>=0.25",
         "platformdirs>=4",
         "pydantic>=2.9",
         "PyYAML>=6",
@@ -98,6 +99,7 @@ setup(
     maintainer_email="maintainers@bearing-sim.org",
     description="Predicts cage slip and rating life of high-speed roller bearings with lobed raceways, live, from shaft speed and radial load.",
     license="Apache-2.0",
+    classifiers=["Operating System :: POSIX :: Linux", *(f"Programming Language :: Python :: 3.{minor}" for minor in range(11, 15))],
     entry_points={
         "console_scripts": [
             "bearing-sim = bearing_sim.programs:bearing_sim",

@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,9 +14,6 @@ from bearing_sim.levels.common.observation import TALLY
 from bearing_sim.levels.common.state_transfer import start_means
 from bearing_sim.levels.common.thermal_state import THERMAL, ThermalState
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
-from bearing_sim.levels.steady.table import Table
-from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.model.oil import kinematic_viscosities
 from bearing_sim.model.params import pack
 from bearing_sim.model.sample import COLUMN, NODE_OBSERVABLES, RING_TEMPERATURES, flat, joined, new_block, sample_dtype
@@ -27,6 +24,9 @@ from bearing_sim.scene.fidelity import NUMBERS
 from bearing_sim.scene.quantity import Quantity
 from bearing_sim.scene.scene import OPERATING_POINT, Integration, Operating, Scene
 from bearing_sim.scene.uncertainty import quantities
+
+if TYPE_CHECKING:
+    from bearing_sim.levels.steady.table import Table
 
 _MEASURED_COLUMNS = slice(COLUMN.inner_ring_temperature_measured, COLUMN.outer_ring_temperature_measured + 1)
 # What a workspace remembers of the past; everything else in it is found again at the next evaluation.
@@ -212,7 +212,7 @@ class Simulation:
     """
 
     def __init__(
-        self, scene: Scene, inputs: Inputs | None = None, table: Table | None = None, start: np.void | None = None, nodes: np.ndarray | None = None
+        self, scene: Scene, inputs: Inputs | None = None, table: "Table | None" = None, start: np.void | None = None, nodes: np.ndarray | None = None
     ):  # fmt: skip
         self.scene = scene
         self._params, self._tolerances = pack(scene), tolerances_of(scene.integration)
@@ -223,6 +223,8 @@ class Simulation:
         self._temperatures = np.full(THERMAL.stop - THERMAL.start, math.nan)  # without one: those that are given
         self._tables = ()  # what the level's workspace is made of besides the parameters
         if self._level.advance_profile is not None:
+            from bearing_sim.levels.steady.table_builder import cached_table
+
             kept = cached_table(scene) if table is None else (table,)
             if kept is None and scene.table.correction != "none":
                 raise IntegrationError(
@@ -386,6 +388,8 @@ class Simulation:
     def _start_temperatures(self) -> np.ndarray:
         if self.scene.heat.start != "equilibrium":
             return self._thermal.temperatures
+        from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
+
         found = thermal_equilibrium(self.scene, self.inputs)
         if not found.converged:
             raise IntegrationError(f"{found.reason}; start the network with heat.start=oil to see how it runs away")

@@ -22,6 +22,7 @@ from mcap.writer import Writer
 from recordings import steady_log
 from synthetic_run import synthetic_block
 
+from bearing_sim.files import kept
 from bearing_sim.files.limits import FileError
 from bearing_sim.inputs.csv_guess import guess
 from bearing_sim.inputs.csv_import import input_log, load_mapping, mapping_from_yaml, read_table
@@ -35,9 +36,8 @@ from bearing_sim.scene import loader
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.loader import load_scene, scene_from_yaml, scene_to_yaml
 from bearing_sim.scene.quantity import to_si
-from bearing_sim.stored_state import state_file
 from bearing_sim.stored_state.state import new_state
-from bearing_sim.stored_state.state_file import FORMAT, VERSION, StateError, read_state
+from bearing_sim.stored_state.state_file import VERSION, StateError, read_state
 from bearing_sim.vibration.reading import read_vibration
 from bearing_sim.vibration.signal import Vibration, VibrationError
 
@@ -428,9 +428,9 @@ def _as_state_file(state: dict) -> bytes:
     """Return a file of a state: of version 0 by hand, of the present version with its checksum."""
     written = json.dumps(state, default=str).encode()
     if len(state) <= len(_BY_HAND):
-        return b'{"format": "%b", "version": 0, "state": %b}' % (FORMAT.encode(), written)
-    head = {"format": FORMAT, "version": VERSION, "checksum": state_file._checksum(VERSION, written)}
-    return json.dumps(head).encode()[:-1] + state_file._STATE + written + b"}\n"
+        return b'{"format": "bearing_sim state", "version": 0, "state": %b}' % written
+    head = {"format": "bearing_sim state", "version": VERSION, "checksum": kept._checksum(VERSION, written)}
+    return json.dumps(head).encode()[:-1] + b', "state": ' + written + b"}\n"
 
 
 def states() -> st.SearchStrategy[bytes]:

@@ -143,6 +143,18 @@ def test_a_response_is_kept_for_its_bearing_ranges_and_life_and_for_no_others(re
     assert [kept.kept_response(other) for other in others] == [None] * 3
 
 
+def test_the_response_of_the_demonstration_comes_with_the_package_and_is_that_of_this_code():
+    assert read_response(kept.bundled_path(load_scene("deng2017_table1"))) is not None, "compiled code has changed: python test/bundle_response.py"
+
+
+def test_a_bundled_response_belongs_to_its_scene_and_code_whatever_the_version_of_the_compiler(monkeypatch):
+    path = kept.bundled_path(SCENE)
+    monkeypatch.setattr("numba.__version__", "0.0")
+    assert kept.bundled_path(SCENE) == path != kept.bundled_path(asking_scene("bearing.roller.count=17"))
+    monkeypatch.setattr("bearing_sim.numerics.compilation._SOURCES", ("numerics/*.py",))
+    assert kept.bundled_path(SCENE) != path
+
+
 def test_what_no_response_can_be_fitted_to_is_refused_with_its_cause(response, effects):
     conditions, scores = design(SCENE, 2048)
     answers = np.full((len(scores), len(ANSWERS)), 0.01)

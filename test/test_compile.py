@@ -49,13 +49,13 @@ def test_unknown_level_is_refused_with_the_known_ones():
 def test_prune_removes_other_versions_and_keeps_this_one(tmp_path, monkeypatch):
     for version in ("present", "older"):
         (tmp_path / version / "levels").mkdir(parents=True)
-        (tmp_path / version / "levels" / "slip.nbc").write_bytes(bytes(1_500_000))
+        (tmp_path / version / "levels" / "slip.code").write_bytes(bytes(1_500_000))
     monkeypatch.setattr(compilation, "CACHE_FOLDER", tmp_path / "present")
     monkeypatch.setattr(precompilation, "compile_all", lambda wanted, workers: iter(()))
     result = CliRunner().invoke(main, ["compile", "--prune"])
     assert result.exit_code == 0 and "2 MB of other versions removed" in result.output, result.output
     assert [folder.name for folder in tmp_path.iterdir()] == ["present"]
-    assert (tmp_path / "present" / "levels" / "slip.nbc").stat().st_size == 1_500_000
+    assert (tmp_path / "present" / "levels" / "slip.code").stat().st_size == 1_500_000
 
 
 @pytest.mark.parametrize(

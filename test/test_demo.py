@@ -119,12 +119,12 @@ def test_the_shell_script_is_sound_and_says_which_python_it_needs(tmp_path):
     assert all(subprocess.run(["bash", "-n", str(path)], timeout=PATIENCE).returncode == 0 for path in SCRIPTS.glob("*.sh"))
     old = tmp_path / "old"
     old.mkdir()
-    for name in ("python3", "python3.11", "python3.12", "python3.13"):
+    for name in ("python3", "python3.11", "python3.12", "python3.13", "python3.14"):
         fake = old / name
         fake.write_text('#!/bin/sh\n[ "$1" = --version ] && echo "Python 3.9.2" && exit 0\nexit 1\n')
         fake.chmod(0o755)
     done = script(tmp_path, PATH=f"{old}:{os.environ['PATH']}")
-    assert done.returncode == 2 and "needs Python 3.11 to 3.13; python3 is Python 3.9.2" in done.stderr
+    assert done.returncode == 2 and "needs Python 3.11 to 3.14, for which there are wheels of ROS 2; python3 is Python 3.9.2" in done.stderr
 
 
 def test_the_shell_script_says_how_to_get_venv(tmp_path):
@@ -133,3 +133,36 @@ def test_the_shell_script_says_how_to_get_venv(tmp_path):
     fake.chmod(0o755)
     done = script(tmp_path, PYTHON=str(fake))
     assert done.returncode == 2 and "apt install python3-venv" in done.stderr
+
+
+def in_environment(folder, commands):
+    """Run shell commands that know the functions of environment.sh, with a folder that stands for the checkout."""
+    text = f"set -euo pipefail; here='{folder}'; . '{SCRIPTS / 'environment.sh'}'; {commands}"
+    return subprocess.run(["bash", "-c", text], capture_output=True, text=True, timeout=PATIENCE)
+
+
+def test_each_stage_of_the_installation_says_how_long_it_took_the_last_time_or_what_to_expect(tmp_path):
+    (tmp_path / ".venv").mkdir()
+    assert in_environment(tmp_path, "timed ros 3 'installing ROS 2' true").stderr == "installing ROS 2\n", "nothing is known yet"
+    (tmp_path / ".venv" / ".bearing_sim_seconds_venv").write_text("7\n")
+    (tmp_path / ".venv" / ".bearing_sim_seconds_ros").unlink()
+    failed = in_environment(tmp_path, "timed ros 3 'installing ROS 2' false")
+    assert failed.returncode == 1 and failed.stderr == "installing ROS 2 (about 21 s)\n"
+    in_environment(tmp_path, "timed ros 3 'installing ROS 2' sleep 1.1")
+    done = in_environment(tmp_path, "timed ros 3 'installing ROS 2' echo installed")
+    assert done.stdout == "installed\n" and done.stderr in [f"installing ROS 2 ({seconds} s the last time here)\n" for seconds in (1, 2)]
+
+
+@pytest.mark.parametrize(("commands", "has_ros", "failed"), [("touch ready", True, False), ("exit 0", False, False), ("exit 3", False, True)])
+def test_the_demonstration_waits_for_ros_and_then_for_all_that_is_installed_beside_it(commands, has_ros, failed, tmp_path):
+    from bearing_sim.ros.demo import DemoFailed, _await
+
+    process = subprocess.Popen(["sh", "-c", f"sleep 0.3; {commands}; sleep 0.3"], cwd=tmp_path)
+    try:
+        _await((process.pid, tmp_path / "ready"))
+        assert (tmp_path / "ready").exists() is has_ros and not failed
+    except DemoFailed as error:
+        assert failed and "installation failed" in str(error)
+    _await((process.pid, tmp_path / "ready"), all_of_it=True)
+    with pytest.raises(ChildProcessError):
+        os.waitpid(process.pid, os.WNOHANG)

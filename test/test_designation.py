@@ -257,6 +257,11 @@ def test_other_faults_of_the_file_come_with_a_designation():
     assert {each.path for each in error.value.errors} == {"bearing.width", "operating.radial_load"}
 
 
+def test_the_tables_list_bearings_as_their_designations_say():
+    listed = [each.designation for each in designations()]
+    assert len(listed) > 1000 and [parse_designation(each.text) for each in listed] == listed
+
+
 def test_every_bearing_of_the_tables_loads_with_ratings_near_its_makers():
     # each section once; types and cages share it
     worst = {}

@@ -79,13 +79,48 @@ def test_a_table_keeps_every_digit_at_any_width(width, monkeypatch, capsys):
     assert printed.count("1,000") >= parts and (parts > 1) == (width < 200)
 
 
+VALUES = {"life": " ".join(f"{1000 + k:,} h" for k in range(60)), "bearing": "NU 210/C3", "a name as long as that of a file": "x" * 45}
+
+
 @pytest.mark.parametrize("width", [40, 80, 140])
-def test_without_rich_names_and_values_are_broken_between_words_and_keep_every_one(width, monkeypatch, capsys):
+def test_names_and_values_are_broken_between_words_and_keep_every_one(width, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", str(width))
-    monkeypatch.setattr(reporting.importlib.util, "find_spec", lambda name: None)
-    values = {"life": " ".join(f"{1000 + k:,} h" for k in range(60)), "bearing": "NU 210/C3"}
-    reporting.print_groups("a sheet", [[("life", values["life"])], [], [("bearing", values["bearing"])]])
+    reporting.print_groups("a sheet", [[("life", VALUES["life"])], [], [("bearing", VALUES["bearing"])]])
     printed = capsys.readouterr().out
     assert max(map(len, printed.splitlines())) <= width
-    assert all(word in printed.split() for value in values.values() for word in value.split())
-    assert printed.index("life") < printed.index("\n\nbearing"), "groups stand apart"
+    assert all(word in printed.split() for name in ("life", "bearing") for word in VALUES[name].split())
+    assert printed.index("life") < printed.index("├") < printed.index("bearing"), "a line stands between groups"
+
+
+TITLE = "a table whose title is longer than its columns are wide together, so that it is broken, too"
+ROWS = [["1,000", "0.5", "a reason in words, µm [N], that may be broken"], ["20", "-1.25", ""]]
+
+
+@pytest.mark.parametrize("width", [51, 61, 80, 140])
+def test_tables_are_those_that_rich_draws(width, monkeypatch, capsys):
+    table = pytest.importorskip("rich.table")
+    console = pytest.importorskip("rich.console").Console(width=width, markup=False, emoji=False, highlight=False)
+    monkeypatch.setenv("COLUMNS", str(width))
+
+    def drawn():
+        return [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+
+    groups = [list(VALUES.items()), [("bearing", "")]]
+    reporting.print_groups("a sheet", groups)
+    own, theirs = drawn(), table.Table(*(table.Column(overflow="fold") for _ in range(2)), title="a sheet", show_header=False, title_justify="left")
+    for group in groups:
+        for row in group:
+            theirs.add_row(*row)
+        theirs.add_section()
+    console.print(theirs)
+    assert own == drawn()
+    print_rows(TITLE, ["n", "longer [kN]", "why"], ROWS, words=("why",))
+    own = drawn()
+    widths = [len(border) - 2 for border in next(line for line in own if line.startswith("┏"))[1:-1].split("┳")]
+    alignments = zip(("n", "longer [kN]", "why"), ("right", "right", "left"), widths)
+    columns = [table.Column(name, justify=side, width=wide, overflow="fold") for name, side, wide in alignments]
+    theirs = table.Table(*columns, title=TITLE, title_justify="left")
+    for row in ROWS:
+        theirs.add_row(*row)
+    console.print(theirs)
+    assert own == drawn()

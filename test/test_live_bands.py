@@ -277,6 +277,20 @@ def test_a_live_model_without_a_response_says_what_builds_one():
         bench.live.close()
 
 
+def test_a_live_model_estimates_by_a_response_that_comes_later(response):
+    bench = Bench(scene=["estimation.bands=true"])
+    try:
+        bench.run(0.3)
+        assert bench.live.bands() == []
+        bench.live.estimate_by(response)
+        bench.run(0.3)
+        assert bench.live.bands()[0].times[0] > 0.25, "none of what was before"
+        condition = bench.live.condition(bench.now_ns)
+        assert "cage slip 95 % [fraction]" in condition.values and not [event for event in condition.events if event.kind == "estimate.absent"]
+    finally:
+        bench.live.close()
+
+
 def test_a_view_shades_from_one_edge_to_the_other(tmp_path):
     path, block = tmp_path / "run.rrd", synthetic_block(SCENE, 0.02 * np.arange(50))
     numbers = np.broadcast_to(np.array([[0.05, 0.03, 0.11], [300.0, 100.0, 1000.0], [1e-5, 0.0, 3e-5], [1e3, 1e2, 1e12]]), (50, 4, 3))

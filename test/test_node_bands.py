@@ -29,12 +29,19 @@ FAST = {"shaft_speed": 4700.0}
 """At which the cage slips by several points [rad/s]."""
 
 
+def keep_response():
+    """Keep a response for the scene and return where."""
+    scene = asking_scene(*OVERRIDES, *QUICK)
+    write_response(response_path(scene), made_up_response(scene))
+    return response_path(scene)
+
+
 @pytest.fixture
-def node(tmp_path):
-    """A node that records, for whose scene a response is kept, and a client of it."""
-    scene, domain = asking_scene(*OVERRIDES, *QUICK), fresh_domain()
-    path = response_path(scene)
-    write_response(path, made_up_response(scene))
+def node(tmp_path, request):
+    """A node that records, for whose scene a response is kept, unless it is asked for without, and a client of it."""
+    domain, path = fresh_domain(), keep_response()
+    if getattr(request, "param", "") == "without":
+        path.unlink()
     words = ", ".join(f"'{word}'" for word in (*OVERRIDES, *QUICK))
     arguments = ("-p", f"overrides:=[{words}]", "-p", "governor:=false", "-p", f"record:={tmp_path / 'run.mcap'}")
     process, client = NodeProcess(tmp_path, domain, "--ros-args", *arguments), Client(domain)
@@ -45,6 +52,7 @@ def node(tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("node", ["with", "without"], indirect=True, ids=["response kept", "response built while it runs"])
 def test_bands_and_estimates_are_published_calibrated_by_a_measured_cage_and_recorded(node, tmp_path):
     process, client = node
     kind, heard = topics.ESTIMATED[BANDS].ros_type, {BANDS: [], ESTIMATES: []}
@@ -53,6 +61,7 @@ def test_bands_and_estimates_are_published_calibrated_by_a_measured_cage_and_rec
     topic = topics.MEASUREMENTS[topics.MEASURED]
     cage = client.node.create_publisher(message_class(topic.ros_type), topics.MEASURED, qos_profile_sensor_data)
     client.wait_until_matched(process)
+    keep_response()  # again, or now
     client.drive_until(lambda: heard[BANDS] and heard[ESTIMATES] and client.received["diagnostics"], "bands and estimates", process)
     first = heard[BANDS][-1]
     bands = bands_of_message(BANDS, 0.0, list(first.name), first.position)

@@ -5,6 +5,8 @@ import errno
 import os
 import signal
 import stat
+import subprocess
+import sys
 import threading
 import time
 
@@ -186,7 +188,11 @@ def test_a_study_completes_its_own_table_and_replaces_no_other(tmp_path):
 
 
 def test_a_journal_is_never_added_to_another_file(tmp_path):
-    for old in (OLD, b"", b'{"ke', b'{"key": "a", "result": {}}\n{"key": "b'):
+    with Journal(tmp_path / "s.journal") as journal:
+        journal.add("a", {})
+        journal.add("b", {})
+    whole = (tmp_path / "s.journal").read_bytes()
+    for old in (OLD, b"", whole[:4], whole[:-30]):
         (tmp_path / "s.journal").write_bytes(old)
         if old == OLD:
             with pytest.raises(JournalInUse, match="no journal of bearing-sim"), Journal(tmp_path / "s.journal"):
@@ -279,3 +285,20 @@ def test_one_program_writes_a_file_at_a_time_and_what_a_killed_one_left_blocks_n
 def test_names_of_any_kind_are_written(tmp_path, name):
     Output(tmp_path / name).write_bytes(b"new")
     assert contents(tmp_path) == {name: b"new"}
+
+
+def test_on_a_system_without_posix_locks_a_scene_loads_and_an_output_is_refused_in_a_sentence(tmp_path):
+    code = f"""
+import sys
+sys.modules["fcntl"] = None  # as on Windows
+from bearing_sim import load_scene
+from bearing_sim.files.outputs import RefusedOutput, replaced
+load_scene("deng2017_table1")
+try:
+    with replaced({str(tmp_path / "kept")!r}):
+        pass
+except RefusedOutput as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert "which this system does not have" in done.stdout and not done.stderr and not list(tmp_path.iterdir())

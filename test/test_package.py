@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 TOP_LEVEL = {
     *("package.xml", "setup.py", "setup.cfg", "bearing_sim", "launch_scripts", "test", "resource"),
     *("README.md", "LICENSE", "CHANGELOG.rst", "QUALITY_DECLARATION.md"),
-    *("doc", "CONTRIBUTING.md", "CITATION.cff"),
+    *("doc", "CONTRIBUTING.md", "CITATION.cff", "MANIFEST.in"),
 }
 KEYS = {
     "PyYAML": "python3-yaml",

@@ -52,14 +52,6 @@ def test_a_command_is_interrupted_in_the_usual_way_but_not_in_the_middle_of_an_i
     assert ended.returncode == 130 and ended.stderr == ""
 
 
-def test_the_node_imports_no_library_for_what_most_runs_do_without(tmp_path):
-    pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
-    heavy = ("pint", "scipy.stats", "rerun", "pyarrow", "pandas", "matplotlib", "h5py", "rosbags.rosbag2")
-    code = "import sys; import bearing_sim.ros.node; from bearing_sim.scene.loader import load_scene; load_scene('deng2017_table1')"
-    done = run(f"{code}; print(*(name for name in {heavy} if name in sys.modules))", tmp_path)
-    assert done.stdout.split() == []
-
-
 def test_a_program_names_the_extra_that_it_lacks_and_raises_what_is_no_extra(tmp_path, monkeypatch, capsys):
     for name, missing in (("needs_ros", "rclpy"), ("needs_other", "nobody_has_this")):
         (tmp_path / f"{name}.py").write_text(f"import {missing}\nmain = None\n")

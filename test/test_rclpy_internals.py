@@ -46,22 +46,24 @@ def test_a_serialised_message_is_published_through_the_handle_and_taken_from_the
         assert deserialize_message(found[0][0], Float64).data == 7.0 and "received_timestamp" in found[0][1]
 
 
-def test_the_callback_of_a_service_that_rclpy_has_made_can_be_replaced_and_raises_rclerror_for_a_transition_that_is_none(node):
-    raised = []
+def test_the_callback_of_a_service_that_rclpy_has_made_can_be_replaced_and_a_transition_that_is_none_is_no_success(node):
+    called = []
 
     def wrapped(change_state):
         def answer(request, response):
-            with pytest.raises(rclpy_internals.RclError) as error:
-                change_state(request, response)
-            raised.append(error.value)
-            return response
+            called.append(change_state)
+            try:
+                return change_state(request, response)
+            except rclpy_internals.RclError as error:  # up to ROS 2 Jazzy; later ones answer by themselves
+                assert isinstance(error, RuntimeError)
+                return response
 
         return answer
 
     rclpy_internals.wrap_service(node, "change_state", wrapped)
     (service,) = (service for service in node.services if service.srv_name.endswith("/change_state"))
-    service.callback(ChangeState.Request(transition=Transition(id=Transition.TRANSITION_ACTIVATE)), ChangeState.Response())
-    assert len(raised) == 1 and isinstance(raised[0], RuntimeError)
+    request = ChangeState.Request(transition=Transition(id=Transition.TRANSITION_ACTIVATE))
+    assert not service.callback(request, ChangeState.Response()).success and len(called) == 1
 
 
 def test_rclpy_has_its_executor_of_events():

@@ -88,6 +88,13 @@ def test_a_name_with_mcap_and_limits_makes_numbered_files_beside_each_other(tmp_
     assert sum(len(samples(file)) for file in tmp_path.iterdir()) == len(RUN)
 
 
+@pytest.mark.parametrize("name", ["run_{}.mcap", "{}_run_2026_11_28-21_10_00.mcap"], ids=["up to Kilted", "since Lyrical"])
+def test_parts_of_a_bag_without_metadata_are_in_the_order_of_their_numbers_however_rosbag2_names_them(name, tmp_path):
+    for number in (10, 2, 0, 1):
+        (tmp_path / name.format(number)).touch()
+    assert [path.name for path in mcap_files(tmp_path)] == [name.format(number) for number in (0, 1, 2, 10)]
+
+
 def test_a_bag_of_a_killed_run_is_read_up_to_its_unfinished_part(tmp_path):
     sink = McapSink(tmp_path / "run", SCENE, START, limits=Limits(part_duration=1.0))
     write(sink)

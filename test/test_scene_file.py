@@ -109,7 +109,7 @@ def test_the_usual_units_are_those_of_pint_to_the_last_digit_and_are_shown_in_th
 
 def test_degrees_celsius_are_those_of_pint():
     for number in (-40.0, 0.0, 20.0, 80.3):
-        assert to_si(f"{number!r} degC", "K") == unit_registry().Quantity(number, "degC").to("K").magnitude
+        assert to_si(f"{number!r} °C", "K") == to_si(f"{number!r} degC", "K") == unit_registry().Quantity(number, "degC").to("K").magnitude
     assert Quantity("K", "", shown_in="degC").show(393.15) == "120 degC"
 
 

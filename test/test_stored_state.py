@@ -34,7 +34,7 @@ from bearing_sim.stored_state.covered import MOST, Covered
 from bearing_sim.stored_state.keeper import RECORD, StateKeeper
 from bearing_sim.stored_state.merging import merge
 from bearing_sim.stored_state.state import StoredState, new_state
-from bearing_sim.stored_state.state_file import FORMAT, StateError, StateFile, checked_serial, default_path, previous_path, read_state
+from bearing_sim.stored_state.state_file import StateError, StateFile, checked_serial, default_path, previous_path, read_state
 from bearing_sim.stored_state.totals import Criteria, Totals
 
 SECOND = 1_000_000_000
@@ -227,17 +227,19 @@ def test_two_damaged_files_are_refused_with_what_to_do_and_no_file_is_a_new_bear
 
 def test_the_books_of_a_plant_and_no_newer_version_are_read(tmp_path):
     path = tmp_path / "a.json"
-    path.write_text(json.dumps({"format": FORMAT, "version": 0, "state": {"serial": "A1", "damage": 0.3, "running_hours": 4000.0, "starts": 12}}))
+    path.write_text(
+        json.dumps({"format": "bearing_sim state", "version": 0, "state": {"serial": "A1", "damage": 0.3, "running_hours": 4000.0, "starts": 12}})
+    )
     totals = stored(path).totals
     assert (totals.damage, totals.running_seconds, totals.starts) == (0.3, 4000.0 * 3600.0, 12)
     assert totals.slip_seconds[-1] == 4000.0 * 3600.0, "by slip that nobody knows"
-    path.write_text(json.dumps({"format": FORMAT, "version": 0, "state": {"damages": 0.3}}))
+    path.write_text(json.dumps({"format": "bearing_sim state", "version": 0, "state": {"damages": 0.3}}))
     previous_path(path).unlink()
     with pytest.raises(StateError, match="version 0 has no damages"):
         stored(path)
     contents = '{"serial": "A1"}'
     checksum = hashlib.sha256(f"99 {contents}".encode()).hexdigest()
-    path.write_text(json.dumps({"format": FORMAT, "version": 99, "checksum": checksum})[:-1] + f', "state": {contents}}}\n')
+    path.write_text(json.dumps({"format": "bearing_sim state", "version": 99, "checksum": checksum})[:-1] + f', "state": {contents}}}\n')
     with pytest.raises(StateError, match="newer bearing_sim.*update it"):
         stored(path)
 

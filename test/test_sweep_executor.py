@@ -216,5 +216,5 @@ def test_a_scheduler_that_is_not_there_is_told(tmp_path, monkeypatch):
     with Journal() as journal, pytest.raises(ClusterError, match="no Dask scheduler answers"):
         run_tasks(tasks(tmp_path / "notes", 2), journal, dask="tcp://127.0.0.1:9")
     monkeypatch.setattr("bearing_sim.estimation.response.FOLDER", tmp_path)
-    result = CliRunner().invoke(main, ["table", "deng2017_table1", "--bands", "--dask", "tcp://127.0.0.1:9"])
+    result = CliRunner().invoke(main, ["table", "deng2017_table1", "--set", "life.reliability=0.95", "--bands", "--dask", "tcp://127.0.0.1:9"])
     assert result.exit_code == 2 and "no Dask scheduler answers at tcp://127.0.0.1:9" in result.output

@@ -423,7 +423,8 @@ def test_losses_that_scatter_from_run_to_run_are_averaged_until_temperatures_agr
     limit = types.SimpleNamespace(level="planar", heat=types.SimpleNamespace(limit=500.0))
     run = types.SimpleNamespace(inputs=types.SimpleNamespace(oil_temperature=320.0), thermal=resting, scene=limit, started=[])
     run.reset, run.set_temperatures = lambda *state: run.started.append(state[1]), lambda nodes: None
-    monkeypatch.setattr(thermal, "thermal_equilibrium", lambda *given: types.SimpleNamespace(converged=True, temperatures=np.full(6, 325.0)))
+    found = types.SimpleNamespace(converged=True, temperatures=np.full(6, 325.0))
+    monkeypatch.setattr("bearing_sim.levels.steady.equilibrium.thermal_equilibrium", lambda *given: found)
     monkeypatch.setattr(thermal, "advance_until_settled", lambda *given: types.SimpleNamespace(window=None))
     if not agrees:
         with pytest.raises(IntegrationError, match="no thermal equilibrium at level planar: temperatures still change by"):

@@ -154,9 +154,11 @@ def compile_levels(levels, workers, prune):
     Compiled code is cached on disk, per user and version of the model; code that is already in the cache is not compiled again.
     """
     from bearing_sim.levels.level import LEVELS
-    from bearing_sim.runtime.precompilation import builds, compile_all, remove_other_versions
+    from bearing_sim.runtime.precompilation import announcement, builds, compile_all, is_compiled, remove_other_versions
 
     wanted, began = builds(levels or tuple(LEVELS)), time.monotonic()
+    if missing := [build for build in wanted if not is_compiled(build.level)]:
+        click.echo(announcement(missing), err=True)
     with progress_bar("compiling", len(wanted)) as show:
         for done, build in enumerate(compile_all(wanted, workers), 1):
             click.echo(f"{build}: compiled ({time.monotonic() - began:.0f} s)", err=True)

@@ -92,8 +92,8 @@ def _check_words(option: str, given, known) -> None:
 def _rows(kinds, series, bounds) -> Iterator[dict]:
     """Yield what the list shows of each bearing [SI] within the bounds; ratings that no maker prints follow from the dimensions."""
     from bearing_sim.scene.designation import designations
-    from bearing_sim.scene.loader import load_bearing
-    from bearing_sim.scene.ratings import rate
+    from bearing_sim.scene.internal_dimensions import section_of
+    from bearing_sim.scene.ratings import ratings_by_standards
 
     for each in designations():
         named, boundary = each.designation, each.boundary
@@ -101,8 +101,11 @@ def _rows(kinds, series, bounds) -> Iterator[dict]:
             continue
         if not all(_lies_within(getattr(boundary, name), ends) for name, ends in bounds.items()):
             continue
-        printed = each.ratings.dynamic is not None
-        rated = each.ratings if printed else rate(load_bearing(named.text))
+        rated, printed = each.ratings, each.ratings.dynamic is not None
+        if not printed:
+            inside = section_of(named)
+            pitch_diameter = inside.inner_raceway + inside.roller_diameter
+            rated = ratings_by_standards(inside.count, inside.roller_diameter, inside.roller_length, pitch_diameter)
         yield {
             "designation": named.text,
             "bore": boundary.bore,

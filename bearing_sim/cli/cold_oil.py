@@ -41,7 +41,7 @@ def cold_oil(scene_name, overrides, supplies, temperatures, loads, picture, as_j
     if not scene.operating.shaft_speed:
         raise UsageError("operating.shaft_speed: 0; slip is mapped while the shaft turns: give a speed")
     warn_of_scene(scene, before_results=False)
-    announce_compilation()
+    announce_compilation(scene, with_states=True)
     celsius = [round(quantity_of("--temperature", each, "K") - 273.15, 9) for each in temperatures] or TEMPERATURES
     newtons = [quantity_of("--load", each, "N") for each in loads]
     with as_usage_error(SceneError, IntegrationError):

@@ -62,7 +62,7 @@ def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise, 
     if not scene.operating.shaft_speed:
         raise UsageError("operating.shaft_speed: 0; a cold start is followed while the shaft turns: give a speed")
     warn_of_scene(scene, before_results=False)
-    announce_compilation()
+    announce_compilation(scene, with_states=True)
     with progress_bar("cold start", len(newtons or SHARES)) as show, as_failed_run(IntegrationError):
         found = follow(scene, newtons, afterwards, seconds, kelvin, rising, show)
     if picture is not None:

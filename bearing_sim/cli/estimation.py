@@ -66,9 +66,11 @@ def response_with_progress(scene, rebuild=False, workers=None, dask=None):
 
 def estimation_with_progress(scene):
     """Return what estimates during a run of a scene that asks for it (`bearing_sim.estimation.live.LiveEstimation`); None otherwise."""
+    if not scene.estimation.is_asked:
+        return None
     from bearing_sim.estimation.live import LiveEstimation
 
-    return LiveEstimation(scene, response_with_progress(scene)) if scene.estimation.is_asked else None
+    return LiveEstimation(scene, response_with_progress(scene))
 
 
 def band_rows(statistics, scene) -> list[tuple[str, str]]:

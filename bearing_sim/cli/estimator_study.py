@@ -55,7 +55,7 @@ def estimator(scene_name, overrides, runs, steps, hours, faults, level, measured
         more += [] if any("wander_time" in each for each in overrides) else [f"estimation.drift.wander_time={62 if warm else 2} h"]
         scene = load_scene(scene_name, [*overrides, *more])
         _require_sensors(scene, measured)
-    announce_compilation()
+    announce_compilation(scene)
     from bearing_sim.studies import estimator as study
     from bearing_sim.studies.response import obtain_response
 

@@ -11,6 +11,7 @@ import click
 from bearing_sim.cli.reporting import ARGUMENTS, EXIT_CODES, UsageError, require_whole
 from bearing_sim.extras import what_is_missing
 from bearing_sim.files.limits import FileError
+from bearing_sim.files.standard_streams import standard_streams
 from bearing_sim.files.tally import PartlyUsedWarning
 
 
@@ -99,6 +100,11 @@ class LazyGroup(click.Group):
     def __init__(self, *args, entries: Mapping[str, Entry], heading: str, **options):
         super().__init__(*args, **options)
         self._entries, self._heading = entries, heading
+
+    @standard_streams()
+    def main(self, *args, **extra):
+        """Run a command line; what becomes of it does not depend on whether somebody reads what it prints."""
+        return super().main(*args, **extra)
 
     def make_context(self, info_name, args, parent=None, **extra):
         """Return the context of a call, which keeps the arguments as they were written, so that results can name their command."""

@@ -210,24 +210,20 @@ def _without_folder(argument: str) -> str:
 
 
 def announce_compilation(scene=None, with_states: bool = False) -> None:
-    """Announce on stderr that compiling will take a while, if what is needed has not been compiled in this version of the model yet.
+    """Announce on stderr that compiling will take a while, and how long, if what is needed has not been compiled in this version of the model yet.
 
     Parameters
     ----------
-    scene : that is going to run; what it needs is known then.  If it begins in thermal equilibrium, its level and the search are compiled side
-        by side here.
-    with_states : as of `bearing_sim.runtime.precompilation.is_compiled_for`; what they need is compiled at its side, too.
+    scene : that is going to run; what it needs is known then, and compiled here.
+    with_states : as of `bearing_sim.runtime.precompilation.is_compiled_for`.
     """
     from bearing_sim.numerics.compilation import CACHE_FOLDER
-    from bearing_sim.runtime.precompilation import Build, compile_all, is_compiled_for
+    from bearing_sim.runtime.precompilation import announcement, builds, compile_for
 
-    if is_compiled_for(scene, with_states) if scene is not None else any(CACHE_FOLDER.rglob("*.nbi")):
-        return
-    click.echo("compiling the model, once per version: about half a minute ...", err=True)
-    searches = scene is not None and (with_states or scene.heat.law == "network")
-    if searches and scene.level != "steady":  # whose code is nearly the search's
-        for _ in compile_all([Build(scene.level), Build("slip", equilibrium=True)]):
-            pass
+    if scene is not None:
+        compile_for(scene, lambda line: click.echo(line, err=True), with_states)
+    elif not any(CACHE_FOLDER.rglob("*.code")):
+        click.echo(f"{announcement(builds(('steady', 'slip', 'planar')))}, each when it is first needed", err=True)
 
 
 def suggest_level(scene) -> None:
@@ -357,29 +353,10 @@ def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:
 def print_groups(title: str, groups: Iterable[Sequence[tuple[str, str]]]) -> None:
     """Print a table of names and values with a line between groups; empty groups are left out."""
     groups = [group for group in groups if group]
-    if not importlib.util.find_spec("rich"):
-        _print_plain_groups(title, groups)
-        return
-    from rich.table import Table
-
-    table = Table("", "", title=title, show_header=False, title_justify="left")
-    for group in groups:
-        for name, value in group:
-            table.add_row(name, value)
-        table.add_section()
-    _show(table)
-
-
-def _print_plain_groups(title: str, groups: Sequence[Sequence[tuple[str, str]]]) -> None:
-    """Print names and values where rich is not installed: values broken between words, a blank line between groups."""
-    names = max((len(name) for group in groups for name, _ in group), default=0) + 2
-    width = max(shutil.get_terminal_size((150, 24)).columns, names + _LEAST_OF_WORDS)
-    click.echo(title)
-    for group in groups:
-        click.echo()
-        for name, value in group:
-            for line in textwrap.wrap(name.ljust(names) + value, width, subsequent_indent=" " * names, break_on_hyphens=False):
-                click.echo(line)
+    names, values = (max((len(row[place]) for group in groups for row in group), default=0) for place in (0, 1))
+    room = shutil.get_terminal_size((150, 24)).columns - 1 - 2 * _BORDER
+    names = min(names, max(room - values, (room + 1) // 2))
+    _draw(title, (), groups, (names, min(values, room - names)), (True, True))
 
 
 def print_rows(
@@ -445,17 +422,47 @@ def _parts(least: Sequence[int], available: int, keys: int) -> list[list[int]]:
 
 
 def _print_part(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], words: Container[str], width: int) -> None:
-    if not importlib.util.find_spec("rich"):
-        _print_plain(title, columns, rows, words)
-        return
-    from rich.table import Table
+    _draw(title, columns, [rows], _widths(columns, rows, words, width), [name in words for name in columns])
 
-    table = Table(title=title, title_justify="left")
-    for name, column in zip(columns, _widths(columns, rows, words, width)):
-        table.add_column(name, justify="left" if name in words else "right", width=column, overflow="fold")
-    for row in rows:
-        table.add_row(*row)
-    _show(table, width)
+
+def _draw(title: str, columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]], widths: Sequence[int], left: Sequence[bool]) -> None:
+    """Draw a table: title, headings if there are any, and groups of rows with a line between them.
+
+    Parameters
+    ----------
+    title, columns : texts; none: no headings.
+    groups : of rows, which have a text a column; longer ones are broken between words.
+    widths : of the columns [characters].
+    left : whether a column is aligned left.
+    """
+
+    def rule(begin: str, between: str, end: str, dash: str = "─") -> list[str]:
+        return [begin + between.join(dash * (width + 2) for width in widths) + end]
+
+    def lines_of(row: Sequence[str], bar: str, is_heading: bool = False) -> Iterator[str]:
+        cells = [_broken(text, width) for text, width in zip(row, widths)]
+        height = max(map(len, cells))
+        blanks = ([""] * (height - len(cell)) for cell in cells)
+        for texts in zip(*(blank + cell if is_heading else cell + blank for cell, blank in zip(cells, blanks))):
+            shown = (text.ljust(width) if to_left else text.rjust(width) for text, width, to_left in zip(texts, widths, left))
+            yield bar + bar.join(f" {click.style(text, bold=True) if is_heading else text} " for text in shown) + bar
+
+    lines = [click.style(line, italic=True) for line in _broken(title, sum(widths) + _BORDER * len(widths) + 1)]
+    if columns:
+        lines += [*rule("┏", "┳", "┓", "━"), *lines_of(columns, "┃", is_heading=True), *rule("┡", "╇", "┩", "━")]
+    else:
+        lines += rule("┌", "┬", "┐")
+    for number, group in enumerate(groups):
+        lines += rule("├", "┼", "┤") if number else []
+        lines += [line for row in group for line in lines_of(row, "│")]
+    click.echo("\n".join([*lines, *rule("└", "┴", "┘")]))
+
+
+def _broken(text: str, width: int) -> list[str]:
+    """Return a text in lines, broken between words, or within a word that is wider than a line."""
+    if len(text) <= width and "\n" not in text:
+        return [text]
+    return [part for line in text.splitlines() for part in textwrap.wrap(line, width, break_on_hyphens=False) or [""]]
 
 
 def _widths(columns: Sequence[str], rows: Sequence[Sequence[str]], words: Container[str], available: int) -> list[int]:
@@ -472,25 +479,6 @@ def _widths(columns: Sequence[str], rows: Sequence[Sequence[str]], words: Contai
         widths[place] += 1
         left -= 1
     return widths
-
-
-def _print_plain(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], words: Container[str]) -> None:
-    """Print a table in columns of blanks, where rich is not installed."""
-    lines = [line for line in (tuple(columns), *map(tuple, rows)) if any(line)]
-    widths = [max(map(len, column)) for column in zip(*lines)]
-    click.echo(title)
-    for line in lines:
-        cells = (text.ljust(width) if name in words else text.rjust(width) for name, text, width in zip(columns, line, widths))
-        click.echo("  ".join(cells).rstrip())
-
-
-def _show(table, width: int | None = None) -> None:
-    """Print a table of rich; as wide as the terminal, or as COLUMNS says, else 150 characters."""
-    from rich.console import Console
-
-    width = width or shutil.get_terminal_size((150, 24)).columns
-    # Units in brackets are not mark-up.
-    Console(width=width, markup=False, emoji=False, highlight=False).print(table)
 
 
 @contextmanager

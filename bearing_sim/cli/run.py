@@ -71,7 +71,6 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
     --uncertainty uses the settled bearing at the fastest level that supports the scene; `bearing-sim
     uncertainty` shows more.
     """
-    from bearing_sim.cli.uncertainty import bands_of
     from bearing_sim.estimation.two_states import laws_of_table
     from bearing_sim.messages.events import validity_event
     from bearing_sim.model.validity import outside
@@ -116,7 +115,7 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
                 sink.write_event(validity_event(outcome.simulated, each))
     report = {**_report(simulation, outcome, wall, first - started), **warnings_report(scene, warnings), **_states_report(others, start)}
     report |= live_band_numbers(estimation.newest) if estimation is not None else {}
-    bands = bands_of(scene, uncertainty)[1] if uncertainty else None
+    bands = _bands(scene, uncertainty) if uncertainty else None
     if as_json:
         print_json({**report, "uncertainty": bands} if bands else report)
     else:
@@ -124,6 +123,12 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
     warn_of_limits(scene, warnings, verbose)
     if seconds is None and not outcome.settled:
         raise Unsettled(f"not settled: {outcome.reason}; give more time with --at-most")
+
+
+def _bands(scene, samples) -> dict:
+    from bearing_sim.cli.uncertainty import bands_of
+
+    return bands_of(scene, samples)[1]
 
 
 class _Plan(NamedTuple):
@@ -227,11 +232,12 @@ def _states_report(others, start) -> dict:
 
 
 def _print(report, scene, bands, estimation, states, verbose) -> None:
-    from bearing_sim.cli.uncertainty import band_rows
     from bearing_sim.studies.sheet import sheet
 
     ranges = list(live_band_rows(estimation.newest, scene)) if estimation is not None else []
     if bands:
+        from bearing_sim.cli.uncertainty import band_rows
+
         ranges += band_rows(bands)
         source = f"{bands['evaluations']} runs of level {bands['level']}, seed {bands['seed']}; in parentheses the sampling error"
         ranges.append(("uncertainty", source))

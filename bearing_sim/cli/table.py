@@ -82,7 +82,7 @@ def table(scene_name, overrides, rebuild, workers, points, out, shared, against_
     if shared is not None:
         table, quality = _taken(shared, scene)
     else:
-        announce_compilation()
+        announce_compilation(scene)
         table, quality = build_with_progress(scene, None, workers, rebuild)
     if out is not None:
         from bearing_sim.levels.steady.shared_table import shared_table
@@ -100,7 +100,7 @@ def _show_response(scene, rebuild, workers, dask, as_json) -> None:
     from bearing_sim.cli.estimation import response_with_progress
     from bearing_sim.estimation.response import response_path
 
-    announce_compilation()
+    announce_compilation(scene)
     found = response_with_progress(scene, rebuild, workers, dask)
     domain, path = found.domain, str(response_path(scene))
     if as_json:
@@ -264,7 +264,7 @@ def _correction_of(scene) -> dict | None:
 def _compare(scene, count, seed, as_json) -> None:
     from bearing_sim.studies.steady_check import compare
 
-    announce_compilation()
+    announce_compilation(scene)
     rows = []
     with progress_bar(f"simulating {scene.name}", count) as progress:
         for row in compare(scene, count, seed):

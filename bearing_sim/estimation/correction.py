@@ -28,7 +28,7 @@ import numpy as np
 
 from bearing_sim.estimation.response import CONDITIONS, Domain, coordinates, domain_of, embedded, restored_slip, slip_scale
 from bearing_sim.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
-from bearing_sim.files.kept_arrays import read_arrays, write_arrays
+from bearing_sim.files.kept import Damaged, packed, read_kept, unpacked, write_kept
 from bearing_sim.files.limits import RESPONSE_FILE
 from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER
 from bearing_sim.levels.steady.table_builder import CORRECTION_VERSION, FOLDER
@@ -261,20 +261,22 @@ def write_correction(path: Path, correction: Correction) -> None:
     domain = correction.domain
     ends = np.array([*domain.speeds, *domain.loads, *domain.temperatures, domain.period, domain.mirror])
     arrays = {name: getattr(correction, name) for name in _ARRAYS} | {"domain": ends, "made": np.array([correction.failed, correction.seconds])}
-    write_arrays(path, arrays)
+    write_kept(path, packed(arrays))
 
 
 def read_correction(path: Path) -> Correction | None:
     """Return a correction from disk, or None where there is none, or none that is whole."""
-    try:
-        file = read_arrays(path, RESPONSE_FILE)
-        ends = file["domain"].tolist()
-        domain = Domain((ends[0], ends[1]), (ends[2], ends[3]), (ends[4], ends[5]), ends[6], ends[7])
-        failed, seconds = file["made"].tolist()
-        conditions, metrics, weights, changes, errors, two_states = (np.ascontiguousarray(file[name], float) for name in _ARRAYS)
-        shapes = changes.shape == (len(conditions), len(ANSWER)), errors.shape == (len(conditions), 2)
-        whole = all(shapes) and metrics.shape[0] == 2 and weights.shape[1] == len(ANSWER)
-        found = Correction(domain, conditions, metrics, weights, changes, errors, two_states, int(failed), seconds)
-        return found if whole and all(np.isfinite(each).all() for each in (conditions, metrics, weights, changes)) else None
-    except Exception:  # whatever a broken file makes its reader raise, the correction is built again
-        return None
+    return read_kept(path, RESPONSE_FILE, _correction)
+
+
+def _correction(data: bytes) -> Correction:
+    file = unpacked(data, RESPONSE_FILE)
+    ends = file["domain"].tolist()
+    domain = Domain((ends[0], ends[1]), (ends[2], ends[3]), (ends[4], ends[5]), ends[6], ends[7])
+    failed, seconds = file["made"].tolist()
+    conditions, metrics, weights, changes, errors, two_states = (np.ascontiguousarray(file[name], float) for name in _ARRAYS)
+    shapes = changes.shape == (len(conditions), len(ANSWER)), errors.shape == (len(conditions), 2)
+    whole = all(shapes) and metrics.shape[0] == 2 and weights.shape[1] == len(ANSWER)
+    if not whole or not all(np.isfinite(each).all() for each in (conditions, metrics, weights, changes)):
+        raise Damaged("its arrays do not fit together")
+    return Correction(domain, conditions, metrics, weights, changes, errors, two_states, int(failed), seconds)

@@ -21,11 +21,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import ndtr, ndtri
 
 from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
-from bearing_sim.files.kept_arrays import read_arrays, write_arrays
+from bearing_sim.files.kept import Damaged, packed, read_kept, unpacked, write_kept
 from bearing_sim.files.limits import RESPONSE_FILE
 from bearing_sim.levels.steady.table import contour_period, mirror_axis
 from bearing_sim.levels.steady.table_builder import FOLDER
@@ -173,6 +172,8 @@ class Fields:
 
     def fractions_of(self, scores: np.ndarray) -> np.ndarray:
         """Return where in their ranges the fields are, 0 to 1 (a ``log_uniform`` one in its logarithm), for scores of shape (..., d)."""
+        from scipy.special import ndtr
+
         probability = ndtr(np.clip(scores, -_FARTHEST, _FARTHEST))
         mode = np.where(np.isnan(self._mode), 0.5, self._mode)
         rising = np.sqrt(probability * mode)
@@ -186,6 +187,8 @@ class Fields:
 
     def scores_of(self, values: np.ndarray) -> np.ndarray:
         """Return the scores of values [SI] of shape (..., d); one outside of its range has the largest or least score, +-4.5."""
+        from scipy.special import ndtri
+
         values = np.asarray(values, float)
         counted = np.where(self._logarithmic, np.log(np.where(self._logarithmic, values, 1.0)), values)
         fraction = np.clip((counted - self._low) / self._width, 0.0, 1.0)
@@ -616,8 +619,12 @@ def _missed(
 
 def response_digest(scene: Scene) -> str:
     """Return a hash of what a response depends on: bearing, mounting, oil, heat and life of the scene, ranges, operating points, this program."""
+    return _digest(sources_hash(), scene)
+
+
+def _digest(code: str, scene: Scene) -> str:
     parts = (scene.bearing, scene.mounting, scene.lubricant, scene.heat, scene.life, uncertain_ranges(scene), domain_of(scene), VERSION)
-    return hashlib.sha256("\n".join([sources_hash(), *map(repr, parts)]).encode()).hexdigest()[:24]
+    return hashlib.sha256("\n".join([code, *map(repr, parts)]).encode()).hexdigest()[:24]
 
 
 def response_path(scene: Scene) -> Path:
@@ -625,6 +632,15 @@ def response_path(scene: Scene) -> Path:
     return FOLDER / f"{response_digest(scene)}.bands.npz"
 
 
+def bundled_path(scene: Scene) -> Path:
+    """Return where the package has the response of a bundled scene; only `test/bundle_response.py` writes there.
+
+    Unlike the name of `response_path` this one does not depend on the version of the compiler.
+    """
+    return _BUNDLED / f"{_digest(sources_hash(with_compiler=False), scene)}.bands.npz"
+
+
+_BUNDLED = Path(__file__).resolve().parents[1] / "scene" / "scenes"
 _ARRAYS = ("centres", "metrics", "score_terms", "own_basis", "weights", "errors", "relative_errors")
 
 
@@ -637,21 +653,24 @@ def write_response(path: Path, model: ResponseModel) -> None:
         "seconds": model.seconds,
     }
     arrays = {name: getattr(model, name) for name in _ARRAYS}
-    write_arrays(path, {"written": np.frombuffer(json.dumps(written).encode(), np.uint8), "own": model.fields.own, **arrays})
+    write_kept(path, packed({"written": np.frombuffer(json.dumps(written).encode(), np.uint8), "own": model.fields.own, **arrays}))
 
 
 def read_response(path: Path) -> ResponseModel | None:
     """Return a response from disk, or None where there is none, or none that is whole."""
-    try:
-        file = read_arrays(path, RESPONSE_FILE)
-        written: Mapping = json.loads(file["written"].tobytes())
-        fields = Fields([Range(**one) for one in written["ranges"]], file["own"])
-        domain = Domain(*(tuple(value) if isinstance(value, list) else value for value in written["domain"].values()))
-        arrays = {name: file[name] for name in _ARRAYS}
-        found = ResponseModel(fields, domain, **arrays, points=int(written["points"]), seconds=float(written["seconds"]))
-        return found if _fits_together(found) else None
-    except Exception:  # whatever a broken file makes its reader raise, the response is built again
-        return None
+    return read_kept(path, RESPONSE_FILE, _response)
+
+
+def _response(data: bytes) -> ResponseModel:
+    file = unpacked(data, RESPONSE_FILE)
+    written: Mapping = json.loads(file["written"].tobytes())
+    fields = Fields([Range(**one) for one in written["ranges"]], file["own"])
+    domain = Domain(*(tuple(value) if isinstance(value, list) else value for value in written["domain"].values()))
+    arrays = {name: file[name] for name in _ARRAYS}
+    found = ResponseModel(fields, domain, **arrays, points=int(written["points"]), seconds=float(written["seconds"]))
+    if not _fits_together(found):
+        raise Damaged("its arrays do not fit together")
+    return found
 
 
 def _fits_together(model: ResponseModel) -> bool:
@@ -673,10 +692,10 @@ def _fits_together(model: ResponseModel) -> bool:
 
 
 def kept_response(scene: Scene) -> ResponseModel | None:
-    """Return the response of a scene that is on disk, or None: `bearing-sim table SCENE --bands` builds it."""
-    found = read_response(response_path(scene))
-    belongs = found is not None and repr((found.ranges, found.domain)) == repr((uncertain_ranges(scene), domain_of(scene)))
-    return found if belongs else None
+    """Return the response of a scene that is on disk or comes with the package, or None: `bearing-sim table SCENE --bands` builds it."""
+    belonging = repr((uncertain_ranges(scene), domain_of(scene)))
+    found = filter(None, (read_response(path_of(scene)) for path_of in (response_path, bundled_path)))
+    return next((each for each in found if repr((each.ranges, each.domain)) == belonging), None)
 
 
 def scene_fields(scene: Scene) -> Fields:

@@ -5,7 +5,6 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import minimize
 
 _SEARCHED, _STEP, _STEEPEST = 150, 0.4, 4.0  # metrics that are tried, first step and largest value of a scale's logarithm or a slope
 
@@ -60,6 +59,8 @@ def left_out(centres: np.ndarray, values: np.ndarray, smoothing: float = 0.0) ->
 
 def searched(start: np.ndarray, missed: Callable[[np.ndarray], float]) -> np.ndarray:
     """Return parameters of `metric_of` that miss least, by J. A. Nelder and R. Mead's simplex (Comput. J. 7 (1965) 308), shape of ``start``."""
+    from scipy.optimize import minimize  # here, because only fits search
+
     simplex = start + np.concatenate([np.zeros((1, len(start))), _STEP * np.eye(len(start))])
     found = minimize(
         lambda parameters: missed(parameters) if np.abs(parameters).max() <= _STEEPEST else math.inf,

@@ -6,15 +6,16 @@ What they judge by belongs to one table and its correction, which is on disk: `l
 
 import math
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from bearing_sim.estimation.correction import Correction, correction_domain, correction_path, read_correction
-from bearing_sim.estimation.response import CONDITIONS
 from bearing_sim.model.table_span import span_of
 from bearing_sim.model.validity import BY_NAME, Conditions, Law, towards_ends
 from bearing_sim.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from bearing_sim.estimation.correction import Correction
 
 
 class TwoStates:
@@ -25,7 +26,11 @@ class TwoStates:
     correction : that knows it.
     """
 
-    def __init__(self, correction: Correction):
+    def __init__(self, correction: "Correction"):
+        from scipy.spatial import cKDTree
+
+        from bearing_sim.estimation.response import CONDITIONS
+
         self._correction, self._tree = correction, cKDTree(correction.places(correction.conditions))
         self._slips = np.full((len(correction.conditions), 2), math.nan)
         for state in correction.two_states:
@@ -58,6 +63,9 @@ def laws_of_table(scene: Scene, temperatures: tuple[float, float] | None = None)
     ends, states = BY_NAME["table_correction"], BY_NAME["table_states"]
     if not states.applies(scene):
         return ()
+    # here, because nobody else needs corrections and the part of SciPy that they are read with
+    from bearing_sim.estimation.correction import correction_domain, correction_path, read_correction
+
     ends = ends._replace(value=partial(towards_ends, span=span_of(scene, temperatures)))
     correction = read_correction(correction_path(scene, correction_domain(scene, temperatures)))
     if correction is None or not len(correction.two_states):

@@ -133,6 +133,7 @@ RESULT_CELLS = Limit("result_cells", 5_000_000, "cells", "a table of results")
 STATE_FILE = Limit("state_file", 4_000_000, "bytes", "a stored state, which has some 50 kB")
 RESPONSE_FILE = Limit("response_file", 64_000_000, "bytes", "the kept response of a bearing, packed and unpacked")
 KEPT_TABLE_FILE = Limit("kept_table_file", 256_000_000, "bytes", "the kept table of a bearing, packed and unpacked")
+COMPILED_FILE = Limit("compiled_file", 64_000_000, "bytes", "the machine code of a function")
 HISTORY_FILE = Limit("history_file", 64_000_000, "bytes", "the history of days of a stored state")
 JSON_FILE = Limit("json_file", 64_000_000, "bytes", "the description or a figure of a study")
 RECORDING_RECORD = Limit("recording_record", 128_000_000, "bytes", "one record of a recording, compressed or not")
@@ -175,6 +176,7 @@ LIMITS = (
     STATE_FILE,
     RESPONSE_FILE,
     KEPT_TABLE_FILE,
+    COMPILED_FILE,
     HISTORY_FILE,
     JSON_FILE,
     RECORDING_RECORD,

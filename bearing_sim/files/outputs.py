@@ -6,7 +6,6 @@ the same command, nor anything but a regular file, and an existing file only by 
 """
 
 import errno
-import fcntl
 import hashlib
 import os
 import stat
@@ -14,6 +13,11 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:  # Windows: the package can be imported and computes, but writes no files
+    fcntl = None
 
 FORCE = "--force"
 """Option that allows an output to replace an existing file."""
@@ -24,6 +28,10 @@ _CHOSEN_BY_SUFFIX = (".png", ".svg", ".pdf")  # Formats that matplotlib chooses 
 
 class RefusedOutput(OSError):
     """An output that must not be written where it was asked for; the message says why and what to do.  Nothing was changed."""
+
+
+class BeingWritten(RefusedOutput):
+    """An output that another process is writing."""
 
 
 class Output:
@@ -208,6 +216,8 @@ def _draft(target: Path) -> Iterator[Path]:
 
 def _locked(draft: Path, target: Path) -> int:
     """Return the descriptor of a draft that this process alone has locked, emptied."""
+    if fcntl is None:
+        raise RefusedOutput(f"{target} cannot be written: files are written under locks (flock), which this system does not have; use Linux")
     while True:
         descriptor = os.open(draft, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
         try:
@@ -230,7 +240,7 @@ def _lock(descriptor: int, target: Path) -> None:
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        raise RefusedOutput(f"{target} is being written by another program; wait for it, or name another file") from None
+        raise BeingWritten(f"{target} is being written by another program; wait for it, or name another file") from None
     except OSError:
         pass  # a file system without locks: drafts of two writers may then mix
 

@@ -1,20 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The levels of fidelity, each a record of functions."""
+"""The levels of fidelity, each a record of functions, imported when it is looked up."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
-
-from bearing_sim.levels.common import state_transfer
-from bearing_sim.levels.planar import methods as planar_methods
-from bearing_sim.levels.planar import model as planar
-from bearing_sim.levels.planar import state as planar_state
-from bearing_sim.levels.slip import methods as slip_methods
-from bearing_sim.levels.slip import model as slip
-from bearing_sim.levels.slip import state as slip_state
-from bearing_sim.levels.spatial import methods as spatial_methods
-from bearing_sim.levels.spatial import model as spatial
-from bearing_sim.levels.spatial import state as spatial_state
-from bearing_sim.levels.steady import model as steady
 
 
 class Level(NamedTuple):
@@ -51,46 +39,66 @@ class Level(NamedTuple):
     supply: Callable | None = None
 
 
-LEVELS = {
-    "steady": Level(
-        steady.new_work,
-        steady.initial_state,
-        state_transfer.steady_state_at,
-        steady.observe,
+def _steady() -> Level:
+    from bearing_sim.levels.common.state_transfer import steady_state_at
+    from bearing_sim.levels.steady import model
+
+    return Level(
+        model.new_work,
+        model.initial_state,
+        steady_state_at,
+        model.observe,
         "lag",
-        steady.advance,
+        model.advance,
         "all that happens within a cage turn, and what slip leaves out",
         takes_steps=False,
-        advance_profile=steady.advance_profile,
-        advance_warm_profile=steady.advance_warm_profile,
-        forget=steady.forget,
-        supply=steady.supply,
-    ),
-    "slip": Level(
-        slip_state.new_work,
-        slip.initial_state,
-        state_transfer.slip_state_at,
-        slip.observe,
-        "tr_bdf2",
-        slip_methods.advance,
-        "pocket play, radial vibration, cage whirl, tilt and skew",
-    ),
-    "planar": Level(
-        planar_state.new_work,
-        planar.initial_state,
-        state_transfer.planar_state_at,
-        planar.observe,
-        "tr_bdf2",
-        planar_methods.advance,
-        "tilt and skew",
-    ),
-    "spatial": Level(
-        spatial_state.new_work,
-        spatial.initial_state,
-        state_transfer.spatial_state_at,
-        spatial.observe,
-        "tr_bdf2",
-        spatial_methods.advance,
-        "the rollers' way along their axes, bending of the rings",
-    ),
-}
+        advance_profile=model.advance_profile,
+        advance_warm_profile=model.advance_warm_profile,
+        forget=model.forget,
+        supply=model.supply,
+    )
+
+
+def _slip() -> Level:
+    from bearing_sim.levels.common.state_transfer import slip_state_at
+    from bearing_sim.levels.slip import methods, model, state
+
+    leaves_out = "pocket play, radial vibration, cage whirl, tilt and skew"
+    return Level(state.new_work, model.initial_state, slip_state_at, model.observe, "tr_bdf2", methods.advance, leaves_out)
+
+
+def _planar() -> Level:
+    from bearing_sim.levels.common.state_transfer import planar_state_at
+    from bearing_sim.levels.planar import methods, model, state
+
+    return Level(state.new_work, model.initial_state, planar_state_at, model.observe, "tr_bdf2", methods.advance, "tilt and skew")
+
+
+def _spatial() -> Level:
+    from bearing_sim.levels.common.state_transfer import spatial_state_at
+    from bearing_sim.levels.spatial import methods, model, state
+
+    leaves_out = "the rollers' way along their axes, bending of the rings"
+    return Level(state.new_work, model.initial_state, spatial_state_at, model.observe, "tr_bdf2", methods.advance, leaves_out)
+
+
+class _Levels(Mapping):
+    """The levels by name.  One is imported when it is looked up: a run needs one of them, and each takes long to import."""
+
+    def __init__(self, **makers: Callable[[], Level]):
+        self._makers: Mapping[str, Callable[[], Level]] = makers
+        self._made: dict[str, Level] = {}
+
+    def __getitem__(self, name: str) -> Level:
+        if name not in self._made:
+            self._made[name] = self._makers[name]()
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._makers)
+
+    def __len__(self) -> int:
+        return len(self._makers)
+
+
+LEVELS: Mapping[str, Level] = _Levels(steady=_steady, slip=_slip, planar=_planar, spatial=_spatial)

@@ -14,8 +14,6 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import ndtri, stdtr
 
 from bearing_sim.messages.events import Event, Level, Measurement
 from bearing_sim.messages.topics import RING_TEMPERATURES
@@ -117,8 +115,10 @@ def threshold_for(length: float, reference: float = _REFERENCE) -> float:
     shortest = run_length(0.0, reference)
     if not length > shortest:
         raise ValueError(f"a mean run of {length:g} steps between false alarms is too short; expected more than {shortest:.3g}")
-    high = min(_LARGEST_THRESHOLD, 300.0 / reference)  # exp(2 k h) must stay finite
-    return brentq(lambda threshold: math.log(run_length(threshold, reference) / length), 0.0, high, xtol=1e-13)
+    low, high = 0.0, min(_LARGEST_THRESHOLD, 300.0 / reference)  # exp(2 k h) must stay finite
+    while low < (middle := 0.5 * (low + high)) < high:
+        low, high = (middle, high) if run_length(middle, reference) < length else (low, middle)
+    return high
 
 
 _OF_BATCHES = ("count", "mean", "_squares", "_products", "_surprises", "_pairs", "_surprised")
@@ -274,6 +274,8 @@ class Cusum:
 
 def _normal(t: float, freedom: int) -> float:
     """Return the standard normal number that is as unlikely as Student's t with these degrees of freedom."""
+    from scipy.special import ndtri, stdtr  # here, because only a measurement needs them
+
     size = min(abs(t), _STEEPEST_TAIL)
     return math.copysign(-float(ndtri(stdtr(freedom, -size))), t)
 

@@ -11,7 +11,7 @@ import math
 import numba
 import numpy as np
 
-from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import bits, double, floor, larger, smaller
 
 _ROUND = 6755399441055744.0  # 1.5 * 2^52: adding it rounds to an integer that stands in the low bits
@@ -25,7 +25,7 @@ _ROOT_BITS = _ROUND * (10.0 / 9.0) + ((10.0 / 9.0) * 1023 - 0.0584) * 2.0**32
 _P = (1.22126583, -0.3775729, 0.20234812, -0.04606227)  # w^(-1/9) to 2e-5 over that range
 
 
-@template
+@kernel
 def _vector_exponential(x):
     x = smaller(larger(x, -700.0), 700.0)
     shifted = x * 1.4426950408889634 + _ROUND
@@ -43,7 +43,7 @@ def _vector_exponential(x):
     return double(bits(p) + (bits(shifted) << 52))
 
 
-@template
+@kernel
 def _vector_logarithm(x):
     pattern = bits(x)
     exponent = (pattern + _TO_ROOT) >> 52  # biased: never negative
@@ -59,7 +59,7 @@ def _vector_logarithm(x):
     return p * f + n * (_LN2_HIGH + _LN2_LOW)
 
 
-@template
+@kernel
 def _vector_ninth_root(x):
     # A constant less a ninth of the bits of x is roughly the bits of z = x^(-1/9): x z^9 lies between 0.737 and 1.262.
     counted = double((bits(x) >> 20) + _ROUND_BITS)
@@ -79,7 +79,7 @@ def _vector_ninth_root(x):
     return y + y * (p * e)
 
 
-@template
+@kernel
 def cosine_sine(turn):
     """Return cosine and sine of an angle given in turns, from 0 to 1 (lanes)."""
     half = floor(2.0 * turn + 0.5)
@@ -112,7 +112,7 @@ logarithm = np.log if numba.config.DISABLE_JIT else _vector_logarithm
 ninth_root = (lambda x: x ** (1.0 / 9.0)) if numba.config.DISABLE_JIT else _vector_ninth_root
 
 
-@template
+@kernel
 def power(x, exponent):
     """Return x to a power, for positive x, accurate to 2e-11 times the exponent; without the call that the power of `math` takes."""
     return exponential(exponent * logarithm(x))

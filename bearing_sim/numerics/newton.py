@@ -12,7 +12,7 @@ Where a level knows the bend, it restrains its own part of a correction instead,
 
 import math
 
-from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.time_stepping import COUNT, NON_FINITE, NOT_CONVERGED, NOT_EVALUATED, OK
 
 _ITERATIONS, _DAMPED_ITERATIONS = 12, 40
@@ -23,7 +23,7 @@ _LEAST = 1.0 / 64.0  # part of a correction
 _CONTRACTION, _SLOWEST = 0.1, 0.9  # of an iteration: assumed of the first, and at least and at most of the others
 
 
-@template
+@kernel
 def solve_implicit(
     rhs_and_jacobian, factor, solve, correction_norm, restrain,
     t, known, shift, enough, y, rate, change, previous, model, work, counts,

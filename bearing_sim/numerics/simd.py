@@ -19,7 +19,7 @@ from numba.core.datamodel import PrimitiveModel, register_default
 from numba.core.typing.templates import AbstractTemplate, infer_global
 from numba.extending import intrinsic, lower_builtin
 
-from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.vector_width import LANES
 
 _CACHE_LINE = 8  # doubles
@@ -313,7 +313,7 @@ def by_roller(array, row, count):
     return array[:, row].reshape(-1)[:count]
 
 
-@template
+@kernel
 def spread_runs(x, first, runs, count, rows):
     """Copy runs of ``count`` numbers into the first rows of all blocks; lanes without a roller keep their values.
 
@@ -332,7 +332,7 @@ def spread_runs(x, first, runs, count, rows):
             rows[whole, k, lane] = x[start + whole * LANES + lane]
 
 
-@template
+@kernel
 def spread_run(x, first, count, rows, row):
     """Copy one run into a row of all blocks; lanes without a roller take the last one's value.  Parameters as of `spread_runs`."""
     whole = count // LANES
@@ -343,7 +343,7 @@ def spread_run(x, first, count, rows, row):
             rows[whole, row, lane] = x[first + min(whole * LANES + lane, count - 1)]
 
 
-@template
+@kernel
 def fill_lanes(rows, runs, count):
     """Fill lanes without a roller with the last roller's values in the first ``runs`` rows, so that they stay finite."""
     last = count - 1
@@ -352,7 +352,7 @@ def fill_lanes(rows, runs, count):
             rows[j // LANES, k, j % LANES] = rows[last // LANES, k, last % LANES]
 
 
-@template
+@kernel
 def collect_runs(rows, row, runs, count, x, first):
     """Copy rows, starting at ``row``, back into runs, starting at ``first``; parameters as of `spread_runs`."""
     whole = count // LANES

@@ -27,7 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import kernel
 
 OK = 0
 STEP_BUDGET = 1
@@ -187,7 +187,7 @@ def _accept_part(y, result, control):
     control[CONTROL.parts_done], control[CONTROL.parts] = parts_done, parts
 
 
-@template
+@kernel
 def advance_in_steps(
     attempt, error_order, error_norm, step_limit, step_taken, fixed, t, end, y, h, maximum_step, budget, model, work, memory, counts,
 ):  # fmt: skip

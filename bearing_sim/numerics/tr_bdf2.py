@@ -25,7 +25,7 @@ system vanishes, so that an oscillation keeps its amplitude; 0.85 leaves a twent
 
 import math
 
-from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.newton import solve_implicit
 from bearing_sim.numerics.time_stepping import COUNT, INNER_STAGE, NOT_EVALUATED, OK
 
@@ -38,7 +38,7 @@ _EMBEDDED = ((1.0 - 4.0 * WEIGHT) / 3.0, 1.0 / 3.0, -2.0 * _GAMMA / 3.0)
 _ENOUGH = 1 / 60  # of the tolerances: the error that the iteration of a stage may leave (assumption)
 
 
-@template
+@kernel
 def tr_bdf2_attempt(
     rhs, rhs_and_jacobian, predict, factor, solve, error_norm, correction_norm, restrain, t, y, h, model, work, memory, counts,
 ):  # fmt: skip
@@ -86,7 +86,7 @@ def tr_bdf2_attempt(
     return OK
 
 
-@template
+@kernel
 def _raise_order(solve, error_norm, t, per_shift, y, result, error, change, ahead, slope, model, work):
     """Filter the error of Y_2 and add it to the result, and to the slope what that changes.
 

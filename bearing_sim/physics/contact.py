@@ -4,7 +4,7 @@
 import math
 from typing import NamedTuple
 
-from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.elementary import ninth_root
 from bearing_sim.numerics.simd import larger, where_positive
 
@@ -88,7 +88,7 @@ class ContactDamping(NamedTuple):
     depth: float  # h, penetration at which half of that is left [m]
 
 
-@template
+@kernel
 def damping_factor(depth, damping):
     """Return d, the damping of a normal contact over its elastic force [s/m], and its derivative by the depth [s/m^2].
 
@@ -102,7 +102,7 @@ def damping_factor(depth, damping):
     return damping.hysteresis + fading, -fading * inverse
 
 
-@template
+@kernel
 def damped_line_contact(penetration, rate, stiffness, damping):
     """Return Q = K delta^(10/9) (1 + d delta'), never below 0, and its derivatives; d = a + (10/9) tau/(delta + h).
 
@@ -130,19 +130,19 @@ def damped_line_contact(penetration, rate, stiffness, damping):
     return elastic * larger(factor, 0.0), pressed * root * (EXPONENT * factor + depth * slope * rate), pressed * elastic * per_rate
 
 
-@template
+@kernel
 def elastic_line_contact(penetration, stiffness):
     """Return K delta^(10/9) [N] (lanes), the conservative part of `damped_line_contact`; `elastic_force` is its form for numbers."""
     return stiffness * ninth_root(larger(penetration, TINY)) * larger(penetration, 0.0)
 
 
-@template
+@kernel
 def elastic_force(penetration, stiffness):
     """Return Palmgren's K delta^(10/9) [N], the conservative part of a normal force; 0 of bodies apart."""
     return stiffness * max(penetration, 0.0) ** EXPONENT
 
 
-@template
+@kernel
 def hertz_pressure(load, slices, length, curvature_radius, reduced_modulus):
     """Return the largest pressure of a slice in line contact, sqrt(q E'/(2 pi R)) [Pa] (Hertz), without the rise at a sharp edge.
 

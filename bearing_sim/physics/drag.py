@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import exponential, logarithm, power
 
 # Drag coefficient C_d of a long cylinder across a flow by Re = rho v D_w/eta, interpolated in logarithms and constant beyond the table.
@@ -168,7 +168,7 @@ def churning_force(speed, density, viscosity, roller_diameter, roller_length):
     return force, (2.0 + exponent) * force / speed
 
 
-@template
+@kernel
 def regime_factor(reynolds, clearance_ratio):
     """Return the torque between coaxial cylinders over Petroff's, and its exponent of speed.
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.elementary import exponential, logarithm
 from bearing_sim.numerics.simd import larger, load, smaller, square_root, store, where_positive
 from bearing_sim.physics.contact import CONTACT, LOAD_FLOOR, ROLLING_SPEED_FLOOR
@@ -72,7 +72,7 @@ def film_constants(law, oil, curvature_radius, reduced_modulus, length):
     return FilmConstants(thickness, inlet)
 
 
-@template
+@kernel
 def film_thickness(exponential, law, constants, log_speed, log_load, log_ratio):
     """Return the thickness of a film thinned by its heated inlet, and its changes.
 
@@ -180,7 +180,7 @@ def resistance_constants(oil, reduced_modulus, curvature_radius, length, heated=
     )
 
 
-@template
+@kernel
 def _partly_loaded(part, gap, log_speed, log_load, ratio, log_less, constants):
     """Return the resistance of a contact that bears on a part of its length, over that of one that bears on all of it, and its exponents.
 
@@ -218,7 +218,7 @@ def _partly_loaded(part, gap, log_speed, log_load, ratio, log_less, constants):
     return smaller(both, 1.0), d_speed, d_load
 
 
-@template
+@kernel
 def resist_rolling_by_rows(row, contacts, middle, crowned, resistance, films):
     """Write the resistance to rolling F_R of all contacts and its derivatives: of the oil, of skew and of hysteresis.
 

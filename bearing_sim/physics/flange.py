@@ -36,7 +36,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import larger, magnitude, spread, square_root, total, where_positive
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
@@ -138,7 +138,7 @@ def corner_stiffness(rim: float, corner_radius: float, layback: float, youngs_mo
     return 4.0 / 3.0 * youngs_modulus / (2.0 * (1.0 - poisson_ratio**2)) * (corner_radius * rim / layback) ** 0.25
 
 
-@template
+@kernel
 def axial_share(load, total_load, count, flanges):
     """Return the axial force of a roller on a flange of each ring [N].
 
@@ -154,13 +154,13 @@ def axial_share(load, total_load, count, flanges):
     return (flanges.load / (total_load + count * _EVEN)) * (load + _EVEN) + flanges.guiding * load
 
 
-@template
+@kernel
 def shear(area, first, second, u, s):
     """Return F [N], M [N m] of the end gap, and -dF/du, -dF/ds = -dM/du, -dM/ds; A, S and I times the viscosity."""
     return first * s - area * u, first * u - second * s, area, -first, second
 
 
-@template
+@kernel
 def rub(root, force, offset, corner, u, s):
     """Return F [N], M [N m] of friction at a contact, -dF/du, -dF/ds = -dM/du, -dM/ds, and V_u and V_s.
 
@@ -179,7 +179,7 @@ def rub(root, force, offset, corner, u, s):
     return -(force * by_u), -(force * by_s), uu, us, scale * (offset * offset + corner * corner - by_s * by_s), by_u, by_s
 
 
-@template
+@kernel
 def stop_skew(skew, rate, face, flanges):
     """Return the force at each of the two corners [N], its derivatives by skew and by its rate, and its elastic part (lanes).
 

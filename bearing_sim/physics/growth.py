@@ -13,7 +13,7 @@ All coefficients are 0 for a bearing whose dimensions are those of the running o
 
 from typing import NamedTuple
 
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import kernel
 
 
 class Temperatures(NamedTuple):
@@ -98,7 +98,7 @@ def cold_growth(mounted):
     return growth_at(mounted, Temperatures(cold, cold, cold, cold, cold))
 
 
-@template
+@kernel
 def total_growth(shaft_speed, growth):
     """Return a `Growth` at a shaft speed [rad/s], in metres."""
     square = shaft_speed * shaft_speed

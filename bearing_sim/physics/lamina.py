@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.physics.contact import EXPONENT
 
 _LARGEST_DAMPING = 1.0  # N/m; a ten-millionth of a contact's stiffness restrains what nothing else does
@@ -158,7 +158,7 @@ def _reactions(slices):
         reaction[3] += roller[row.inner_moment, j] * cosine
 
 
-@template
+@kernel
 def _roller_inverse(roller, j, damping):
     """Return the inverse of one roller's stiffness matrix: three numbers of a symmetric two by two."""
     row = ROLLER_ROW

@@ -27,7 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.elementary import ninth_root
 from bearing_sim.physics.contact import EXPONENT, TINY
 from bearing_sim.physics.rating_life import LARGEST_MODIFICATION, ROTATING_EXPONENT, STATIONARY_EXPONENT, modification_factor
@@ -131,18 +131,18 @@ def penetration_of(load, laminae):
 
 
 # Powers by products and roots, which cost less than `pow`.
-@template
+@kernel
 def _fourth(x):
     square = x * x
     return square * square
 
 
-@template
+@kernel
 def _nine_halves(x):
     return _fourth(x) * math.sqrt(x)
 
 
-@template
+@kernel
 def _nine_eighths(x):
     """Return x^(9/8), from power means with `ROTATING_EXPONENT` to those with 9/2."""
     return x * math.sqrt(math.sqrt(math.sqrt(x)))
@@ -207,7 +207,7 @@ def equivalent_loads(moments, oil, life):
     return _summed(whole_inner, whole_outer, inner, outer, modified, life)
 
 
-@template
+@kernel
 def _aligned_rollers(moments, laminae):
     """Return penetration, load and weight of both loads that stand for the moments of a ring's."""
     load_1, weight_1, load_2, weight_2 = _gauss_loads(moments)
@@ -215,7 +215,7 @@ def _aligned_rollers(moments, laminae):
     return depth_1, load_1, weight_1, depth_2, load_2, weight_2
 
 
-@template
+@kernel
 def _lamina_means(k, inside, outside, laminae):
     """Return the means over rollers and time of the powers 4 and 4.5 of a lamina's loads on both rings, given `_aligned_rollers` of each."""
     drop, stiffness = laminae.crown[k], laminae.risers[k] * laminae.stiffness

@@ -11,7 +11,7 @@ Symbols: e eccentricity of the cage in the lands [m], c their clearance [m], eps
 import math
 from typing import NamedTuple
 
-from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.physics.contact import EXPONENT, damping_factor
 from bearing_sim.physics.drag import regime_factor
 
@@ -19,7 +19,7 @@ _WEDGE = 10.0  # rad/s; assumption: the film's half-circle changes sides smoothl
 _SLIDING = 0.1  # m/s; assumption: boundary friction is proportional to the sliding speed well below this
 
 
-@template
+@kernel
 def _land_regime(turning, lubrication, cage):
     """Return the torque of lands that turn against the cage over the laminar one, and its exponent of speed; 1 and 0 of laminar lands.
 
@@ -218,7 +218,7 @@ def land_contact(land, params):
     return root * depth * factor, root * (EXPONENT * factor + depth * slope * rate), root * depth * per_rate, eccentricity, rate
 
 
-@template
+@kernel
 def land_friction(sliding, coefficient):
     """Return the coefficient of boundary friction with the sign of the sliding speed, mu s/sqrt(s^2 + s_0^2), and its derivative [s/m].
 

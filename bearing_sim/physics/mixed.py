@@ -30,7 +30,7 @@ nothing published says that they do, so they count from the minimum load on (`be
 import math
 from typing import NamedTuple
 
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import load, square_root, store
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.rating_life import KAPPA_EXPONENT, viscosity_ratio
@@ -142,7 +142,7 @@ def film_state(shaft_speed, radial_load, viscosity, pocket_friction, flange_fric
     )
 
 
-@template
+@kernel
 def share_with_asperities(contacts, films):
     """Let asperities take their share of the tangential forces of all contacts, rows `CONTACT`; `FilmState` ``films``."""
     rest, friction = 1.0 - films.raceway_share, films.raceway_friction

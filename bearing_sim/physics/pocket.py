@@ -3,14 +3,14 @@
 
 import math
 
-from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import larger, magnitude, spread, square_root, total, where_positive
 from bearing_sim.physics.contact import damped_line_contact
 
 FRICTION_SPIN = 10.0  # rad/s; assumption: pocket friction is proportional to spin well below this
 
 
-@template
+@kernel
 def wall_force(offset, rate, clearance, film_stiffness, film_damping, stiffness, damping):
     """Return the force of two opposite pocket walls, with its derivatives by offset and by its rate (lanes).
 
@@ -45,7 +45,7 @@ def wall_force(offset, rate, clearance, film_stiffness, film_damping, stiffness,
     return force, d_offset, d_rate
 
 
-@template
+@kernel
 def pocket_friction(spin, coefficient):
     """Return the friction coefficient of a pocket with the sign of the roller's spin: mu_c w/sqrt(w^2 + w_0^2), w_0 = 10 rad/s.
 
@@ -59,7 +59,7 @@ def pocket_friction(spin, coefficient):
     return coefficient * spin / math.sqrt(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
 
 
-@template
+@kernel
 def pocket_friction_lanes(spin, coefficient):
     """Return `pocket_friction` of several rollers at once, and its derivative by spin [s/rad] (lanes)."""
     smooth = 1.0 / square_root(spin * spin + FRICTION_SPIN * FRICTION_SPIN)

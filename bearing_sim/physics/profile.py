@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import ninth_root, power
 from bearing_sim.numerics.simd import floor, gather, larger, load, smaller, square_root, store, where_positive
 from bearing_sim.physics.contact import CONTACT, EXPONENT, TINY
@@ -95,7 +95,7 @@ def _at_depth(drop, depth, t):
     return load, slope, math.sqrt(load**3 / cube), float(bears.mean()), beside
 
 
-@template
+@kernel
 def _place(depth, profile):
     """Return interval, place in it from 0 to 1, and t (1 - t)/2, the factor from d/dt to depth d/d(depth), of a depth [m] (a number)."""
     root = math.sqrt(max(depth, TINY))
@@ -104,7 +104,7 @@ def _place(depth, profile):
     return index, t * _INTERVALS - index, 0.5 * t * (1.0 - t)
 
 
-@template
+@kernel
 def _place_lanes(depth, profile):
     """Return the same as `_place`, of several depths (lanes)."""
     root = square_root(larger(depth, TINY))
@@ -114,7 +114,7 @@ def _place_lanes(depth, profile):
     return index, position - index, 0.5 * t * (1.0 - t)
 
 
-@template
+@kernel
 def _cubic_lanes(table, index, x):
     """Return G, its first and second derivative by t, in intervals of the table and places in them (lanes)."""
     a, b, c = gather(table, index, _COLUMN.load), gather(table, index, _COLUMN.load + 1), gather(table, index, _COLUMN.load + 2)
@@ -122,7 +122,7 @@ def _cubic_lanes(table, index, x):
     return fraction, ((3.0 * a * x + 2.0 * b) * x + c) * float(_INTERVALS), (6.0 * a * x + 2.0 * b) * float(_INTERVALS * _INTERVALS)
 
 
-@template
+@kernel
 def _line_lanes(table, index, x, column):
     """Return one of psi, a and g, likewise, and its derivative by t."""
     rise = gather(table, index, column + 1)
@@ -170,7 +170,7 @@ def profile_depth(force, stiffness, profile):
     return depth
 
 
-@template
+@kernel
 def damped_profile_contact(penetration, rate, stiffness, damping, profile):
     """Return the normal force of an aligned roller with a profile [N], and its derivatives (lanes).
 

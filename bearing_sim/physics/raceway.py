@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import floor, gather, where_positive
 
 TABLE_INTERVALS = 720
@@ -57,7 +57,7 @@ def tabulated(contour):
         intervals *= 2
 
 
-@template
+@kernel
 def contour_at(table, position):
     """Return contour radius [m] and its derivative by azimuth [m/rad].
 
@@ -73,7 +73,7 @@ def contour_at(table, position):
     return ((a * x + b) * x + c) * x + table[index, 3], (3.0 * a * x + 2.0 * b) * x + c
 
 
-@template
+@kernel
 def contour_lanes(table, turn):
     """Return contour radius [m] and its first and second derivative by azimuth [m/rad, m/rad^2], several at once.
 

@@ -33,7 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import exponential, logarithm
 from bearing_sim.numerics.simd import highest, larger, load, magnitude, smaller, spread, square_root, store, where_positive
 from bearing_sim.physics.contact import CONTACT, LOAD_FLOOR, ROLLING_SPEED_FLOOR
@@ -177,7 +177,7 @@ def traction(contacts, inner, outer, films):
     traction_along(contacts, contacts.shape[0] // 2, 1, inner, outer, films)
 
 
-@template
+@kernel
 def _take_logarithms(contacts, together):
     """Write ln Q, ln u and 1/u of all contacts; ``together`` as of `traction_along`."""
     # Short loops, here and in the laws: the processor works on several blocks at once where one long chain of operations would make it wait.
@@ -311,7 +311,7 @@ class EyringStep(NamedTuple):
 STEP = EyringStep()
 
 
-@template
+@kernel
 def _hyperbolic(y):
     """Return sinh and cosh of lanes from 0 on, sinh to full relative accuracy where it is small."""
     square = y * y
@@ -354,7 +354,7 @@ def _film(contacts, first, end, log_film, special):
         store(contacts, block, STEP.film_by_speed, d_speed - by_slide)
 
 
-@template
+@kernel
 def _piled(normal, special):
     """Return 1 + 5.1e-9 p at the mean Hertz pressure p of a normal force [N], and tau_E/(Lambda p)."""
     pressure = special[ROW.pressure] * square_root(larger(normal, LOAD_FLOOR))
@@ -375,7 +375,7 @@ def _thicken(contacts, first, end, special):
         store(contacts, block, STEP.creep, special[ROW.creep] / load(contacts, block, CONTACT.inverse_speed))
 
 
-@template
+@kernel
 def _stretched(y, thick, heated):
     """Return sinh(y), cosh(y) and exp(k y)/thick [m/s]."""
     sinh, cosh = _hyperbolic(y)

@@ -15,13 +15,15 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 
 import click
 import numpy as np
 
+from bearing_sim.estimation.response import kept_response
 from bearing_sim.files.outside import OPTION
+from bearing_sim.files.standard_streams import standard_streams
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import ESTIMATES
 from bearing_sim.messages.diagnostics import WHOLE
@@ -29,6 +31,8 @@ from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.reader import Recording
 from bearing_sim.ros.recordings import fresh_path
+from bearing_sim.runtime.durations import expected, timed
+from bearing_sim.runtime.precompilation import compile_for
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import number_at, quantities, ranges_of, shown
@@ -37,6 +41,7 @@ _DOMAINS = range(60, 100)  # above the usual choices of users, below where ports
 _NODE_ENDS_WITHIN = 30.0  # [s]
 _CALIBRATED = ("lubricant.mixture_fraction",)  # what a measured cage teaches most about
 _HIDDEN = 0.5  # of the way from the scene's value to the end of its range lies the synthetic machine's
+_MISSION, _VIEW = (1.5, 0.05), (2.0, 0.05)  # seconds of a core of the reference machine (`durations`): to start, and for a second of the mission
 _PR_SET_PDEATHSIG = 1  # Linux: prctl
 
 
@@ -63,42 +68,62 @@ class Demo:
         domain = os.environ.get("BEARING_SIM_DEMO_DOMAIN_ID") or str(random.SystemRandom().choice(_DOMAINS))
         self._environment = {**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_DOMAIN_ID": domain}
 
-    def run(self, mission: Path) -> None:
-        """Play a mission to a node and record it.
+    def run(self, mission: Path | None, duration: float, response: bool) -> None:
+        """Play a mission to a node and record it; what it needs beside inputs is made while the node starts or runs.
+
+        Parameters
+        ----------
+        mission : input log; None: the synthetic mission is written.
+        duration : of the synthetic mission [s].
+        response : whether to build the response of the bearing to its uncertain fields, which the node uses as soon as it is there.
 
         Raises
         ------
         DemoFailed
-            The node or the player failed.
+            The node, the player or the mission failed.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         with self._node() as node:
-            click.echo(f"bearing_node is running (log: {self.log}); on first use it compiles its code, which takes up to two minutes", err=True)
-            self._play(mission, node)
+            click.echo(f"bearing_node is starting (log: {self.log})", err=True)
+            with self._building_response() if response else nullcontext():
+                self._play(mission or self._write_mission(duration), node)
             self._end(node)
 
     def show(self, opens: bool | None) -> None:
         """Write the view, and open it or print the command that does; None: open it if there is a display."""
-        click.echo("writing the view", err=True)
+        seconds = Recording(self.recording).duration
+        stage = f"view of {seconds:.0f} s"
+        click.echo(f"writing the view ({expected(stage, _VIEW[0] + _VIEW[1] * seconds)})", err=True)
         chosen = {None: (), True: ("--open",), False: ("--no-open",)}[opens]
-        self._run_to_end("view", str(self.recording), "-o", str(self.view), *chosen)
+        with timed(stage):
+            self._run_to_end("view", str(self.recording), "-o", str(self.view), *chosen)
 
-    def write_mission(self, duration: float) -> Path:
+    def _write_mission(self, duration: float) -> Path:
         """Write the synthetic mission and return its path."""
-        path = self.folder / "mission.mcap"
-        self.folder.mkdir(parents=True, exist_ok=True)
-        machine = []
+        path, machine = self.folder / "mission.mcap", []
+        stage = f"mission of {duration:g} s"
         if self._hidden is not None:
             changes = [word for override in (*self._overrides, *self._hidden) for word in ("--set", override)]
             machine = ["--cage", self._scene, *changes, *([OPTION] if self._allow_outside else [])]
-        self._run_to_end("mission", "-o", str(path), "--duration", str(duration), *machine, stdout=subprocess.DEVNULL)
+            seconds = expected(stage, _MISSION[0] + _MISSION[1] * duration)
+            click.echo(f"simulating the measured cage: the model with {', '.join(self._hidden)}, and noise ({seconds})", err=True)
+        with timed(stage):
+            self._run_to_end("mission", "-o", str(path), "--duration", str(duration), *machine, stdout=subprocess.DEVNULL)
         return path
 
-    def prepare_estimates(self) -> None:
-        """Build the response of the bearing to its uncertain fields, unless it is kept already."""
+    @contextmanager
+    def _building_response(self) -> Iterator[None]:
+        """Build the response of the bearing to its uncertain fields during the block, with the time that node and player leave."""
         changes = [word for override in self._overrides for word in ("--set", override)]
-        outside = [OPTION] if self._allow_outside else []
-        self._run_to_end("table", self._scene, "--bands", *changes, *outside, stdout=subprocess.DEVNULL)
+        words = ["table", self._scene, "--bands", "--workers", "1", *changes, *([OPTION] if self._allow_outside else [])]
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        building = self._start("bearing_sim.cli", *words, preexec_fn=lambda: (_end_with_parent(), os.nice(19)), **quiet)
+        try:
+            yield
+        finally:
+            if building.poll() is None:
+                click.echo("the bands were not ready in time: the next demonstration goes on with them", err=True)
+            _stop(building)
 
     @contextmanager
     def _node(self) -> Iterator[subprocess.Popen]:
@@ -135,9 +160,8 @@ class Demo:
 
     def _start(self, module: str, *arguments: str, **streams) -> subprocess.Popen:
         # In its own session: Ctrl-C reaches this process alone, which then ends the others in order, each by one signal.
-        return subprocess.Popen(
-            [sys.executable, "-m", module, *arguments], env=self._environment, start_new_session=True, preexec_fn=_end_with_parent, **streams
-        )
+        options = {"env": self._environment, "start_new_session": True, "preexec_fn": _end_with_parent, **streams}
+        return subprocess.Popen([sys.executable, "-m", module, *arguments], **options)
 
     def _run_to_end(self, *arguments: str, **streams) -> None:
         process = self._start("bearing_sim.cli", *arguments, **streams)
@@ -164,6 +188,29 @@ def _stop(process: subprocess.Popen) -> None:
     except subprocess.TimeoutExpired:
         process.kill()
         process.wait()
+
+
+def _await(installing: tuple[int, Path] | None, all_of_it: bool = False) -> None:
+    """Wait until ROS 2, or all, is installed by a process that ``demo.sh`` has started; None: nothing is.
+
+    Raises
+    ------
+    DemoFailed
+        The installation failed.
+    """
+    if installing is None:
+        return
+    process, has_ros = installing
+    while all_of_it or not has_ros.exists():
+        try:
+            ended, status = os.waitpid(process, os.WNOHANG)
+        except ChildProcessError:  # ended, and asked for before
+            return
+        if ended:
+            if status:
+                raise DemoFailed("the installation failed; see the message above")
+            return
+        time.sleep(0.1)
 
 
 def _tail(log: Path, lines: int = 15) -> str:
@@ -262,16 +309,18 @@ def _diagnostics(path: Path) -> list[dict[str, str]]:
 @click.option("--duration", type=click.FloatRange(1.0, 3600.0), default=60.0, show_default=True, help="Length of the bundled mission [s].")
 @click.option("--estimates/--no-estimates", default=True, show_default=True, help="Show bands, and a calibration by a synthetic measured cage.")
 @click.option("--open/--no-open", "opens", default=None, help="Open the view in rerun [default: if there is a display].")
-def command(out, scene, overrides, allow_outside, mission, duration, estimates, opens):
+@click.option("--installing", type=(int, click.Path(path_type=Path)), hidden=True, help="Process that installs, and the file that says it has ROS 2.")
+def command(out, scene, overrides, allow_outside, mission, duration, estimates, opens, installing):
     """Run the node on the bundled synthetic mission, record it, and show the results.
 
-    With --estimates, which needs a minute more for the first time, results have 5 to 95 % bands by the ranges of the scene. The cage of a synthetic
-    machine is measured: a model whose oil quantity differs from the scene's, which the calibration finds while the node runs.
+    With --estimates results have 5 to 95 % bands by the ranges of the scene, once the response of the bearing to them is built, which the bundled
+    scene brings along. The cage of a synthetic machine is measured: a model whose oil quantity differs from the scene's, which the calibration
+    finds while the node runs.
     """
     try:
         loaded = load_scene(scene, overrides, allow_outside)
         asked, hidden = _estimates(loaded) if estimates else ((), None)
-        load_scene(scene, (*overrides, *asked), allow_outside)
+        loaded = load_scene(scene, (*overrides, *asked), allow_outside)
     except SceneError as error:
         click.echo(f"demo: {error}", err=True)
         sys.exit(2)
@@ -279,14 +328,12 @@ def command(out, scene, overrides, allow_outside, mission, duration, estimates, 
     demo = Demo(folder, scene, (*overrides, *asked), allow_outside, hidden)
     before = {number: signal.signal(number, signal.default_int_handler) for number in (signal.SIGTERM, signal.SIGHUP)}
     try:
-        if asked:
-            click.echo("preparing the bands; the first time this takes about a minute", err=True)
-            demo.prepare_estimates()
-        if hidden is not None and mission is None:
-            click.echo(f"the measured cage is synthetic: the model with {', '.join(hidden)}, and noise", err=True)
-        demo.run(mission or demo.write_mission(duration))
+        compile_for(loaded, lambda line: click.echo(line, err=True))
+        _await(installing)
+        demo.run(mission, duration, loaded.estimation.is_asked and kept_response(loaded) is None)
         click.echo(summary(demo.recording))
         click.echo(f"recording: {demo.recording}")
+        _await(installing, all_of_it=True)
         demo.show(opens)
     except DemoFailed as error:
         click.echo(f"demo: {error}", err=True)
@@ -297,7 +344,10 @@ def command(out, scene, overrides, allow_outside, mission, duration, estimates, 
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+        with suppress(DemoFailed):  # an installation that is cut off leaves half a package
+            _await(installing, all_of_it=True)
 
 
 if __name__ == "__main__":
-    command(prog_name="demo")
+    with standard_streams():
+        command(prog_name="demo")

@@ -22,7 +22,7 @@ from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 from std_srvs.srv import SetBool, Trigger
 
-from bearing_sim.estimation.response import ResponseModel, kept_response
+from bearing_sim.estimation.response import ResponseModel, kept_response, response_path
 from bearing_sim.extras import what_is_missing
 from bearing_sim.inputs.gate import REQUIRED, Sources
 from bearing_sim.messages import topics
@@ -50,7 +50,6 @@ from bearing_sim.scene.uncertainty import messages, with_values
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.stored_state.keeper import RECORD, StateKeeper
 from bearing_sim.stored_state.state_file import checked_serial, default_path
-from bearing_sim.vibration.reading import block_of
 from bearing_sim.view.viewer import stream_url, viewer_command
 
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
@@ -264,6 +263,7 @@ class BearingInterface:
         self.error = ""  # why the model cannot run; reported until the next configure
         self._simulation: Simulation | None = None
         self._response: ResponseModel | None = None  # of the bearing to its uncertain fields
+        self._awaited_response: Path | None = None  # where it will be
         self._governor: Governor | None = None
         self._settings: list[KeptSetting] = []  # measured ones, along which the governor falls
         self._courses: tuple[KeptCourse, ...] = ()  # that these were measured on
@@ -337,6 +337,8 @@ class BearingInterface:
             A recording or a view cannot be opened.
         """
         settings, shared = self.settings, self._shared
+        awaits = self.scene.estimation.is_asked and self._response is None and not follows_clock(self._node)
+        self._awaited_response = response_path(self.scene) if awaits else None
         if follows_clock(self._node):
             self._now_ns = self._node.now_ns
             self.live = SimTimeModel(
@@ -448,6 +450,7 @@ class BearingInterface:
         for bands in self.live.bands():
             self._outputs.publish_bands(bands, [self.live.stamp(time) for time in bands.times.tolist()])
         if self._report_is_due(self.live.level):
+            self._look_for_response()
             self._look_for_publishers()  # once a second is enough
             self._report(now_ns, self.live.condition(now_ns))
 
@@ -461,6 +464,15 @@ class BearingInterface:
         self._node.publish_diagnostics(now_ns, condition, self.component, self.hardware_id)
         if self.live is not None:
             self.live.record_diagnostics(condition, now_ns)
+
+    def _look_for_response(self) -> None:
+        """Estimate by a response that has been built since the start; with simulated time a run must not depend on when that was."""
+        if self._awaited_response is None or not self._awaited_response.exists():
+            return
+        self._awaited_response, self._response = None, kept_response(self.scene)
+        if self._response is not None:
+            self.live.estimate_by(self._response)
+            self._log("the response of the bearing to its uncertain fields is there: estimating what the scene asks for")
 
     def _look_for_publishers(self) -> None:
         """Tell the model who publishes its inputs, and which topics the scene does not use have a publisher."""
@@ -614,6 +626,8 @@ class BearingInterface:
         if live is None:  # the message was on its way when the run ended
             return
         try:
+            from bearing_sim.vibration.reading import block_of
+
             block = block_of(deserialize_message(cdr, kind))
         except Exception as error:  # its type depends on the middleware
             block = f"{len(cdr)} bytes are no block of samples: {' '.join(str(error).split())}"

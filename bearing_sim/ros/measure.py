@@ -27,6 +27,7 @@ from typing import IO, NamedTuple
 
 import click
 
+from bearing_sim.files.standard_streams import standard_streams
 from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import STAMP_FIELDS, CdrLayout
 from bearing_sim.messages.diagnostics import WHOLE
@@ -520,4 +521,5 @@ def command(counts, scene, overrides, parameters, duration, input_rate, rate, li
 
 
 if __name__ == "__main__":
-    command()
+    with standard_streams():
+        command()

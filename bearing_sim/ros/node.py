@@ -90,7 +90,7 @@ def _reported(transition: Callable) -> Callable:
 
 
 def _refuse_impossible_transitions(node: LifecycleNode) -> None:
-    """Answer "no" to a request for a transition that the current state does not have; rclpy alone would end the process."""
+    """Answer "no" to a request for a transition that the current state does not have; rclpy of ROS 2 Jazzy alone would end the process."""
 
     def answering(change_state: Callable) -> Callable:
         def answered(request, response):

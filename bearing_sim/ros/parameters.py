@@ -17,6 +17,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from bearing_sim.files.standard_streams import standard_streams
 from bearing_sim.inputs.static_transforms import Transform, quaternion
 from bearing_sim.messages.topics import FRAME
 from bearing_sim.scene.loader import did_you_mean
@@ -620,4 +621,5 @@ def parameter_file() -> str:
 
 
 if __name__ == "__main__":
-    print(parameter_file(), end="")
+    with standard_streams():
+        print(parameter_file(), end="")

@@ -26,6 +26,7 @@ from rclpy.utilities import remove_ros_args
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool
 
+from bearing_sim.files.standard_streams import standard_streams
 from bearing_sim.inputs.gate import with_values
 from bearing_sim.inputs.log import REQUIRED, InputLog, InputLogError, read_input_log
 from bearing_sim.messages import topics
@@ -376,6 +377,7 @@ def _play(player: Player, messages: list[ScheduledMessage], name: str, use_limit
     return not player.wants_end()
 
 
+@standard_streams()
 def main(args: list[str] | None = None) -> int:
     """Run the player.
 

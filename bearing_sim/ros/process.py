@@ -14,6 +14,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
+from bearing_sim.files.standard_streams import standard_streams
 from bearing_sim.recording.priority import lower_thread_priority
 from bearing_sim.ros.network import use_loopback
 from bearing_sim.ros.rclpy_internals import RclError, make_executor
@@ -60,6 +61,7 @@ def signals_end(ended: Future):
             signal.signal(number, handler)
 
 
+@standard_streams()
 def run_node(name: str, make_node: Callable[[Future], Node], args: list[str] | None) -> int:
     """Make a node and spin it until a signal arrives or it ends itself; then call its ``close``.
 

@@ -9,12 +9,10 @@ import dataclasses
 import math
 import time
 from collections.abc import Callable, Iterable, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from bearing_sim.estimation.live import LiveEstimation
-from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.estimation.two_states import laws_of_table
 from bearing_sim.inputs.gate import CHANNELS, REQUIRED, Coverage, InputGate, PublisherConflict, Sources, unused_event, with_values
 from bearing_sim.levels.steady.table_builder import cached_table
@@ -30,7 +28,7 @@ from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health, Phase, level_of, numbers, remarks
 from bearing_sim.runtime.pacing import LONGEST_TICK, Decimator, OutputCount, Pacer, WallClock, tick_schedule
-from bearing_sim.runtime.remembering import note, recall, warm_start
+from bearing_sim.runtime.remembering import note, recall, recall_estimates, warm_start
 from bearing_sim.runtime.sink_registry import Sink, SinkRegistry
 from bearing_sim.runtime.solver import Solver, WallTimeSolver
 from bearing_sim.runtime.solver_threads import SolverThreads
@@ -41,8 +39,11 @@ from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.stored_state.keeper import StateKeeper
-from bearing_sim.vibration.meter import CageSpeedMeter
-from bearing_sim.vibration.reading import Block
+
+if TYPE_CHECKING:
+    from bearing_sim.estimation.live import LiveEstimation
+    from bearing_sim.estimation.response import ResponseModel
+    from bearing_sim.vibration.reading import Block
 
 _REPLACED_WITHIN = 10.0  # [s] for the reset of a model that is held
 _CLOCKS = 3  # times 0 by clocks before the present one under which a recording may have its stamps
@@ -138,13 +139,13 @@ class Model:
         solver: Solver,
         start_ns: int,
         keeper: StateKeeper | None = None,
-        response: ResponseModel | None = None,
+        response: "ResponseModel | None" = None,
         inputs_expected_within: float = 10.0,
     ):
         self.keeper = keeper
         self._inputs_expected_within = inputs_expected_within
         self._sources: dict[str, Sources] = {}
-        self._estimation = LiveEstimation(scene, response) if response is not None and scene.estimation.is_asked else None
+        self._estimation = _estimation(scene, response) if response is not None and scene.estimation.is_asked else None
         self._bands: list[Bands] = []
         self._slip_band = math.nan  # upper end of the newest band of slip
         self._counted: np.void | None = None  # the newest sample that is in the bearing's state
@@ -308,6 +309,12 @@ class Model:
         """Return the residual slips since the last call that are to be published, each with its stamp [ns since the epoch]."""
         residuals, self._residuals = self._residuals, []
         return residuals
+
+    def estimate_by(self, response: "ResponseModel") -> None:
+        """Estimate from now on what the scene asks for, by its response, which has been built while the run goes on."""
+        self._estimation = _estimation(self.scene, response)
+        if self.keeper is not None:
+            recall_estimates(self.keeper, self._estimation, self.start_ns)
 
     def accept_change(self) -> bool:
         """Take the machine as it is since a change for the new normal; return whether there was a change to accept."""
@@ -507,12 +514,23 @@ class Model:
                 self.keeper.restart()
 
 
+# Imported where a scene asks for them, because they take as long as all the rest.
+def _estimation(scene: Scene, response: "ResponseModel") -> "LiveEstimation":
+    from bearing_sim.estimation.live import LiveEstimation
+
+    return LiveEstimation(scene, response)
+
+
+def _meter(scene: Scene) -> "CageSpeedMeter":
+    from bearing_sim.vibration.meter import CageSpeedMeter
+
+    return CageSpeedMeter(scene)
+
+
 def _no_response(now: float) -> Event:
     """Return the event of a scene that asks for estimates, and for which nothing is kept that they could come from."""
     reason = "the scene asks for bands or a calibration, and no response of the bearing to its uncertain fields is kept here; nothing is estimated"
-    return Event(
-        now, Level.WARN, "estimate.absent", "", reason, "build it with bearing-sim table SCENE --bands, with the same --set, and start again"
-    )
+    return Event(now, Level.WARN, "estimate.absent", "", reason, "build it with bearing-sim table SCENE --bands, with the same --set")
 
 
 class LiveModel(Model):
@@ -555,7 +573,7 @@ class LiveModel(Model):
         receiver: Callable[[], int] | None = None,
         threads: SolverThreads | None = None,
         keeper: StateKeeper | None = None,
-        response: ResponseModel | None = None,
+        response: "ResponseModel | None" = None,
         inputs_expected_within: float = 10.0,
         stamp_tolerance: float = 2.0,
     ):
@@ -573,7 +591,7 @@ class LiveModel(Model):
         self._wall_clock = WallClock(start_ns, clock, receiver)
         self._published_time = -math.inf
         self._anchors, self._output_count = 0, OutputCount()
-        self._meter = CageSpeedMeter(scene) if scene.vibration.is_asked else None
+        self._meter = _meter(scene) if scene.vibration.is_asked else None
         self.solver.start()
 
     def tick(self, now_ns: int) -> None:
@@ -606,7 +624,7 @@ class LiveModel(Model):
             self.solver.post(self.gate.held)
         return None
 
-    def offer_vibration(self, block: Block | str, now_ns: int) -> None:
+    def offer_vibration(self, block: "Block | str", now_ns: int) -> None:
         """Take a block of vibration, or why a message cannot be read as one; nothing is done where the scene does not ask for it."""
         if self._meter is None:
             return

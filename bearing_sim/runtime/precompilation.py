@@ -1,24 +1,30 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Compile levels ahead of time, in parallel processes, and remove the code that older versions have compiled.
 
-Each level is compiled when it first runs, which takes from seconds (`slip`) to minutes (`spatial`) of one core, once per version of the model.
+Each level is compiled when it first runs, which takes from half a minute (`slip`) to a minute (`spatial`) of one core, once per version of the model.
 For a machine image or a test suite it is faster to compile everything at once, on all cores.
 """
 
 import gc
 import multiprocessing
+import os
 import shutil
-from collections.abc import Iterator, Sequence
+import signal
+import time
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from bearing_sim.numerics.cores import cores
+from bearing_sim.runtime.durations import expected, keep
 
 if TYPE_CHECKING:
     from bearing_sim.scene.scene import Scene
 
 _SECONDS = 1e-4  # a run this short calls everything that has to be compiled
 _SLOWEST_FIRST = "spatial", "planar", "steady", "slip"
+_REFERENCE = {"slip": 28.0, "steady": 36.0, "planar": 45.0, "spatial": 60.0, "thermal equilibrium": 36.0}  # seconds of a core, see `durations`
 _COLLECTIONS = 100_000, 50, 10  # thresholds of the garbage collector; with Python's own a seventh of the time goes into objects that live on
 
 
@@ -66,8 +72,50 @@ def builds(levels: Sequence[str]) -> list[Build]:
     return [Build(level) for level in _SLOWEST_FIRST if level in levels]
 
 
+def compile_for(scene: "Scene", tell: Callable[[str], None], with_states: bool = False) -> None:
+    """Compile what a run of a scene starts with, in processes of their own, unless the cache has it or cannot be written.
+
+    Parameters
+    ----------
+    tell : is given a line that says what is compiled and how long that will take, if anything is.
+    with_states : as of `is_compiled_for`.
+    """
+    if is_compiled_for(scene, with_states):
+        return
+    # The search of thermal equilibrium finds other states, too; it is nearly all of the code of level steady.
+    searches = (with_states or scene.heat.law == "network") and scene.level != "steady"
+    wanted = [Build(scene.level)] + [Build("slip", equilibrium=True)] * searches
+    if not _can_keep():
+        tell(f"compiling for this run alone, {_expected(wanted)}, since {_cache_folder()} cannot be written")
+        return
+    tell(announcement(wanted))
+    for _ in compile_all(wanted):
+        pass
+
+
+def announcement(wanted: Sequence[Build]) -> str:
+    """Return the line that says what is compiled and how long that will take."""
+    return f"compiling, once per version: {_expected(wanted)}"
+
+
+def _expected(wanted: Sequence[Build]) -> str:
+    return ", ".join(f"{build} {expected(f'compiling {build}', _REFERENCE[str(build)])}" for build in wanted)
+
+
+def _cache_folder() -> Path:
+    from bearing_sim.numerics.compilation import CACHE_FOLDER
+
+    return CACHE_FOLDER
+
+
+def _can_keep() -> bool:
+    """Return whether compiled code can be kept: whether its folder, or the first that exists above it, can be written."""
+    existing = next(folder for folder in (_cache_folder(), *_cache_folder().parents) if folder.exists())
+    return os.access(existing, os.W_OK | os.X_OK)
+
+
 def compile_all(wanted: Sequence[Build], workers: int | None = None) -> Iterator[Build]:
-    """Compile in separate processes; yields each build when it is done.
+    """Compile in separate processes; yields each build when it is done, and keeps how long it took.
 
     Parameters
     ----------
@@ -78,17 +126,42 @@ def compile_all(wanted: Sequence[Build], workers: int | None = None) -> Iterator
     concurrent.futures.process.BrokenProcessPool
         A process was killed, for example for lack of memory: each takes up to 1 GB.
     """
-    workers = workers or cores()
+    workers, fresh = workers or cores(), {build for build in wanted if not _is_built(build)}
     context = multiprocessing.get_context("spawn")
     # One process per build, because a compiler does not release its memory.
+    others = multiprocessing.active_children()
     with ProcessPoolExecutor(min(workers, len(wanted)) or 1, context, max_tasks_per_child=1) as pool:
         futures = {pool.submit(_compile, build): build for build in wanted}
-        for future in as_completed(futures):
-            future.result()
-            yield futures[future]
+        try:
+            for future in as_completed(futures):
+                seconds, build = future.result(), futures[future]
+                if build in fresh:
+                    keep(f"compiling {build}", seconds)
+                yield build
+        except BaseException:  # interrupted: the pool would wait for its processes
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in multiprocessing.active_children():
+                if process not in others:
+                    process.terminate()
+            raise
 
 
-def _compile(build: Build) -> None:
+def _is_built(build: Build) -> bool:
+    from bearing_sim.levels.steady.operating_point import find_skid_load
+    from bearing_sim.numerics.compilation import is_cached
+
+    return is_cached(find_skid_load) if build.equilibrium else is_compiled(build.level)
+
+
+def _compile(build: Build) -> float:
+    """Compile, in a process that does nothing else; return how long that took [s]."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # ends without a traceback
+    began = time.monotonic()
+    _run(build)
+    return time.monotonic() - began
+
+
+def _run(build: Build) -> None:
     from bearing_sim.numerics.compilation import prune_no_references
     from bearing_sim.scene.loader import load_scene
     from bearing_sim.simulation import Simulation, scene_inputs

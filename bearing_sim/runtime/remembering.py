@@ -2,14 +2,17 @@
 """What a run takes from the stored state of its bearing, and leaves there: temperatures, and what the monitors have learned."""
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.simulation import Inputs, Simulation, begin_at_temperatures
 from bearing_sim.stored_state.keeper import StateKeeper
+
+if TYPE_CHECKING:
+    from bearing_sim.estimation.live import LiveEstimation
 
 
 def warm_start(keeper: StateKeeper, now_ns: Callable[[], int]) -> Callable[[Simulation, Inputs], None]:
@@ -30,7 +33,7 @@ def warm_start(keeper: StateKeeper, now_ns: Callable[[], int]) -> Callable[[Simu
     return begin
 
 
-def recall(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor, estimation: LiveEstimation | None, now_ns: int) -> None:
+def recall(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor, estimation: "LiveEstimation | None", now_ns: int) -> None:
     """Let monitors continue from what they had learned about the bearing; from nothing if another version of them had learned it.
 
     Parameters
@@ -40,10 +43,7 @@ def recall(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor, est
     """
     learned = keeper.state.learned
     if estimation is not None:
-        try:
-            estimation.restore(learned.get("estimation", {}), max(now_ns - keeper.state.until_ns, 0) * 1e-9)
-        except (KeyError, TypeError, ValueError):
-            estimation.restore({})
+        recall_estimates(keeper, estimation, now_ns)
     try:
         residual.restore(learned.get("cage_slip", {}))
         monitor.temperatures.restore(learned.get("temperatures", {}))
@@ -52,7 +52,17 @@ def recall(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor, est
         monitor.temperatures.restore({})
 
 
-def note(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor, estimation: LiveEstimation | None, sample: np.void, time_ns: int) -> None:
+def recall_estimates(keeper: StateKeeper, estimation: "LiveEstimation", now_ns: int) -> None:
+    """Let estimates continue from what measurements have taught (see `recall`)."""
+    try:
+        estimation.restore(keeper.state.learned.get("estimation", {}), max(now_ns - keeper.state.until_ns, 0) * 1e-9)
+    except (KeyError, TypeError, ValueError):
+        estimation.restore({})
+
+
+def note(
+    keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor, estimation: "LiveEstimation | None", sample: np.void, time_ns: int
+) -> None:
     """Put the temperatures of a sample, taken at an instant [ns since the epoch], and what monitors have learned into the state."""
     keeper.note_thermal(sample, time_ns)
     kept = keeper.state.learned.get("estimation", {})  # a run that does not estimate keeps what another one has learned

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.inputs.profile import InputProfile
 from bearing_sim.messages.bands import BANDS, Bands
@@ -231,8 +230,11 @@ class _Run:
         laws: Sequence[Law],
     ):
         self._keeper = keeper
-        self._estimation = LiveEstimation(scene, response) if response is not None and scene.estimation.is_asked else None
-        if self._estimation is not None:
+        self._estimation = None
+        if response is not None and scene.estimation.is_asked:
+            from bearing_sim.estimation.live import LiveEstimation
+
+            self._estimation = LiveEstimation(scene, response)
             self._estimation.know([channel for channel, stamps in profile.stamps.items() if len(stamps)])
         self._newest: np.void | None = None  # that the keeper has counted
         self._scene, self._profile, self._watchers, self._progress, self._rate = scene, profile, watchers, progress, rate

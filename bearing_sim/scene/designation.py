@@ -633,5 +633,5 @@ def designations(*, kind: str | None = None, series: str | None = None, bore: fl
             if of not in series_of_type(each) or not _exists(each, of, size):
                 continue
             rows = makers_rows().get((of, size, each == "NCF"), ())
-            designation = parse_designation(f"{each} {_digits(of, size)}")
+            designation = _designation(each, of, size, _read_suffixes(each, "", ""), [])
             yield CatalogueBearing(designation, designation.boundary, rows[0].ratings if rows else Ratings(), rows[0].maker if rows else "")

@@ -117,10 +117,8 @@ def prose(docstring: str | None) -> str:
 
 def _comments(record: type) -> dict[str, str]:
     """Return the comment beside each field of a record, or the one directly above it, by field name."""
-    source = inspect.getsource(sys.modules[record.__module__])
-    node = next(item for item in ast.walk(ast.parse(source)) if isinstance(item, ast.ClassDef) and item.name == record.__name__)
-    found = {token.start[0]: token for token in tokenize.generate_tokens(io.StringIO(source).readline) if token.type == tokenize.COMMENT}
-    comments = {}
+    (tree, found), comments = _parsed(record.__module__), {}
+    node = next(item for item in ast.walk(tree) if isinstance(item, ast.ClassDef) and item.name == record.__name__)
     for item in node.body:
         if isinstance(item, ast.AnnAssign):
             beside = [found[line].string for line in range(item.lineno, item.end_lineno + 1) if line in found]
@@ -130,6 +128,14 @@ def _comments(record: type) -> dict[str, str]:
                 line -= 1
             comments[item.target.id] = " ".join(text.lstrip("# ") for text in beside or above)
     return comments
+
+
+@cache
+def _parsed(module: str) -> tuple[ast.Module, dict[int, tokenize.TokenInfo]]:
+    """Return the syntax tree of a module, and its comments by line."""
+    source = inspect.getsource(sys.modules[module])
+    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
+    return ast.parse(source), {token.start[0]: token for token in tokens if token.type == tokenize.COMMENT}
 
 
 def _parts(hint: object) -> tuple[list, list]:

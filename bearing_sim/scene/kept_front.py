@@ -12,7 +12,6 @@ load and oil temperature: a course says between which it was measured, and holds
 
 import dataclasses
 import hashlib
-import json
 import math
 import os
 import platform
@@ -23,19 +22,17 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import NamedTuple
 
-import platformdirs
-
+from bearing_sim.files.kept import Damaged, cache_folder, checked_contents, read_kept, with_checksum
 from bearing_sim.files.limits import JSON_FILE
-from bearing_sim.files.outputs import RefusedOutput, replaced
-from bearing_sim.files.reading import read_bytes
+from bearing_sim.files.outputs import BeingWritten, replaced
 
 VARIABLE = "BEARING_SIM_FRONTS"
 """Environment variable that names another folder for measured fronts than that in the user's cache."""
-FOLDER = Path(os.environ.get(VARIABLE) or Path(platformdirs.user_cache_dir("bearing_sim")) / "fronts")
+FOLDER = Path(os.environ.get(VARIABLE) or cache_folder() / "fronts")
 _PACKAGE = Path(__file__).resolve().parents[1]
 _SOURCES = ("numerics/*.py", "physics/*.py", "levels/**/*.py", "model/*.py", "simulation.py", "estimation/*.py")
 _STUDIES = ("studies/trade.py", "studies/trade_course.py", "studies/correction.py")
-_FORMAT = 1
+_VERSION = 2  # of the files
 _SLACK = 1.25  # factor by which a scene may operate outside of what was measured in speed and load; assumption
 _TEMPERATURE_SLACK = 10.0  # K, likewise
 _PATIENCE, _PAUSE = 10.0, 0.05  # s, for another process that is writing
@@ -236,13 +233,14 @@ def front_path(scene) -> Path:
 def read_front(scene) -> KeptFront | None:
     """Return what is kept for a scene's bearing on this machine, or None where there is nothing, or nothing that is whole."""
     path = front_path(scene)
-    try:
-        stored = json.loads(read_bytes(path, JSON_FILE))
-        if stored["format"] != _FORMAT:
-            return None
-        return KeptFront(path, tuple(map(_course, stored["courses"])))
-    except Exception:  # whatever a broken file makes its reader raise, it counts as none
-        return None
+    return read_kept(path, JSON_FILE, lambda data: KeptFront(path, _courses(data)))
+
+
+def _courses(data: bytes) -> tuple[KeptCourse, ...]:
+    version, stored = checked_contents(data, "front")
+    if version != _VERSION:
+        raise Damaged(f"it is of version {version}; this program reads version {_VERSION}")
+    return tuple(map(_course, stored["courses"]))
 
 
 def _course(stored: Mapping) -> KeptCourse:
@@ -277,11 +275,11 @@ def keep(scene, course: KeptCourse) -> KeptFront:
             with replaced(path) as draft:  # alone among writers from here on
                 before = read_front(scene)
                 courses = _merged(() if before is None else before.courses, course)
-                stored = {"format": _FORMAT, "machine": machine(), "bearing": scene.bearing.name, "courses": [_stored(each) for each in courses]}
-                draft.write_text(json.dumps(stored, indent=1, allow_nan=False))
+                stored = {"machine": machine(), "bearing": scene.bearing.name, "courses": [_stored(each) for each in courses]}
+                draft.write_bytes(with_checksum("front", _VERSION, stored))
             return KeptFront(path, tuple(courses))
-        except RefusedOutput:
-            if time.monotonic() > end or not os.access(path.parent, os.W_OK):
+        except BeingWritten:
+            if time.monotonic() > end:
                 raise
             time.sleep(_PAUSE)
 

@@ -84,6 +84,12 @@ _STAND_IN = "NU 210"  # for a bearing whose name is unknown, so that the rest of
 _WRITTEN = {"written": True}  # context of a validation: the values come from a file or an option, see `Quantity.read`
 
 
+@functools.cache
+def _reader(record: type) -> TypeAdapter:
+    """Return what reads a record; it is built at the first use, which takes a twentieth of a second for a scene."""
+    return TypeAdapter(record)
+
+
 def scene_names() -> list[str]:
     """Return the names of the bundled scenes."""
     return _bundled_names("scenes")
@@ -211,7 +217,7 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
         errors.append(InvalidField(ROUND_RACEWAY, "", "this raceway has lobes, and no one diameter; give low_diameter or low_radius"))
     without = {diameters(Scene)[path].radius for path, _, _ in wrong_diameters if path in diameters(Scene)}
     try:
-        scene = TypeAdapter(Scene).validate_python(_with_level(resolved, origin), context=_WRITTEN)
+        scene = _reader(Scene).validate_python(_with_level(resolved, origin), context=_WRITTEN)
     except ValidationError as error:
         found = invalid_fields(error, Scene, _UNION_TAGS)
         if any(each.path == "bearing.preset" for each in errors):  # what depends on the bearing that stands in is no error of the file
@@ -237,7 +243,7 @@ def load_bearing(name: str) -> Bearing:
     tree, errors = _with_presets({"bearing": name})
     if not errors:
         try:
-            return TypeAdapter(Bearing).validate_python(tree["bearing"], context=_WRITTEN)
+            return _reader(Bearing).validate_python(tree["bearing"], context=_WRITTEN)
         except ValidationError as error:
             errors = invalid_fields(error, Bearing, _UNION_TAGS)
     raise SceneError(name, errors)
@@ -276,7 +282,7 @@ def _with_level(tree: Mapping, origin: str) -> Mapping:
     if tree.get("level") != "auto":
         return tree
     highest = "slip" if at(tree, "bearing.cage.guidance") == "full_complement" else "spatial"  # the level with all other effects
-    scene = TypeAdapter(Scene).validate_python({**tree, "level": highest}, context=_WRITTEN)
+    scene = _reader(Scene).validate_python({**tree, "level": highest}, context=_WRITTEN)
     found = choose(scene)
     if found.level is not None and scene.wanted_errors:
         errors = {each.want: each.error for each in scene.wanted_errors}
@@ -300,7 +306,7 @@ def _with_setting(tree: Mapping, setting: KeptSetting) -> dict:
 def _is_valid(tree: Mapping) -> bool:
     """Whether a tree is a valid scene; a measured fixed step may be too long at another speed."""
     try:
-        TypeAdapter(Scene).validate_python(tree, context=_WRITTEN)
+        _reader(Scene).validate_python(tree, context=_WRITTEN)
     except ValidationError:
         return False
     return True

@@ -72,7 +72,7 @@ def to_si(value: object, unit: str) -> float:
     written_unit = _MEANT.get(unit, {}).get("".join(written_unit.casefold().split()), written_unit)
     if written_unit in (factors := _USUAL.get(unit, {})):
         return number * factors[written_unit]
-    if (written_unit, unit) == ("degC", "K"):
+    if unit == "K" and written_unit in ("degC", "°C"):
         return number + _ZERO_CELSIUS
     import pint
 
@@ -115,31 +115,37 @@ _ZERO_CELSIUS = 273.15  # [K]
 # SI over the usual units of each kind, to the last digit those of pint; kinds with an offset, and whatever else people write, are read by pint.
 _USUAL = {
     "": {"%": 0.01},
-    "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6},
+    "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "cm": 1e-2, "in": 0.0254},
     "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
     SPEED: {SPEED: 1.0, "rpm": 2.0 * math.pi / 60.0, "revolution/s": 2.0 * math.pi},
-    "N": {"N": 1.0, "kN": 1e3},
-    "N/m": {"N/m": 1.0},
-    "N*m": {"N*m": 1.0},
+    "N": {"N": 1.0, "kN": 1e3, "MN": 1e6},
+    "N/m": {"N/m": 1.0, "N/mm": 1e3, "N/um": 1e6, "N/µm": 1e6},
+    "N*m": {"N*m": 1.0, "N m": 1.0, "kN*m": 1e3},
     "K": {"K": 1.0},
-    "delta_degC": {"K": 1.0},
-    "kg": {"kg": 1.0, "g": 1e-3},
+    "delta_degC": {"K": 1.0, "delta_degC": 1.0},
+    "kg": {"kg": 1.0, "g": 1e-3, "t": 1e3},
     "kg*m": {"kg*m": 1.0, "g*mm": 1e-6},
-    "kg/m^3": {"kg/m^3": 1.0},
-    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9},
+    "kg/m^3": {"kg/m^3": 1.0, "g/cm^3": 999.9999999999999},
+    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "bar": 1e5, "N/mm^2": 1e6},
     "1/Pa": {"1/Pa": 1.0, "1/GPa": 1e-9},
-    "Pa*s": {"Pa*s": 1.0, "mPa*s": 1e-3},
-    "m^2/s": {"m^2/s": 1.0, "mm^2/s": 1e-6},
-    "m^3/s": {"m^3/s": 1.0, "l/min": 1.666666666666667e-05, "ml/h": 2.7777777777777783e-10},
+    "Pa*s": {"Pa*s": 1.0, "mPa*s": 1e-3, "mPa s": 1e-3},
+    "m^2": {"m^2": 1.0, "cm^2": 1e-4, "mm^2": 1e-6},
+    "m^2/s": {"m^2/s": 1.0, "mm^2/s": 1e-6, "mm²/s": 1e-6, "cSt": 1.0000000000000002e-06},
+    "m^3/s": {"m^3/s": 1.0, "l/min": 1.666666666666667e-05, "ml/h": 2.7777777777777783e-10, "L/min": 1.666666666666667e-05},
     "m/s": {"m/s": 1.0, "mm/s": 1e-3},
-    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0},
+    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0, "d": 86400.0},
     "h": {"h": 1.0},
-    "Hz": {"Hz": 1.0},
+    "Hz": {"Hz": 1.0, "kHz": 1e3},
     "1/K": {"1/K": 1.0},
+    "W/K": {"W/K": 1.0},
     "W/(m*K)": {"W/(m*K)": 1.0},
+    "W/(m^2*K)": {"W/(m^2*K)": 1.0},
     "J/(kg*K)": {"J/(kg*K)": 1.0},
 }
-_SECOND_SPELLINGS = ("µm", "revolution/s")  # which no message proposes
+_SECOND_SPELLINGS = (  # which no message proposes
+    *("µm", "cm", "in", "revolution/s", "MN", "N/mm", "N/um", "N/µm", "N m", "kN*m", "delta_degC", "t", "g/cm^3", "bar", "N/mm^2", "mPa s"),
+    *("cm^2", "mm^2", "mm²/s", "cSt", "L/min", "d", "kHz"),
+)
 _FIRST_PROPOSED = {"m": "mm", "K": "degC", "rad": "deg", "Pa": "MPa"}
 _MOST_PROPOSED = 3
 _ANGLES = ("radian", "degree", "turn", "revolution", "cycle", "arcminute", "arcsecond", "grade", "revolutions_per_minute", "revolutions_per_second")
@@ -349,10 +355,14 @@ def quantity(unit: str, meaning: str, minimum: float = -math.inf, maximum: float
     return Annotated[float, Quantity(unit, meaning, minimum, maximum, shown_in)]
 
 
+# A validator is built at its first use, not for each record that others contain and nobody makes on its own.
+_CONFIG = ConfigDict(extra="forbid", str_strip_whitespace=True, defer_build=True)
+
+
 @dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(dataclasses.field,))
 def record(cls: type[Record]) -> type[Record]:
     """Decorate a record of a scene: frozen, keyword-only, and it refuses unknown fields."""
-    return pydantic.dataclasses.dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid", str_strip_whitespace=True))(cls)
+    return pydantic.dataclasses.dataclass(frozen=True, kw_only=True, config=_CONFIG)(cls)
 
 
 def named_law(value: object) -> object:

@@ -43,13 +43,17 @@ def rate(bearing) -> Rated:
     A maker's C_0 also gives the fatigue limit, unless the maker gives that too.
     """
     roller, given = bearing.roller, bearing.ratings
-    dimensions = roller.count, roller.diameter, roller.length, bearing.diameter_ratio
-    computed_static = static_rating(*dimensions)
-    computed_limit = fatigue_limit(computed_static, bearing.pitch_diameter)
-    computed = Ratings(dynamic=load_rating(*dimensions), static=computed_static, fatigue_limit=computed_limit)
+    computed = ratings_by_standards(roller.count, roller.diameter, roller.length, bearing.pitch_diameter)
     static = computed.static if given.static is None else given.static
     limit = fatigue_limit(static, bearing.pitch_diameter) if given.fatigue_limit is None else given.fatigue_limit
     return Rated(computed.dynamic if given.dynamic is None else given.dynamic, static, limit, computed)
+
+
+def ratings_by_standards(rollers: int, roller_diameter: float, length: float, pitch_diameter: float) -> Ratings:
+    """Return the load ratings by ISO 281 and ISO 76; parameters as in `load_rating` and `fatigue_limit`."""
+    dimensions = rollers, roller_diameter, length, roller_diameter / pitch_diameter
+    static = static_rating(*dimensions)
+    return Ratings(dynamic=load_rating(*dimensions), static=static, fatigue_limit=fatigue_limit(static, pitch_diameter))
 
 
 class MinimumLoadLaw(NamedTuple):

@@ -6,6 +6,7 @@ Every move has a number, which the history keeps: a move that was interrupted by
 """
 
 import csv
+import hashlib
 import importlib.util
 import io
 import json
@@ -98,7 +99,9 @@ def read_history(path: Path) -> tuple[list[dict[str, object]], Move]:
     try:
         rows, last = _read_parquet(parquet) if parquet.exists() else ([], _NO_MOVE)
         later, move = _read_csv(table)
-    except (LookupError, TypeError, AttributeError, ArithmeticError, RecursionError, csv.Error) as error:
+    except (OSError, ImportError):
+        raise
+    except Exception as error:  # whatever a damaged file makes its reader raise
         raise ValueError(f"the history of days of {path} is damaged: {type(error).__name__}: {error}") from None
     # A move into the other file that was interrupted before it removed this one: its days are there already.
     return (_with(rows, later), move) if move.number > last.number else (rows, last)
@@ -116,15 +119,32 @@ def _read_parquet(parquet: Path) -> tuple[list[dict[str, object]], Move]:
 
     open_regular(parquet, HISTORY_FILE).close()
     read = files.read_table(parquet)
-    return read.to_pylist(), Move(*json.loads((read.schema.metadata or {}).get(_LAST_MOVE, b"[0, []]")))
+    rows = read.to_pylist()
+    return rows, _checked_move(read.schema.metadata[_LAST_MOVE], rows)
 
 
 def _read_csv(table: Path) -> tuple[list[dict[str, object]], Move]:
     if not table.exists():
         return [], _NO_MOVE
     with io.StringIO(read_text(table, HISTORY_FILE)) as text:
-        move = Move(*json.loads(text.readline().partition(": ")[2]))
-        return [{name: _cell(name, value) for name, value in row.items()} for row in csv.DictReader(text)], move
+        move = text.readline().partition(": ")[2]
+        rows = [{name: _cell(name, value) for name, value in row.items()} for row in csv.DictReader(text)]
+        return rows, _checked_move(move, rows)
+
+
+def _move_text(move: Move, rows: list[dict[str, object]]) -> str:
+    """Return the last move as a history keeps it: with a checksum of that and of the rows."""
+    written = [{name: _cell(name, "" if row.get(name) is None else str(row[name])) for name in rows[0]} for row in rows]  # as they will be read
+    return json.dumps([*move, hashlib.sha256(json.dumps([*move, written]).encode()).hexdigest()])
+
+
+def _checked_move(text: str | bytes, rows: list[dict[str, object]]) -> Move:
+    """Return the last move of a history; ValueError if rows or move are not those that were written.  Older versions wrote no checksum."""
+    number, days, *checksum = json.loads(text)
+    move = Move(number, days)
+    if checksum and json.loads(_move_text(move, rows))[2:] != checksum:
+        raise ValueError("its checksum does not fit its contents")
+    return move
 
 
 def _cell(name: str, text: str) -> object:
@@ -175,7 +195,7 @@ def write_history(path: Path, new: list[dict[str, object]], number: int) -> bool
     new, move = _not_moved(new, number, last)
     rows = _with(rows, new)
     with replaced(parquet) as draft:
-        _write_parquet(draft, rows, {_LAST_MOVE: json.dumps(move).encode()})
+        _write_parquet(draft, rows, {_LAST_MOVE: _move_text(move, rows).encode()})
     table.unlink(missing_ok=True)
     return True
 
@@ -222,7 +242,7 @@ def _with(rows: list[dict[str, object]], new: list[dict[str, object]]) -> list[d
 
 def _write_csv(table: Path, rows: list[dict[str, object]], move: Move) -> None:
     with replaced(table) as draft, open(draft, "w", newline="") as text:
-        text.write(f"# totals of a bearing by UTC day; last move: {json.dumps(move)}\n")
+        text.write(f"# totals of a bearing by UTC day; last move: {_move_text(move, rows)}\n")
         _write_rows(text, rows)
 
 

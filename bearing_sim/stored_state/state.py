@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.files.kept import Damaged
 from bearing_sim.recording.provenance import package_version
 from bearing_sim.scene.scene import OPERATING_POINT, Scene
 from bearing_sim.scene.uncertainty import value_at
@@ -37,10 +38,6 @@ _OF_BEARING = (
 )
 _OF_SCENE = ("name", "life.method", "life.reliability")
 _SAME = 1e-9  # relative difference of two numbers that are one
-
-
-class Damaged(ValueError):
-    """Contents that are no state; the message says why."""
 
 
 @dataclass

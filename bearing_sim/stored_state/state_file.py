@@ -7,8 +7,6 @@ is when files are renamed, and holds the number of writes, which tells an older 
 """
 
 import fcntl
-import hashlib
-import json
 import os
 from contextlib import suppress
 from datetime import UTC, datetime
@@ -16,16 +14,13 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import quote, unquote
 
-import platformdirs
-
+from bearing_sim.files.kept import Damaged, checked_contents, state_folder, with_checksum
 from bearing_sim.files.limits import STATE_FILE, FileError, LimitError
 from bearing_sim.files.outputs import replaced, synchronise
 from bearing_sim.files.reading import NO_FILE, read_bytes, why_not_readable
 from bearing_sim.messages.events import Level
-from bearing_sim.stored_state.state import VERSION, Damaged, StoredState, migrated, time_text
+from bearing_sim.stored_state.state import VERSION, StoredState, migrated, time_text
 
-FORMAT = "bearing_sim state"
-_STATE = b', "state": '  # what the checksum is of stands behind it
 _LONGEST_SERIAL = 100
 
 
@@ -58,7 +53,7 @@ def checked_serial(serial: str) -> str:
 def default_path(serial: str) -> Path:
     """Return the state file of a serial number, in the user's folder for state (``~/.local/state/bearing_sim`` on Linux)."""
     name = quote(serial, safe=" ")
-    return Path(platformdirs.user_state_dir("bearing_sim")) / f"{'%2E' + name[1:] if name.startswith('.') else name}.json"
+    return state_folder() / f"{'%2E' + name[1:] if name.startswith('.') else name}.json"
 
 
 def known_serials() -> list[str]:
@@ -206,16 +201,14 @@ class StateFile:
 
     def _note_owner(self, writes: int) -> None:
         with suppress(OSError):  # a full disk: the lock holds all the same
-            data = json.dumps({"pid": os.getpid(), "writes": writes}).encode()
-            os.pwrite(self._lock, data + b"\n", 0)
-            os.ftruncate(self._lock, len(data) + 1)
+            data = with_checksum("lock", 1, {"pid": os.getpid(), "writes": writes})
+            os.pwrite(self._lock, data, 0)
+            os.ftruncate(self._lock, len(data))
 
 
 def serialised(state: StoredState) -> bytes:
     """Return the contents of a state file."""
-    contents = json.dumps(state.as_mapping(), allow_nan=False).encode()
-    head = {"format": FORMAT, "version": VERSION, "checksum": _checksum(VERSION, contents)}
-    return json.dumps(head).encode()[:-1] + _STATE + contents + b"}\n"
+    return with_checksum("state", VERSION, state.as_mapping())
 
 
 def parsed(data: bytes) -> StoredState:
@@ -228,20 +221,7 @@ def parsed(data: bytes) -> StoredState:
     StateError
         It was written by a newer version of this program.
     """
-    try:
-        whole = json.loads(data)
-    except RecursionError:
-        raise Damaged("it is cut short or overwritten: lists in lists without end") from None
-    except ValueError as error:
-        raise Damaged(f"it is cut short or overwritten: {error}" if data.strip() else "it is empty") from None
-    if not isinstance(whole, dict) or whole.get("format") != FORMAT or not isinstance(whole.get("version"), int):
-        raise Damaged(f"it is no state file: expected format {FORMAT!r} and a version")
-    version, contents = whole["version"], whole.get("state")
-    if not isinstance(contents, dict):
-        raise Damaged("it has no state")
-    # By the bytes: another spelling of a number is damage, too.  Version 0 is written by hand.
-    if version > 0 and whole.get("checksum") != _checksum(version, data.partition(_STATE)[2].rstrip()[:-1]):
-        raise Damaged("its checksum does not fit its contents")
+    version, contents = checked_contents(data, "state")  # version 0 is written by hand
     if version > VERSION:
         raise StateError(f"the state is of version {version}, written by a newer bearing_sim; this one knows versions up to {VERSION}: update it")
     return StoredState.from_mapping(migrated(version, contents))
@@ -263,10 +243,6 @@ def _parsed(path: Path) -> StoredState:
         raise StateError(f"{path}: {error}") from None
 
 
-def _checksum(version: int, contents: bytes) -> str:
-    return hashlib.sha256(b"%d " % version + contents).hexdigest()
-
-
 def _shown(state: StoredState) -> str:
     when = time_text(state.written_ns) if state.written_ns else "an unknown time"
     return f"{when} (write {state.writes}, {100.0 * state.totals.damage:.6g} % of life used)"
@@ -274,10 +250,9 @@ def _shown(state: StoredState) -> str:
 
 def _lock_contents(path: Path) -> dict:
     try:
-        contents = json.loads(path.read_text())
-    except (OSError, ValueError):
+        return checked_contents(path.read_bytes(), "lock")[1]
+    except (OSError, Damaged):
         return {}
-    return contents if isinstance(contents, dict) else {}
 
 
 def _writes_in_lock(path: Path) -> int:

@@ -26,6 +26,7 @@ from bearing_sim.estimation.correction import (
     write_correction,
 )
 from bearing_sim.estimation.response import CONDITIONS, Domain, conditions_at, coordinates, embedded
+from bearing_sim.files.kept import kept_if_possible
 from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CAGE_SLIPS
 from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import Quality, obtain_table, solve_points
@@ -208,8 +209,9 @@ def obtain_correction(
     if found is None:
         journal = path.with_suffix(".journal")
         found = _measured(scene, domain, journal, workers, progress, most)
-        write_correction(path, found)
-        journal.unlink(missing_ok=True)
+        with kept_if_possible(path):
+            write_correction(path, found)
+            journal.unlink(missing_ok=True)
     return found
 
 
@@ -217,7 +219,7 @@ def _measured(scene, domain, path: Path, workers, progress, most) -> Correction:
     began, plain = time.perf_counter(), measured_scene(scene, "slip")
     spread = _spread(min(FIRST_POINTS, most), 1, domain)
     conditions, rows, before = np.zeros((0, 4)), [], None
-    with Journal(path) as journal:
+    with Journal(path, is_own=True) as journal:
         while True:
             batches = [tuple(map(tuple, spread[first : first + _BATCH].tolist())) for first in range(0, len(spread), _BATCH)]
             tasks, done = [task("planar", measured_points, plain, batch) for batch in batches], len(conditions)

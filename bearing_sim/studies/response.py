@@ -21,6 +21,7 @@ from bearing_sim.estimation.response import (
     scene_fields,
     write_response,
 )
+from bearing_sim.files.kept import kept_if_possible
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.physics.thermal_network import NODES
@@ -270,12 +271,13 @@ def obtain_response(
     if found is None:
         began = time.perf_counter()
         conditions, scores = design(scene, points)
-        with Journal(path.with_suffix(".journal")) as journal:
+        with Journal(path.with_suffix(".journal"), is_own=True) as journal:
             answers = at_points(scene, scores, conditions, journal, workers, dask, progress)
         try:
             found = fit_response(fields, domain_of(scene), conditions, scores, answers, SlipAndOil(scene), time.perf_counter() - began)
         except ValueError as error:
             raise UncertaintyError(f"no response of {scene.name}: {error}; narrow its ranges, or its block `table`") from None
-        write_response(path, found)
-        path.with_suffix(".journal").unlink(missing_ok=True)
+        with kept_if_possible(path):
+            write_response(path, found)
+            path.with_suffix(".journal").unlink(missing_ok=True)
     return found

@@ -14,7 +14,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import expm
 
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import new_work
@@ -121,6 +120,8 @@ def _retardation(loads: np.ndarray, raceways) -> np.ndarray:
 
 def _multiplier(stiffness: np.ndarray, damping: np.ndarray, interval: float) -> float:
     """Return the largest magnitude of the multipliers of x'' + C x' + K x = 0, with matrices that are constant over each interval [s]."""
+    from scipy.linalg import expm
+
     blocks = np.zeros((len(stiffness), 4, 4))
     blocks[:, :2, 2:] = np.eye(2) * interval
     blocks[:, 2:, :2], blocks[:, 2:, 2:] = -stiffness * interval, -damping * interval

@@ -15,13 +15,17 @@ import sys
 import threading
 import time
 import types
+import zlib
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import nullcontext
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from bearing_sim.files.kept import kept_if_possible, tell_once
+from bearing_sim.files.limits import printable
 from bearing_sim.numerics.cores import cores
 
 _PACKAGE = Path(__file__).resolve().parents[1]
@@ -93,6 +97,7 @@ def task(kind: str, function: Callable[..., dict], *arguments: Any) -> Task:
 
 
 _BEGIN = b'{"key": "'
+_CHECKSUM = b', "crc32": '  # of what stands before it in its line
 _SYNC = 1.0  # s between syncs to disk, the most that a power cut loses; a killed process loses nothing
 
 
@@ -103,11 +108,13 @@ class JournalInUse(RuntimeError):
 class Journal:
     """Append-only store of results by task key, in a file of one JSON line per task; a context manager.
 
-    Finished tasks survive a kill at any instant.  A line that a kill cut short is removed before the next one is written.
+    Finished tasks survive a kill at any instant.  A line that a kill cut short is removed before the next one is written; tasks of lines that are
+    damaged are computed again, and it is said how many.
 
     Parameters
     ----------
     path : of the journal, created if absent; None keeps results in memory only.
+    is_own : whether it is the program's own, in its cache: where it cannot be written, which is said, results are kept in memory, too.
 
     Raises
     ------
@@ -115,13 +122,15 @@ class Journal:
         Another process is writing it.
     """
 
-    def __init__(self, path: Path | None = None):
+    def __init__(self, path: Path | None = None, is_own: bool = False):
         self.path, self._file, self._synced = path, None, 0.0
         self._results: dict[str, dict] = {}
+        self._writing = kept_if_possible if is_own else nullcontext
         if path is not None:
-            self._open(path)
+            with self._writing(path):
+                self._open(path, is_own)
 
-    def _open(self, path):
+    def _open(self, path, is_own):
         path.parent.mkdir(parents=True, exist_ok=True)
         file = open(path, "a+b")
         try:
@@ -130,20 +139,22 @@ class Journal:
             file.close()
             raise JournalInUse(f"{path}: another process is writing it; wait until it has finished, or give another output") from None
         file.seek(0)
-        if (begin := file.read(len(_BEGIN))) and not _BEGIN.startswith(begin):
+        if (begin := file.read(len(_BEGIN))) and not _BEGIN.startswith(begin) and not is_own:
             file.close()
             raise JournalInUse(f"{path} is no journal of bearing-sim, to which results could be added; move it, or give another output")
         file.seek(0)
-        whole = 0
+        whole = damaged = 0
         for line in file:
             if not line.endswith(b"\n"):
                 break
             whole += len(line)
             try:
-                entry = json.loads(line)
+                entry = json.loads(line) if line == _line(line.rpartition(_CHECKSUM)[0]) else {}
                 self._results[entry["key"]] = entry["result"]
             except (ValueError, KeyError, TypeError):
-                continue  # ignore foreign lines; their tasks are computed again
+                damaged += 1
+        if damaged:
+            tell_once(f"{printable(path)} is damaged: {damaged} of its lines; their tasks are computed again", path)
         file.truncate(whole)
         self._file = file
 
@@ -167,19 +178,25 @@ class Journal:
         self._results[key] = result
         if self._file is None:
             return
-        self._file.write(json.dumps({"key": key, "result": result}).encode() + b"\n")
-        self._file.flush()
-        if time.monotonic() - self._synced > _SYNC:
-            os.fsync(self._file.fileno())
-            self._synced = time.monotonic()
+        with self._writing(self.path):
+            self._file.write(_line(json.dumps({"key": key, "result": result}).encode()[:-1]))
+            self._file.flush()
+            if time.monotonic() - self._synced > _SYNC:
+                os.fsync(self._file.fileno())
+                self._synced = time.monotonic()
 
     def close(self) -> None:
         """Force all results to disk and release the file."""
-        if self._file is not None:
-            self._file.flush()
-            os.fsync(self._file.fileno())
-            self._file.close()
-            self._file = None
+        file, self._file = self._file, None
+        if file is not None:
+            with self._writing(self.path), file:
+                file.flush()
+                os.fsync(file.fileno())
+
+
+def _line(data: bytes) -> bytes:
+    """Return the line of a journal from its JSON without the last brace."""
+    return data + _CHECKSUM + b"%d}\n" % zlib.crc32(data)
 
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")

@@ -8,7 +8,6 @@ import numpy as np
 
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.common.observation import oil_at_speed
-from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.model import Work, forget, new_work, solve_condition
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.model.params import Lubrication, Params, pack
@@ -41,6 +40,8 @@ def equilibrium_temperatures(scene: Scene, inputs: Inputs, start: np.void | None
     IntegrationError
         There is no equilibrium: it says why.
     """
+    from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
+
     known = None if start is None else thermal_nodes(start)
     nearby = known if known is not None and np.isfinite(known).all() else None
     slip = 0.0 if start is None else float(start["cage_slip"])

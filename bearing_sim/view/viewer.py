@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 HOST = "127.0.0.1"
-_END_MARK, _END_LENGTH = b"RRF2FOOT", 12  # [byte]: the mark and the number of footers, in files of rerun 0.41
+_END_MARK, _END_LENGTH = b"RRF2FOOT", 12  # [byte]: the mark and the number of footers, in files of rerun 0.39 to 0.41
 
 
 def free_port() -> int:

@@ -7,6 +7,7 @@ by this module with a policy that forbids the browser everything that is not on 
 """
 
 import contextlib
+import hashlib
 import http.client
 import logging
 import os
@@ -25,8 +26,8 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import quote, urlsplit
 
-import platformdirs
-
+from bearing_sim.files.kept import cache_folder, checked_contents, kept_if_possible, read_kept, tell_once, with_checksum
+from bearing_sim.files.limits import JSON_FILE
 from bearing_sim.view.viewer import HOST, free_port, stream_url
 
 _PAGE = "index.html"
@@ -37,6 +38,7 @@ _FILES = {  # of the viewer, with their types; the icon is not needed
     "favicon.ico": "image/x-icon",
 }
 _NEEDED = tuple(_FILES)[:3]
+_DIGESTS = "digests.json"  # of the files, beside them
 _RECORDING = "application/octet-stream"
 # What the viewer is: its own files, code that it compiles, and streams from servers on this machine.
 _POLICY = (
@@ -46,6 +48,7 @@ _POLICY = (
 _START_UP = 60.0  # [s] for the program to serve its files on a busy machine
 _CHUNK = 1 << 18  # byte
 _log = logging.getLogger(__name__)
+_not_kept: tempfile.TemporaryDirectory | None = None  # the files of the viewer, where they cannot be kept
 
 
 class NoWebViewer(RuntimeError):
@@ -178,18 +181,37 @@ def viewer_files() -> Path:
     NoWebViewer
         They are not in the package, and its program does not serve them.
     """
-    folder = Path(platformdirs.user_cache_dir("bearing_sim")) / "web_viewer" / version("rerun-sdk")
-    if all((folder / name).is_file() for name in _NEEDED):
+    global _not_kept
+    folder = cache_folder() / "web_viewer" / version("rerun-sdk")
+    kept = read_kept(folder / _DIGESTS, JSON_FILE, lambda data: checked_contents(data, "web_viewer")[1])
+    if kept is not None:
+        if kept == _digests(folder):
+            return folder
+        tell_once(f"{folder} is damaged; its files are taken from rerun again", folder)
+    with kept_if_possible(folder):
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder.parent) as draft:
+            _fill(Path(draft))
+            folder.mkdir(exist_ok=True)
+            for name in (*_FILES, _DIGESTS):
+                if (Path(draft) / name).is_file():
+                    os.replace(Path(draft) / name, folder / name)
         return folder
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=folder.parent) as draft:
-        _unpack(Path(draft))
-        _without_fonts(Path(draft) / _PAGE)
-        folder.mkdir(exist_ok=True)
-        for name in _FILES:
-            if (Path(draft) / name).is_file():
-                os.replace(Path(draft) / name, folder / name)
-    return folder
+    _not_kept = tempfile.TemporaryDirectory(prefix="bearing_sim_web_viewer_")  # until this process ends
+    _fill(Path(_not_kept.name))
+    return Path(_not_kept.name)
+
+
+def _digests(folder: Path) -> dict[str, str]:
+    """Return a digest of each file of the viewer that there is, by name."""
+    return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in _FILES if (folder / name).is_file()}
+
+
+def _fill(folder: Path) -> None:
+    """Write the files of the viewer and their digests into a folder; errors as of `viewer_files`."""
+    _unpack(folder)
+    _without_fonts(folder / _PAGE)
+    (folder / _DIGESTS).write_bytes(with_checksum("web_viewer", 1, _digests(folder)))
 
 
 def _unpack(folder: Path) -> None:

@@ -12,7 +12,6 @@ from hostile_files import Case
 from hostile_scenes import fifo, file, files, link, sparse
 
 from bearing_sim.stored_state.state import VERSION
-from bearing_sim.stored_state.state_file import FORMAT
 
 _IMPORT = ("import-csv", "data.csv", "mapping.yaml", "-o", "out.mcap")
 _GUESS = ("import-csv", "data.csv", "--guess")
@@ -116,7 +115,7 @@ def _state_text(**fields: object) -> bytes:
     """Return a state with fields of a stranger and the checksum that fits them."""
     state = json.dumps({"serial": "A1", "identity": {}, "totals": {}} | fields).encode()
     checksum = hashlib.sha256(b"%d " % VERSION + state).hexdigest()
-    return json.dumps({"format": FORMAT, "version": VERSION, "checksum": checksum}).encode()[:-1] + b', "state": ' + state + b"}\n"
+    return json.dumps({"format": "bearing_sim state", "version": VERSION, "checksum": checksum}).encode()[:-1] + b', "state": ' + state + b"}\n"
 
 
 def _state(name: str, content: str | bytes, accepted: str = "") -> Case:
@@ -264,7 +263,7 @@ CASES = [
     _state("nested 1,000,000 deep", b"[" * 1_000_000),
     _state("an integer of 5,000 digits", b'{"format": "bearing_sim state", "version": ' + b"9" * 5_000 + b"}"),
     _state("a version of 10^30", b'{"format": "bearing_sim state", "version": 1' + b"0" * 30 + b', "state": {}}'),
-    _state("no totals", json.dumps({"format": FORMAT, "version": 0, "state": {"serial": "A", "identity": {}}})),
+    _state("no totals", json.dumps({"format": "bearing_sim state", "version": 0, "state": {"serial": "A", "identity": {}}})),
     _state("totals that are words", _state_text(totals={"damage": "much", "starts": "many"})),
     _state("totals beyond all bounds", _state_text(totals={"damage": 1e308, "starts": 10**300, "running_seconds": -1e308})),
     _state("totals that are none", _state_text(totals={"damage": math.nan})),

@@ -18,7 +18,6 @@ from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from bearing_sim.cli.reporting import print_rows
@@ -26,6 +25,7 @@ from bearing_sim.levels.common.model import Drive, Model
 from bearing_sim.levels.level import LEVELS
 from bearing_sim.levels.steady.table_builder import look_up, obtain_table
 from bearing_sim.model.params import lubricate, pack
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation, scene_inputs, tolerances_of
@@ -119,12 +119,12 @@ def bare_problem(scene: Scene) -> Problem | None:
 def relative_error(problem: Problem, state: np.ndarray, reference: np.ndarray) -> float:
     """Return the error of a state in the level's own norm, times the relative tolerance: a relative error of speeds."""
     reference = np.ascontiguousarray(reference)  # a strided column would be another type and compiled again
-    return problem.model.tolerances.relative * float(_norm(problem.kernels.error_norm)(0.0, reference, state - reference, problem.model))
+    return problem.model.tolerances.relative * float(problem.kernels.error_norm(0.0, reference, state - reference, problem.model))
 
 
 def state_scales(problem: Problem) -> np.ndarray:
     """Return the scale of each state in the level's own error norm, 1 (SI) where it has none, shape (n,)."""
-    scales, norm = np.ones_like(problem.start), _norm(problem.kernels.error_norm)
+    scales, norm = np.ones_like(problem.start), problem.kernels.error_norm
     for i in range(scales.size):
         change = np.zeros_like(problem.start)
         change[i] = 1.0
@@ -132,12 +132,6 @@ def state_scales(problem: Problem) -> np.ndarray:
         if error > 0.0:
             scales[i] = 1.0 / (error * problem.model.tolerances.relative)
     return scales
-
-
-@functools.cache
-def _norm(error_norm):
-    # Templates need a concrete kernel around them.
-    return numba.njit(error_model="numpy")(lambda t, y, change, model: error_norm(t, y, change, model))
 
 
 _FIRST_STEP = 1e-8  # s
@@ -265,7 +259,7 @@ def _shortest(loop, calls, *arguments):
 # Loops around kernels are compiled in each process: they are small, and the cache on disk cannot hold them.
 @functools.cache
 def _evaluations(evaluate):
-    @numba.njit(error_model="numpy")
+    @kernel
     def loop(calls, t, y, model, work, rate):
         for _ in range(calls):
             evaluate(t, y, model, work, rate)
@@ -275,7 +269,7 @@ def _evaluations(evaluate):
 
 @functools.cache
 def _factorisations(factor):
-    @numba.njit(error_model="numpy")
+    @kernel
     def loop(calls, shift, work):
         for _ in range(calls):
             factor(shift, work)
@@ -285,7 +279,7 @@ def _factorisations(factor):
 
 @functools.cache
 def _solutions(solve):
-    @numba.njit(error_model="numpy")
+    @kernel
     def loop(calls, work, right, x):
         for _ in range(calls):
             for i in range(x.shape[0]):  # solving the same vector repeatedly would decay into slow subnormal numbers
@@ -297,7 +291,7 @@ def _solutions(solve):
 
 @functools.cache
 def _norms(error_norm):
-    @numba.njit(error_model="numpy")
+    @kernel
     def loop(calls, t, y, change, model):
         largest = 0.0
         for _ in range(calls):

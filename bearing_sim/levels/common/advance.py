@@ -1,11 +1,11 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """How every level advances over an interval: a time-stepping method from sample to sample."""
 
-from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.time_stepping import COUNT, OK, advance_in_steps
 
 
-@template
+@kernel
 def advance_by(
     attempt, error_order, error_norm, step_limit, step_taken, observe, fixed,
     t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,

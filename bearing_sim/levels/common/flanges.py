@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from bearing_sim.levels.common.rollers import add
 from bearing_sim.model.sample import COLUMN
-from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import highest, larger, load, spread, square_root, store, total, where_positive
 from bearing_sim.physics.flange import axial_share, rub, shear, stop_skew
 
@@ -33,7 +33,7 @@ class FlangeRow(NamedTuple):
     lever: int = 13  # of both corners together about the skew's axis, with the sign of the skew [m]
 
 
-@template
+@kernel
 def total_load(row, load_row, rows, contacts):
     """Return the load of all rollers on the inner raceway [N]; ``load_row`` is the contacts' row of the normal force."""
     carried = spread(0.0)
@@ -46,7 +46,7 @@ FLANGE = FlangeRow()
 PLANE_ROWS, ROWS = FLANGE.load, len(FLANGE)
 
 
-@template
+@kernel
 def rub_on_face(block, first, face, viscosity, presses, pressed, u, s, rows):
     """Write force and torque of one ring's flanges on a block of rollers, and their derivatives.
 
@@ -70,7 +70,7 @@ def rub_on_face(block, first, face, viscosity, presses, pressed, u, s, rows):
         _add_rubbing(block, first, rubbed, braked, rub_uu, rub_us, rub_ss, rows)
 
 
-@template
+@kernel
 def _add_rubbing(block, first, force, moment, uu, us, ss, rows):
     """Add friction and its derivatives to what one ring's flanges do to a block of rollers."""
     add(rows, block, first + FLANGE.force, force)
@@ -80,7 +80,7 @@ def _add_rubbing(block, first, force, moment, uu, us, ss, rows):
     add(rows, block, first + FLANGE.ss, ss)
 
 
-@template
+@kernel
 def rub_on_flanges(row, block, shaft_speed, pressed, flanges, viscosity, rows):
     """Write what the flanges of both rings do to a block of rollers that stay straight; the rollers have been placed.
 
@@ -99,7 +99,7 @@ def rub_on_flanges(row, block, shaft_speed, pressed, flanges, viscosity, rows):
     rub_on_face(block, row.outer_flange, flanges.outer, viscosity, presses, pressed, outer_u, spin, rows)
 
 
-@template
+@kernel
 def stop_skew_on_face(block, first, face, flanges, friction, viscosity, skew, rate, u, s, rows):
     """Write what stops the skew of a block of rollers between one ring's flanges, and add the friction of their corners.
 
@@ -125,7 +125,7 @@ def stop_skew_on_face(block, first, face, flanges, friction, viscosity, skew, ra
     store(rows, block, first + FLANGE.lever, lever)
 
 
-@template
+@kernel
 def flange_powers(row, shaft_speed, flanges, rows):
     """Return what the shaft puts in through its flanges and what shear and friction lose on those of both rings [W]."""
     driven, lost = spread(0.0), spread(0.0)
@@ -141,7 +141,7 @@ def flange_powers(row, shaft_speed, flanges, rows):
     return total(driven), total(lost)
 
 
-@template
+@kernel
 def observe_flanges(row, load_row, count, flanges, rows, contacts, sample):
     """Write the forces of the flanges into a flat sample, but for those of corners that stop the skew; parameters as of `total_load`."""
     inner, outer, largest = spread(0.0), spread(0.0), spread(0.0)
@@ -156,7 +156,7 @@ def observe_flanges(row, load_row, count, flanges, rows, contacts, sample):
     sample[COLUMN.flange_load] = highest(largest)
 
 
-@template
+@kernel
 def largest_corner(row, rows):
     """Return the largest force of a corner that stops the skew of a roller [N]."""
     largest = spread(0.0)

@@ -5,7 +5,7 @@ import math
 from typing import NamedTuple
 
 from bearing_sim.model.params import Lubrication, Params
-from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.physics.growth import total_growth
 from bearing_sim.physics.mixed import film_state
 
@@ -38,27 +38,27 @@ class Drive(NamedTuple):
     shaft_angle: float  # at the start [rad]
 
 
-@template
+@kernel
 def shaft_speed_at(t, drive):
     """Return the shaft speed [rad/s] at a time [s]."""
     return drive.shaft_speed + drive.shaft_acceleration * (t - drive.start)
 
 
-@template
+@kernel
 def shaft_angle_at(t, drive):
     """Return the shaft's angle [rad] at a time [s]."""
     elapsed = t - drive.start
     return drive.shaft_angle + (drive.shaft_speed + 0.5 * drive.shaft_acceleration * elapsed) * elapsed
 
 
-@template
+@kernel
 def load_at(t, drive):
     """Return the radial load (y, z) [N] at a time [s]."""
     elapsed = t - drive.start
     return drive.load_y + drive.load_y_rate * elapsed, drive.load_z + drive.load_z_rate * elapsed
 
 
-@template
+@kernel
 def films_at(t, shaft_speed, model):
     """Return the `bearing_sim.physics.mixed.FilmState` at a time [s], when the shaft turns at ``shaft_speed`` [rad/s]."""
     params, (load_y, load_z) = model.params, load_at(t, model.drive)
@@ -74,7 +74,7 @@ def films_at(t, shaft_speed, model):
     )
 
 
-@template
+@kernel
 def inner_growth(shaft_speed, model):
     """Return the growth of the inner raceway's radius [m] by fits, rotation and heat (see `bearing_sim.physics.growth`).
 
@@ -86,7 +86,7 @@ def inner_growth(shaft_speed, model):
     return total_growth(shaft_speed, model.lubrication.growth)
 
 
-@template
+@kernel
 def pitch_step(cage_speed, rollers, fraction):
     """Return the longest sensible step [s], a fraction of a roller pitch of cage rotation, so that no lobe is jumped over.
 
@@ -102,7 +102,7 @@ def pitch_step(cage_speed, rollers, fraction):
     return fraction * 2.0 * math.pi / (rollers * max(abs(cage_speed), _SLOWEST))
 
 
-@template
+@kernel
 def ring_step(cage_speed, params, stiffness):
     """Return the longest sensible step [s] where the inner ring vibrates: less near a resonance of the ring.
 
@@ -132,7 +132,7 @@ def ring_step(cage_speed, params, stiffness):
     return pitch_step(cage_speed, params.rollers.count, 1.0 / steps)
 
 
-@template
+@kernel
 def ring_weight(t, model):
     """Return the weight of the inner ring's position in the norm of an error: the tolerance of positions over what is allowed to the ring.
 
@@ -151,7 +151,7 @@ def ring_weight(t, model):
     return max(allowed / max(_RING_DEPTH * depth, _LEAST_RING_ERROR * allowed), 1.0)
 
 
-@template
+@kernel
 def play_weight(cage_speed, pitch_radius):
     """Return the weight of play in the norm of a correction.
 
@@ -188,7 +188,7 @@ class Model(NamedTuple):
     tolerances: Tolerances
 
 
-@template
+@kernel
 def orbital_speed_tolerance(t, cage_speed, model):
     """Return the error allowed in an orbital speed [rad/s]: absolute + relative x ideal rolling.
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from bearing_sim.levels.common.model import shaft_speed_at
 from bearing_sim.model.sample import COLUMN
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.numerics.time_stepping import INNER_STAGE
 from bearing_sim.numerics.tr_bdf2 import WEIGHT
@@ -61,7 +61,7 @@ def _mean_powers(earlier, later, share):
     )
 
 
-@template
+@kernel
 def step_powers(rhs, state_powers, t, y, model, work, memory):
     """Return the powers of the step that ended at ``t`` in state ``y``, or those of the state itself before the first step.
 

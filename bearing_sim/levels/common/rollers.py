@@ -12,7 +12,7 @@ import math
 from typing import NamedTuple
 
 from bearing_sim.model.sample import COLUMN, SCALARS
-from bearing_sim.numerics.compilation import fused, template
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import cosine_sine
 from bearing_sim.numerics.simd import LANES, floor, larger, load, spread, spread_run, square_root, store, total
 from bearing_sim.physics.drag import roller_drag
@@ -36,13 +36,13 @@ class StateRuns(NamedTuple):
     spin: int
 
 
-@template
+@kernel
 def add(array, block, row, value):
     """Add a value (lanes) to a row of a block, see `bearing_sim.numerics.simd.new_rows`."""
     store(array, block, row, load(array, block, row) + value)
 
 
-@template
+@kernel
 def look_up_contour(row, block, contour, rows):
     """Write cosine and sine of a block's azimuths and the contour's slope; return R_e [m] and its second derivative [m/rad^2]."""
     turn = load(rows, block, row.angle) * (0.5 / math.pi)
@@ -55,7 +55,7 @@ def look_up_contour(row, block, contour, rows):
     return radius, curvature
 
 
-@template
+@kernel
 def follow_contour(row, block, shift, contour, rows):
     """Let a block of rollers follow the contour for a time ``shift`` [s], as a predictor's first guess: r = known radius + shift R_e' phi'.
 
@@ -67,7 +67,7 @@ def follow_contour(row, block, shift, contour, rows):
     store(rows, block, row.radius, follows)
 
 
-@template
+@kernel
 def place_rollers(row, contact, ring, shaft_speed, inner_radius, params, rows, contacts):
     """Write directions about the displaced ring, penetrations, rolling and sliding speeds of all rollers.
 
@@ -118,7 +118,7 @@ def place_rollers(row, contact, ring, shaft_speed, inner_radius, params, rows, c
         store(contacts, outer, contact.sliding, surface - radius * orbital_speed)
 
 
-@template
+@kernel
 def carry_normal_forces(row, contact, runs, y, ring, evaluated_ring, count, rows, contacts):
     """Carry penetrations and normal forces from the state at which they were evaluated to ``y``, a correction of an iteration away, to first order.
 
@@ -147,7 +147,7 @@ def carry_normal_forces(row, contact, runs, y, ring, evaluated_ring, count, rows
         _deepen(contact, rows.shape[0] + block, outwards - load(rows, block, row.slope) * ahead, faster, contacts)
 
 
-@template
+@kernel
 def _deepen(contact, block, deeper, faster, contacts):
     """Change penetrations [m] and their rates [m/s] of a block of contacts, and their normal forces to first order."""
     force = load(contacts, block, contact.load)
@@ -178,7 +178,7 @@ def drag(raceways, lubrication, films, contacts):
         resist_rolling(contacts, lubrication.rolling_resistance, films, crowned)
 
 
-@template
+@kernel
 def place_in_pockets(row, block, cage, cage_cosine, cage_sine, rows):
     """Write how a block of rollers lies in its pockets along the orbit; return s [m] and s' [m/s].
 
@@ -211,7 +211,7 @@ def place_in_pockets(row, block, cage, cage_cosine, cage_sine, rows):
     return offset, rate
 
 
-@template
+@kernel
 def place_outwards(row, block, cage, guidance, rows):
     """Write how a block of rollers stands outwards in pockets that guide the cage; return that offset [m] and its rate [m/s].
 
@@ -248,7 +248,7 @@ def linear_churning(cage_speed, shaft_speed, model):
     return force, d_speed, bend
 
 
-@template
+@kernel
 def observe_rollers(row, load_row, count, interval, rows, contacts, previous, sample):
     """Write the rollers' part of a flat sample, as far as both levels have it.
 
@@ -272,14 +272,14 @@ def observe_rollers(row, load_row, count, interval, rows, contacts, previous, sa
         sample[first + COLUMN.pocket_force * count] = rows[block, row.pocket_force, lane]
 
 
-@template
+@kernel
 def land_eccentricity(ring_y, ring_z, cage_y, cage_z, cage):
     """Return the eccentricity of the cage in what guides it, over its clearance; ``cage`` as in `bearing_sim.model.params.CageBody`."""
     turning = cage.guidance.turning
     return math.hypot(cage_y - turning * ring_y, cage_z - turning * ring_z) / cage.guide_clearance
 
 
-@template
+@kernel
 def restrain_rollers(row, contact, runs, y, change, params, rows, contacts):
     """Shorten an iteration's correction where it carries a roller across a bend that linear equations do not see.
 
@@ -321,7 +321,7 @@ def restrain_rollers(row, contact, runs, y, change, params, rows, contacts):
             _shorten(y, change, spins + j, rolling)
 
 
-@template
+@kernel
 def average_stiffness(row, contact, fraction, rows, contacts, stiffness):
     """Include the stiffness at this instant of the raceways against a displacement of the inner ring in its running mean.
 
@@ -349,7 +349,7 @@ def average_stiffness(row, contact, fraction, rows, contacts, stiffness):
     stiffness[2] += weight * (total(zz) - stiffness[2])
 
 
-@template
+@kernel
 def _up_to_touching(depth, deepens):
     """Return the fraction of a change of a penetration [m] that leads to where bodies barely touch; 1 where it leads nowhere else."""
     if depth * (depth + deepens) >= 0.0 or abs(depth) <= _TOUCH or abs(depth + deepens) <= _TOUCH:
@@ -357,7 +357,7 @@ def _up_to_touching(depth, deepens):
     return (_TOUCH - depth) / deepens
 
 
-@template
+@kernel
 def slides_up_to_rolling(contact, contacts, block, lane, slides):
     """Return the fraction of a change of a sliding speed [m/s] that leads from a flat part of the law to pure rolling; 1 where it does not."""
     sliding = contacts[block, contact.sliding, lane]
@@ -368,7 +368,7 @@ def slides_up_to_rolling(contact, contacts, block, lane, slides):
     return -sliding / slides
 
 
-@template
+@kernel
 def _shorten(y, change, i, fraction):
     """Take a fraction of the change of one state."""
     y[i] -= (1.0 - fraction) * change[i]

@@ -13,11 +13,9 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.support import place_support, resume_support, tail_of
-from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.slip import model as slip
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads, pitch_loads
-from bearing_sim.levels.spatial import state as spatial
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.growth import cold_growth, total_growth
 from bearing_sim.physics.lamina_life import MOMENTS, write_lamina_means
@@ -114,12 +112,15 @@ def slip_state_at(params, work, sample) -> np.ndarray:
 
 def planar_state_at(params, work, sample) -> np.ndarray:
     """Return the state of level ``planar`` at a sample; parameters as of `slip_state_at`."""
+    from bearing_sim.levels.planar import state as planar
+
     return _dynamic_state_at(planar, params, work, sample)[0]
 
 
 def spatial_state_at(params, work, sample) -> np.ndarray:
     """Return the state of level ``spatial`` at a sample; parameters as of `slip_state_at`."""
-    at = spatial
+    from bearing_sim.levels.spatial import state as at
+
     state, rollers = _dynamic_state_at(at, params, work, sample)
     state[at.RING_TILT_Y], state[at.RING_TILT_Z] = sample["ring_tilt_y"], sample["ring_tilt_z"]
     tilted = sample["cage_tilt_y"] != 0.0 or sample["cage_tilt_z"] != 0.0

@@ -32,7 +32,7 @@ from bearing_sim.levels.common.model import load_at, shaft_angle_at, shaft_speed
 from bearing_sim.levels.common.rollers import add
 from bearing_sim.model.params import SUPPORT
 from bearing_sim.model.sample import COLUMN
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES, load, spread, total
 from bearing_sim.physics.squeeze_film import SqueezeFilm, squeeze_force
 
@@ -107,14 +107,14 @@ def unbalance_at(t, model):
     return amount * (square * cosine + changing * sine), amount * (square * sine - changing * cosine)
 
 
-@template
-def _chain(axis, work):
-    """Return the numbers of the chain in a direction."""
+@kernel
+def _chain(axis):
+    """Return where the numbers of the chain in a direction begin and end."""
     first = _CHAIN + axis * _CHAIN_NUMBERS
-    return work[_NUMBERS, first : first + _CHAIN_NUMBERS]
+    return first, first + _CHAIN_NUMBERS
 
 
-@template
+@kernel
 def frame_of(work):
     """Return a_O [m/s^2], y and z."""
     return work[_NUMBERS, _FRAME], work[_NUMBERS, _FRAME + 1]
@@ -172,7 +172,8 @@ def support_jacobian(y, border, cage, model, work):
     for axis in range(2):
         stiffness, damping = support[SUPPORT.shaft_stiffness + axis], support[SUPPORT.shaft_damping + axis]
         carried, damped = support[SUPPORT.outer_stiffness + axis], support[SUPPORT.outer_damping + axis]
-        chain, reaction, following = _chain(axis, work), work[REACTION + axis], work[FOLLOWING + axis]
+        first, end = _chain(axis)
+        chain, reaction, following = work[_NUMBERS, first:end], work[REACTION + axis], work[FOLLOWING + axis]
         chain[_BY_RING], chain[_DAMPED_RING] = stiffness / ring_mass, damping / ring_mass
         chain[_BY_SHAFT], chain[_DAMPED_SHAFT] = stiffness / shaft_mass, damping / shaft_mass
         for i in range(y.shape[0]):
@@ -185,7 +186,7 @@ def support_jacobian(y, border, cage, model, work):
         following[tail + SPEEDS + OUTER + axis], following[tail + SPEEDS + SHAFT + axis] = 1.0, -support[SUPPORT.shaft_bends]
 
 
-@template
+@kernel
 def momentum_rate(row, params, rows):
     """Return the sum of the forces y, z on all rollers by their own accelerations [N].
 
@@ -206,7 +207,7 @@ def momentum_rate(row, params, rows):
     return params.rollers.mass * total(along_y), params.rollers.mass * total(along_z)
 
 
-@template
+@kernel
 def follow_frame(row, block, frame, rows):
     """Add to the accelerations of a block of rollers that their frame accelerates; see `momentum_rate`, ``frame`` as of `frame_of`."""
     cosine, sine = load(rows, block, row.cosine), load(rows, block, row.sine)
@@ -215,7 +216,7 @@ def follow_frame(row, block, frame, rows):
     add(rows, block, row.orbital_acceleration, -(along / load(rows, block, row.radius)))
 
 
-@template
+@kernel
 def turn_frame(at, local, row, block, frame, rows, jacobian):
     """Add to a block's rows of r'' and phi'' how the frame's acceleration turns with a roller's azimuth; parameters as of `react_by_rollers`."""
     r, phi = at[0], at[1]
@@ -226,7 +227,7 @@ def turn_frame(at, local, row, block, frame, rows, jacobian):
     add(jacobian, block, local + r, along * inverse * inverse)
 
 
-@template
+@kernel
 def react_by_rollers(row, at, local, count, per_mass, rows, jacobian, work):
     """Add to V what the rollers' own states do to the outer ring through the rollers, and write the rollers' part of U.
 
@@ -296,7 +297,8 @@ def _stiffen_ring(shift, border, own, work):
     """
     work[_NUMBERS, _SHIFT] = shift
     for axis in range(2):
-        chain = _chain(axis, work)
+        first, end = _chain(axis)
+        chain = work[_NUMBERS, first:end]
         on_shaft = shift * (chain[_DAMPED_SHAFT] + shift * chain[_BY_SHAFT])
         chain[_ON_RING] = shift * (chain[_DAMPED_RING] + shift * chain[_BY_RING]) / (1.0 + on_shaft)
         chain[_ON_SHAFT] = on_shaft
@@ -308,7 +310,8 @@ def _bend_shaft(border, x, work):
     """Take the shaft out of a right side ``x`` before the level solves it with alpha held."""
     s, tail = work[_NUMBERS, _SHIFT], x.shape[0] - TAIL
     for axis in range(2):
-        chain = _chain(axis, work)
+        first, end = _chain(axis)
+        chain = work[_NUMBERS, first:end]
         bent = x[tail + SHAFT + axis] - x[axis]
         x[tail + SPEEDS + SHAFT + axis] -= s * chain[_BY_SHAFT] * bent
         x[border + axis] += s * chain[_BY_RING] * bent + chain[_ON_RING] * x[tail + SPEEDS + SHAFT + axis]
@@ -319,7 +322,8 @@ def _follow_shaft(border, x, work):
     """Complete the tail of a solution ``x`` that the level has found with alpha held."""
     s, tail = work[_NUMBERS, _SHIFT], x.shape[0] - TAIL
     for axis in range(2):
-        on_shaft, at = _chain(axis, work)[_ON_SHAFT], tail + SPEEDS + SHAFT + axis
+        first, _ = _chain(axis)
+        on_shaft, at = work[_NUMBERS, first + _ON_SHAFT], tail + SPEEDS + SHAFT + axis
         x[at] = (x[at] + on_shaft * x[border + axis]) / (1.0 + on_shaft)
     for k in range(SPEEDS):
         x[tail + k] += s * x[tail + SPEEDS + k]
@@ -357,7 +361,7 @@ def _yield_frame(x, work):
         x[i] += frame_y * by_y[i] + frame_z * by_z[i]
 
 
-@template
+@kernel
 def _solve_held(solve, border, work, x):
     """Solve with a_O held."""
     support = work.support
@@ -366,7 +370,7 @@ def _solve_held(solve, border, work, x):
     _follow_shaft(border, x, support)
 
 
-@template
+@kernel
 def factor_supported(factor, solve, border, shift, work):
     """Factor I - s J of a level with its support; return False where it is singular.
 
@@ -390,7 +394,7 @@ def factor_supported(factor, solve, border, shift, work):
     return _invert_yielding(support) and regular
 
 
-@template
+@kernel
 def solve_supported(solve, border, work, x):
     """Replace the right side ``x`` by the solution with the last `factor_supported`; parameters as there."""
     _solve_held(solve, border, work, x)
@@ -419,7 +423,7 @@ def support_powers(t, y, border, model):
     return driven, lost
 
 
-@template
+@kernel
 def support_change(change):
     """Return the largest change of a position in the tail of ``change`` [m]."""
     tail = change.shape[0] - TAIL
@@ -427,7 +431,7 @@ def support_change(change):
     return max(largest, abs(change[tail + SHAFT]), abs(change[tail + SHAFT + 1]))
 
 
-@template
+@kernel
 def extrapolate_support(known, shift, slope, tail, guess):
     """Extrapolate the tail of a state that begins at ``tail``: speeds by their rates, positions by the new speeds."""
     for k in range(tail + SPEEDS, known.shape[0]):
@@ -435,7 +439,7 @@ def extrapolate_support(known, shift, slope, tail, guess):
         guess[k - SPEEDS] = known[k - SPEEDS] + shift * guess[k]
 
 
-@template
+@kernel
 def observe_support(y, ring_y, ring_z, support, row):
     """Write where outer ring and shaft are; ``ring_y`` and ``ring_z`` are the inner ring's."""
     row[COLUMN.shaft_y], row[COLUMN.shaft_z] = ring_y, ring_z

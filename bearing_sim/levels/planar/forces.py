@@ -53,7 +53,7 @@ from bearing_sim.levels.planar.state import (
     collect_rates,
     spread_state,
 )
-from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import cosine_sine
 from bearing_sim.numerics.simd import load, magnitude, spread, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, damped_line_contact
@@ -143,7 +143,7 @@ def normal_forces(params, contacts):
         _press_blocks(False, params.raceways, contacts)
 
 
-@template
+@kernel
 def _press_blocks(crowned, raceways, contacts):
     """Write normal forces, see `normal_forces`; ``crowned`` is a constant to the compiler."""
     stiffness, damping = raceways.stiffness, raceways.damping
@@ -158,7 +158,7 @@ def _press_blocks(crowned, raceways, contacts):
         store(contacts, block, CONTACT.damping, d_rate)
 
 
-@template
+@kernel
 def _ring(y):
     """Return position and velocity of the inner ring, as `bearing_sim.levels.common.rollers` takes them."""
     return y[RING_Y], y[RING_Z], y[BORDER + RING_Y], y[BORDER + RING_Z]
@@ -170,7 +170,7 @@ def carry_forces(y, count, work):
     carry_normal_forces(ROLLER, CONTACT, RUNS, y, _ring(y), work.evaluated_ring, count, work.rollers, work.contacts)
 
 
-@template
+@kernel
 def _cage(y):
     """Return position and velocity of the cage's centre and the cage's speed, as `bearing_sim.levels.common.rollers` takes them."""
     return y[CAGE_Y], y[CAGE_Z], y[BORDER + CAGE_Y], y[BORDER + CAGE_Z], y[OMEGA]

@@ -60,7 +60,7 @@ from bearing_sim.levels.planar.state import (
     R,
 )
 from bearing_sim.model.params import SUPPORT
-from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import back_substitute, decompose
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, load, magnitude, spread, spread_runs, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT
@@ -70,13 +70,13 @@ _PASSED = 3 * LOCAL  # where those of the border begin
 _CAGE_ROWS = 3 * LOCAL + LOCAL * CAGE_Y  # where the rows of the cage's accelerations begin, see `bearing_sim.levels.planar.state.JACOBIAN_ROWS`
 
 
-@template
+@kernel
 def _in_frame(force, traction, turn, n_r, n_t, radial, along):
     """Return dF = dQ n + dT p + turn (-F_t, F_r), the change of a contact's force in the roller's frame."""
     return force * n_r - traction * n_t - turn * along, force * n_t + traction * n_r + turn * radial
 
 
-@template
+@kernel
 def _by_own(columns, y, cosine, sine, radius, orbital_speed):
     """Return the derivatives by r, phi, r', phi' from those by a and v (see the docstring of the module)."""
     d_apart_r, d_apart_t, d_speed_r, d_speed_t = columns
@@ -87,7 +87,7 @@ def _by_own(columns, y, cosine, sine, radius, orbital_speed):
     return d_apart_r + orbital_speed * d_speed_t, d_angle, d_speed_r, radius * d_speed_t
 
 
-@template
+@kernel
 def _own_columns(put, block, jacobian, first, scale, columns, d_spin):
     """Store or add (``put``) ``scale`` times the columns by r, phi, r', phi', and that by the spin."""
     put(jacobian, block, first + R, scale * columns[0])
@@ -97,7 +97,7 @@ def _own_columns(put, block, jacobian, first, scale, columns, d_spin):
     put(jacobian, block, first + SPIN, d_spin)
 
 
-@template
+@kernel
 def _ring_columns(put, block, jacobian, first, scale, columns, cosine, sine):
     """Store or add the columns by the ring's position and velocity, from those by a and v: a ring that moves is a roller that moves the other way."""
     put(jacobian, block, first + AT_POSITIONS + RING_Y, scale * (columns[1] * sine - columns[0] * cosine))
@@ -106,7 +106,7 @@ def _ring_columns(put, block, jacobian, first, scale, columns, cosine, sine):
     put(jacobian, block, first + AT_SPEEDS + RING_Z, -scale * (columns[2] * sine + columns[3] * cosine))
 
 
-@template
+@kernel
 def _turned(columns_r, columns_t, c, s):
     """Return c times the first columns less s times the second."""
     return (
@@ -117,7 +117,7 @@ def _turned(columns_r, columns_t, c, s):
     )
 
 
-@template
+@kernel
 def _inner_rows(put, block, y, params, rows, force, radial_columns, along_columns, spin_columns, d_orbit, d_spin, per_inertia, jacobian):
     """Store or add the rows of a block of rollers and of the ring, as far as the inner contact makes them.
 
@@ -228,7 +228,7 @@ def _outer_jacobian(y, churning, params, rows, contacts, jacobian):
         add(jacobian, block, _SPINNING + SPIN, per_inertia * t_spin)
 
 
-@template
+@kernel
 def _cage_columns(block, jacobian, first, scale, d_position, d_speed):
     """Write the columns by the cage's position and speed."""
     store(jacobian, block, first + AT_POSITIONS + CAGE_Y, scale * d_position[0])
@@ -282,7 +282,7 @@ def _pocket_jacobian(y, params, rows, jacobian):
         _cage_jacobian(block, params, rows, jacobian, own, at, with_speed, cage_t, lever)
 
 
-@template
+@kernel
 def _cage_jacobian(block, params, rows, jacobian, own, at, with_speed, cage_t, lever):
     """Write the rows of the cage's accelerations as far as the pockets make them."""
     cage, present, roller_radius = params.cage, load(rows, block, ROLLER.present), params.rollers.radius
@@ -578,7 +578,7 @@ def react_on_support(params, rows, own, jacobian, support):
         turn_frame(at, LOCAL, ROLLER, block, frame_of(support), rows, jacobian)
 
 
-@template
+@kernel
 def _shifted(jacobian, block, row, position, speed, s):
     """Return s (d/d(speed) + s d/d(position)): what a speed does within an implicit step."""
     return s * (load(jacobian, block, row + speed) + s * load(jacobian, block, row + position))

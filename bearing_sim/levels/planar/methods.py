@@ -20,11 +20,11 @@ from bearing_sim.levels.planar.model import (
     sum_up,
 )
 from bearing_sim.levels.planar.predictor import predict
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.tr_bdf2 import ERROR_ORDER, tr_bdf2_attempt
 
 
-@template
+@kernel
 def _attempt(t, y, h, model, work, memory, counts):
     return tr_bdf2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, correction_norm, restrain, t, y, h, model, work, memory, counts)
 

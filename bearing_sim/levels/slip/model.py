@@ -19,7 +19,7 @@ from bearing_sim.levels.slip.forces import equations, largest_axial_share, up_to
 from bearing_sim.levels.slip.power import slip_powers
 from bearing_sim.levels.slip.state import OMEGA, POCKET, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS
-from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import factor_shifted, solve_factored
 from bearing_sim.physics.lamina_life import MOMENTS, add_load_moments, equivalent_loads
 from bearing_sim.physics.load_balance import LOAD
@@ -52,7 +52,7 @@ def rhs_and_jacobian(t, y, model, work, rate):
     return equations(t, y, model, work, rate, True)
 
 
-@template
+@kernel
 def error_norm(t, y, change, model):
     """Return the largest ratio of any state's change to its tolerance.
 
@@ -62,7 +62,7 @@ def error_norm(t, y, change, model):
     return _largest_ratio(t, y, change, model)
 
 
-@template
+@kernel
 def correction_norm(t, y, change, model):
     """Return `error_norm` of an iteration's correction, times `_CORRECTION_WEIGHT`."""
     return _CORRECTION_WEIGHT * _largest_ratio(t, y, change, model)
@@ -81,7 +81,7 @@ def _largest_ratio(t, y, change, model):
     return largest
 
 
-@template
+@kernel
 def step_limit(t, y, model, work):
     """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.pitch_step`)."""
     return pitch_step(y[OMEGA], model.params.rollers.count, HALF_PITCH)
@@ -127,13 +127,13 @@ def observe(t, y, model, work, interval, previous, row, memory):
     observe_rest(interval, previous, params, work.tally, row)
 
 
-@template
+@kernel
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
     return factor_shifted(work.jacobian, shift, work.factored)
 
 
-@template
+@kernel
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
     solve_factored(work.factored, x)

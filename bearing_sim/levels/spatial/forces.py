@@ -56,7 +56,7 @@ from bearing_sim.levels.spatial.state import (
     collect_rates,
     spread_state,
 )
-from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.simd import larger, load, magnitude, spread, spread_run, store, total, where_positive
 from bearing_sim.physics.contact import damped_line_contact
 from bearing_sim.physics.flange import axial_share
@@ -164,13 +164,13 @@ def _lie_in_pockets(block, y, cage_cosine, cage_sine, rows):
     store(rows, block, ROLLER.pocket_skew_rate, rate - lean_speed_t + omega * lean_r)
 
 
-@template
+@kernel
 def _cage(y):
     """Return position and velocity of the cage's centre and the cage's speed, as `bearing_sim.levels.common.rollers` takes them."""
     return y[CAGE_Y], y[CAGE_Z], y[BORDER + CAGE_Y], y[BORDER + CAGE_Z], y[OMEGA]
 
 
-@template
+@kernel
 def hold_slices(offset, rate, skew, skew_rate, clearance, stiffness, params):
     """Return force and moment of two opposite walls, then sums over slices of the force's derivatives by offset and by rate, each times 1, x, x^2.
 
@@ -253,7 +253,7 @@ def _place_rollers(y, shaft_speed, inner_radius, params, rows, contacts):
         _lean(block, y, rows, contacts)
 
 
-@template
+@kernel
 def _ring(y):
     """Return position y, z, velocity y', z' and tilts of the inner ring."""
     return y[RING_Y], y[RING_Z], y[BORDER + RING_Y], y[BORDER + RING_Z], y[RING_TILT_Y], y[RING_TILT_Z]
@@ -277,7 +277,7 @@ def carry_forces(y, count, work):
         _lean_further(rows.shape[0] + block, tilting, contacts)
 
 
-@template
+@kernel
 def _lean_further(block, further, contacts):
     """Change the leans of a block of contacts, and their normal forces to first order."""
     force = load(contacts, block, SLICED.load) + load(contacts, block, SLICED.stiffness + 1) * further

@@ -68,7 +68,7 @@ from bearing_sim.levels.spatial.state import (
     R,
 )
 from bearing_sim.model.params import SUPPORT
-from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import back_substitute, decompose
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, load, magnitude, spread, spread_runs, store, total, where_positive
 
@@ -139,7 +139,7 @@ def _flange_row(block, row, by_u, by_skew, by_rate, rows, chain):
     add(chain, 0, row + 7, by_rate)
 
 
-@template
+@kernel
 def _skewing_slopes(block, first, face, viscosity, rows):
     """Return the derivatives of a flange's moment on the skew by skew and its rate; parameters as of `rub_on_face`."""
     lever = load(rows, block, first + FLANGE.lever)
@@ -468,7 +468,7 @@ def roller_jacobian(y, inner_radius, churning, resistance, params, viscosity, ro
         _accelerations(block, params, rows, jacobian)
 
 
-@template
+@kernel
 def _put(chain, variable, kind, value):
     store(chain, 0, _CHAIN + _KINDS * variable + kind, value)
 
@@ -625,7 +625,7 @@ def _pocket_jacobian(block, y, params, rows, chain, jacobian):
     _pocket_directions(block, params, rows, jacobian)
 
 
-@template
+@kernel
 def _put_rates(chain, variable, offset_rate, lean_rate):
     store(chain, 0, _RATES + 2 * variable, offset_rate)
     store(chain, 0, _RATES + 2 * variable + 1, lean_rate)
@@ -832,7 +832,7 @@ def _land_pair(row, tilt_row, planar_row, lever, column, tilt_column, planar_col
     own[tilt_row, tilt_column] = lever * position * (near + far)
 
 
-@template
+@kernel
 def _border_state(m):
     """Return which state of the border the m-th of the border's columns of a roller's rows belongs to."""
     if m < 2 * RING:
@@ -890,7 +890,7 @@ def _turn_frame(block, frame, rows, jacobian):
     add(jacobian, block, _SKEWING + R, tilt * turned * inverse)
 
 
-@template
+@kernel
 def _shifted(jacobian, block, position, speed, s):
     """Return s (d/d(speed) + s d/d(position)): what a speed does within an implicit step."""
     return s * (load(jacobian, block, speed) + s * load(jacobian, block, position))

@@ -18,7 +18,7 @@ import math
 from bearing_sim.levels.common.rollers import add
 from bearing_sim.levels.spatial.state import D_DEPTH, D_RATE, DROP, FRACTION, INNER, OUTER, POSITION, ROLLER, SLICED, SLICED_ROWS
 from bearing_sim.model.params import LOGARITHMIC, SLICED_EQUALLY, STRAIGHT
-from bearing_sim.numerics.compilation import fused, kernel, template
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import exponential, logarithm, ninth_root
 from bearing_sim.numerics.simd import highest, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, TINY, damped_line_contact, damping_factor, elastic_line_contact, hertz_pressure
@@ -167,7 +167,7 @@ def place_points(block, contacts, slices, points, first):
         store(points, first + k, DROP, slices.crown[k])
 
 
-@template
+@kernel
 def _press_points(block, contacts, points, first, count, stiffness, damping, with_traction):
     """Write normal force, tilting moment and their derivatives of a block of contacts, and what traction needs of its points.
 
@@ -344,14 +344,14 @@ def resist(contacts, slices, resistance, films):
         _store_changes(block, contacts, SLICED.of_resistance, k_0, k_1, d_0, d_1)
 
 
-@template
+@kernel
 def _store_sums(block, contacts, row, plain, first, second):
     store(contacts, block, row, plain)
     store(contacts, block, row + 1, first)
     store(contacts, block, row + 2, second)
 
 
-@template
+@kernel
 def _store_changes(block, contacts, row, by_depth, by_lean, by_rate, by_lean_rate):
     store(contacts, block, row, by_depth)
     store(contacts, block, row + 1, by_lean)
@@ -439,7 +439,7 @@ def sum_lamina_powers(work):
         work.lamina_means[OUTER, k] = total(load(work.lamina_powers, OUTER, k))
 
 
-@template
+@kernel
 def _lamina_depth(block, k, contacts, laminae, damping):
     """Return the depth of lamina k of a block of contacts [m] and the factor of its damping, neither below 0."""
     x = laminae.positions[k]

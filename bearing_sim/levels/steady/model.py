@@ -38,7 +38,7 @@ from bearing_sim.levels.steady.operating_point import (
 from bearing_sim.levels.steady.table import LookUp, Table, covers, empty_table, look_up, new_look_up
 from bearing_sim.model.params import Lubrication
 from bearing_sim.model.sample import COLUMN, SCALARS
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.time_stepping import COUNT, NEEDS_POINT, OK, STEP_BUDGET
 from bearing_sim.physics.growth import Temperatures, excess_growth, growth_at, seats_at
 from bearing_sim.physics.lamina_life import EquivalentLoads
@@ -158,7 +158,7 @@ def supply(model, work: Work) -> bool:
     return solve_condition(speed, load_y, load_z, model, work, slip)
 
 
-@template
+@kernel
 def _covered(condition, work):
     """Return whether the table answers for a condition."""
     return covers(condition.shaft_speed, math.hypot(condition.load_y, condition.load_z), condition.temperature, condition.growth, work.table)
@@ -174,7 +174,7 @@ def _from_table(condition, work):
     return math.isfinite(work.answer[ANSWER.cage_slip])
 
 
-@template
+@kernel
 def _condition_at(t, model):
     """Return the condition at a time [s]."""
     load_y, load_z = load_at(t, model.drive)
@@ -182,7 +182,7 @@ def _condition_at(t, model):
     return Condition(speed, load_y, load_z, films, excess_growth(speed, films, model.lubrication.growth, model.params.mounted))
 
 
-@template
+@kernel
 def _answer_to(condition, y, model, work):
     """Write the operating point to which a cage comes into ``work.answer``; return whether it is known, else it is wanted.
 
@@ -258,7 +258,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
     return OK if known else NEEDS_POINT
 
 
-@template
+@kernel
 def _follow_evenly(before, after, lag, answer, duration, y):
     """Let cage and spins follow, exactly, a speed that changes linearly, with constant coefficients.
 
@@ -286,20 +286,18 @@ def _follow_evenly(before, after, lag, answer, duration, y):
     y[OMEGA], y[FOLLOWED] = speed, followed
 
 
-@template
+@kernel
 def _begin_interval(work):
     """Keep how a cage goes at the newest inputs, where the next interval begins."""
     for column in range(work.ways.shape[1]):
         work.ways[0, column] = work.answer[column]
 
 
-@template
-def _between(work, fraction):
-    """Write how a cage goes at a fraction of an interval, and return it."""
-    way = work.ways[1]
-    for column in range(way.shape[0]):
-        way[column] = work.ways[0, column] + fraction * (work.answer[column] - work.ways[0, column])
-    return way
+@kernel
+def _write_between(work, fraction):
+    """Write how a cage goes at a fraction of an interval into ``work.ways[1]``."""
+    for column in range(work.ways.shape[1]):
+        work.ways[1, column] = work.ways[0, column] + fraction * (work.answer[column] - work.ways[0, column])
 
 
 @kernel
@@ -327,9 +325,10 @@ def _follow(before, after, shaft_speeds, model, work, duration, y):
     if farthest < _NEAR and far <= _EVEN * lag:
         _follow_evenly(before, after, lag, work.answer, duration, y)
         return
-    piece, settled = duration / _PIECES, before
+    piece, settled, way = duration / _PIECES, before, work.ways[1]
     for k in range(_PIECES):
-        way, ideal = _between(work, (k + 0.5) / _PIECES), ideals[0] + (ideals[1] - ideals[0]) * (k + 0.5) / _PIECES
+        _write_between(work, (k + 0.5) / _PIECES)
+        ideal = ideals[0] + (ideals[1] - ideals[0]) * (k + 0.5) / _PIECES
         towards = before + (after - before) * (k + 1) / _PIECES
         angle, speed, followed = y[THETA], y[OMEGA], y[FOLLOWED]
         _follow_evenly(settled, towards, lag_at(sense * (settled - speed) / ideal, ideal, way), way, piece, y)
@@ -339,7 +338,7 @@ def _follow(before, after, shaft_speeds, model, work, duration, y):
         settled = towards
 
 
-@template
+@kernel
 def _slip_of(cage_speed, shaft_speed, model):
     """Return the slip from which a cage's balance is sought: none where it is near ideal rolling, 1 where it turns against the shaft."""
     ideal = _ideal_speed(shaft_speed, model)
@@ -347,18 +346,18 @@ def _slip_of(cage_speed, shaft_speed, model):
     return 0.0 if abs(slip) < _ROLLS else min(slip, 1.0)
 
 
-@template
+@kernel
 def _ideal_speed(shaft_speed, model):
     """Return the speed of a cage without slip, without sign [rad/s]."""
     return 0.5 * max(abs(shaft_speed), CREEP) * (1.0 - model.params.raceways.diameter_ratio)
 
 
-@template
+@kernel
 def _settled_speed(shaft_speed, slip, model):
     return 0.5 * shaft_speed * (1.0 - model.params.raceways.diameter_ratio) * (1.0 - slip)
 
 
-@template
+@kernel
 def _condition_between(begin, end, fraction):
     """Return the condition at a fraction of an interval in which all inputs change linearly."""
     return Condition(
@@ -430,7 +429,7 @@ def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory,
     return OK, h
 
 
-@template
+@kernel
 def _warmed(lubrication, inlet, growth, viscosity, film_temperature):
     """Return a lubrication at other temperatures as far as samples show it; tractions and drags, which no table needs, stay.
 

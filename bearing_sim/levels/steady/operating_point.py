@@ -35,7 +35,7 @@ from bearing_sim.levels.common.observation import oil_at_speed
 from bearing_sim.levels.slip.model import rhs_and_jacobian
 from bearing_sim.levels.slip.power import inertia_of_orbits, kinetic_power, slip_powers
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
-from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.linear_algebra import (
     ALPHA_0,
     ALPHA_1,
@@ -203,7 +203,7 @@ def new_orbit(
     )
 
 
-@template
+@kernel
 def at_angles(angles, count, orbit):
     """Return the first part of an orbit's memory, for so many angles a pitch."""
     nodes = angles * count
@@ -281,7 +281,7 @@ def _linearise(sense, model, work, orbit):
     return True
 
 
-@template
+@kernel
 def _interval(k, sense, orbit):
     """Return the time from node to node by the cage's speed at the k-th angle [s]."""
     return 2.0 * math.pi / (orbit.spins.shape[0] * sense * orbit.cage[k])
@@ -315,7 +315,7 @@ def _adapt_reach(scale, iteration, orbit):
         orbit.diagonal[m] = max(orbit.diagonal[m], _LEAST_SLOPE)
 
 
-@template
+@kernel
 def _rolling_spin(model):
     """Return the spin of a roller of a cage without slip, without sign [rad/s]."""
     raceways = model.params.raceways
@@ -438,7 +438,7 @@ def _mean_drive(speed, sense, model, work, orbit, tolerance):
     return sense * total / orbit.accelerations.shape[0]
 
 
-@template
+@kernel
 def _write_cage_columns(weight, sense, orbit, columns):
     """Write what a change of the cage's speed at each angle does to the spins' equations, as right sides behind the first.
 
@@ -462,7 +462,7 @@ def _write_cage_columns(weight, sense, orbit, columns):
         columns[m, 1 + (here - 3) % angles] += pulled * ALPHA_3
 
 
-@template
+@kernel
 def _write_cage_equations(weight, sense, orbit, columns, matrix):
     """Write the equations of the cage's speeds, the spins' eliminated by the solutions in ``columns``; ``weight`` as of `_ripple`.
 
@@ -619,7 +619,7 @@ def _losses(answer):
     return total
 
 
-@template
+@kernel
 def _felt_behind(interval, orbit):
     """Replace what spins change by, in ``orbit.column``, by how far they are behind it; return what the cage feels of that, NaN where not known."""
     for m in range(orbit.spins.shape[0]):
@@ -655,7 +655,7 @@ def _inertia_and_delay(faster, sense, orbit):
     return 1.0 + behind, later / behind if behind != 0.0 else 0.0
 
 
-@template
+@kernel
 def _keep_spins(spins, kept):
     for m in range(spins.shape[0]):
         kept[m] = spins[m]
@@ -703,7 +703,7 @@ def scan(to_standstill, model, work, orbit):
             orbit.skid[0], orbit.skid[1] = max(inertia, 1.0), max(delay, 0.0)
 
 
-@template
+@kernel
 def _at_load(load, angle, model):
     """Return a model whose constant load [N] has another size; ``angle`` is its direction [rad]."""
     drive = Drive(0.0, model.drive.shaft_speed, 0.0, load * math.cos(angle), 0.0, load * math.sin(angle), 0.0, 0.0)
@@ -917,7 +917,7 @@ def _write_means(sense, model, work, orbit, answer):
     return abs(left * orbit.speed[0]) * inertia_of_orbits(params, work.loads)
 
 
-@template
+@kernel
 def _double(orbit, nodes, angles):
     """Let spins and cage be known at twice as many angles, those in between in the middle of their neighbours.
 

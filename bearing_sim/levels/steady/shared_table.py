@@ -10,18 +10,18 @@ from pathlib import Path
 
 import numpy as np
 
-from bearing_sim.files.kept_arrays import packed, read_arrays
+from bearing_sim.files.kept import Damaged, packed, unpacked
 from bearing_sim.files.limits import KEPT_TABLE_FILE, FileError
-from bearing_sim.files.reading import printable
+from bearing_sim.files.reading import printable, read_bytes
 from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import (
     Quality,
     corrected_by,
-    read_table,
     reference_of,
     shifted,
     table_arrays,
     table_numbers,
+    table_of,
     table_path,
     write_table,
 )
@@ -57,11 +57,13 @@ def take_table(path: Path, scene: Scene) -> tuple[Table, Quality]:
     """
     where, span = printable(path), span_of(scene)
     try:
-        file = read_arrays(path, KEPT_TABLE_FILE)
+        file = unpacked(read_bytes(path, KEPT_TABLE_FILE), KEPT_TABLE_FILE)
         theirs, sizes = np.asarray(file["numbers"], float).reshape(-1), file["sizes"].tolist()
         program, corrected = str(file["program"]), str(file["corrected_by"])
     except FileError:
         raise
+    except Damaged as error:
+        raise FileError(str(error), where) from None
     except Exception:  # whatever its reader raises where the file is whole and has something else in it
         raise FileError("it has no table for other machines; write one with bearing-sim table SCENE -o FILE", where) from None
     if program != sources_hash():
@@ -69,9 +71,10 @@ def take_table(path: Path, scene: Scene) -> tuple[Table, Quality]:
     own = table_numbers(scene, span)
     if sizes != [number.size for number in own] or corrected != corrected_by(scene) or not _agree(own, theirs):
         raise FileError(f"built for another bearing, oil, range or tolerance than those of {scene.name}; build it from the same scene", where)
-    found = read_table(path)
-    if found is None:
-        raise FileError("it holds no whole table; build it again", where)
+    try:
+        found = table_of(file)
+    except Exception:  # whatever arrays of another kind make their reader raise
+        raise FileError("it holds no whole table; build it again", where) from None
     write_table(table_path(scene, span), *found)
     return shifted(found[0], reference_of(scene, span).offset), found[1]
 

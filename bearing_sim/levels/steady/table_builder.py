@@ -16,15 +16,14 @@ import itertools
 import math
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
 import numpy as np
-import platformdirs
 
-from bearing_sim.files.kept_arrays import read_arrays, write_arrays
+from bearing_sim.files.kept import Damaged, cache_folder, kept_if_possible, packed, read_kept, unpacked, write_kept
 from bearing_sim.files.limits import KEPT_TABLE_FILE
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.steady.model import look_up_conditions, new_work, solve_conditions
@@ -313,7 +312,7 @@ class _Grid:
         return points
 
 
-FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "tables"
+FOLDER = cache_folder() / "tables"
 CORRECTION_VERSION = 6
 """Of how corrections are measured, fitted and kept (`bearing_sim.estimation.correction`); tables that others have corrected are built again."""
 
@@ -388,17 +387,18 @@ def table_path(scene: Scene, span: Span) -> Path:
 
 def read_table(path: Path) -> tuple[Table, Quality] | None:
     """Return a table from disk, or None where there is none, or none that is whole."""
-    try:
-        file = read_arrays(path, KEPT_TABLE_FILE)
-        period, mirror = (float(number) for number in file["symmetry"])
-        quality = Quality(*(kind(number) for kind, number in zip(Quality.__annotations__.values(), file["quality"].tolist())))
-        knots = [np.ascontiguousarray(file[name], float) for name in ("speeds", "loads", "temperatures", "angles", "growths")]
-        values = file["values"]
-        if values.shape[1:] != (*map(len, knots), len(ANSWER)):
-            return None
-        return assembled(knots, period, mirror, values), quality
-    except Exception:  # whatever a broken file makes its reader raise, the table is built again
-        return None
+    return read_kept(path, KEPT_TABLE_FILE, lambda data: table_of(unpacked(data, KEPT_TABLE_FILE)))
+
+
+def table_of(arrays: Mapping[str, np.ndarray]) -> tuple[Table, Quality]:
+    """Return the table in the arrays of its file, see `table_arrays`; raises any exception where they are those of none."""
+    period, mirror = (float(number) for number in arrays["symmetry"])
+    quality = Quality(*(kind(number) for kind, number in zip(Quality.__annotations__.values(), arrays["quality"].tolist())))
+    knots = [np.ascontiguousarray(arrays[name], float) for name in ("speeds", "loads", "temperatures", "angles", "growths")]
+    values = arrays["values"]
+    if values.shape[1:] != (*map(len, knots), len(ANSWER)):
+        raise Damaged("its arrays do not fit together")
+    return assembled(knots, period, mirror, values), quality
 
 
 def table_arrays(table: Table, quality: Quality) -> dict[str, np.ndarray]:
@@ -417,7 +417,7 @@ def table_arrays(table: Table, quality: Quality) -> dict[str, np.ndarray]:
 
 def write_table(path: Path, table: Table, quality: Quality) -> None:
     """Write a table: a reader finds the old file or the new one, never a part.  Raises OSError, also if another process is writing it."""
-    write_arrays(path, table_arrays(table, quality))
+    write_kept(path, packed(table_arrays(table, quality)))
 
 
 def cached_table(scene: Scene, temperatures: tuple[float, float] | None = None) -> tuple[Table, Quality] | None:
@@ -464,10 +464,8 @@ def obtain_table(
             return lubricate(scene.lubricant, params, kelvin)
 
         found = build_table(params, lubrication, reference.span, tolerance, workers, progress, correction=made)
-        try:
+        with kept_if_possible(path):  # else it is as good for this run
             write_table(path, *found)
-        except OSError:  # a table that cannot be kept is as good for this run
-            pass
     return shifted(found[0], reference_of(scene, span).offset), found[1]
 
 
