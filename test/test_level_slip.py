@@ -337,6 +337,14 @@ def test_slip_is_undefined_and_life_infinite_at_rest():
     assert math.isnan(sample["cage_slip"]) and math.isinf(sample["rating_life"]) and sample["damage"] == 0
 
 
+@pytest.mark.parametrize(("shaft_speed", "is_slip"), [(5e-30, False), (-5e-30, False), (2e-3, True), (-2e-3, True)])
+def test_a_shaft_that_a_ramp_has_hardly_begun_to_turn_has_no_slip_yet(shaft_speed, is_slip):
+    """The first samples of a smooth ramp: a cage that creeps by rounding errors would slip by billions."""
+    run = simulation("operating.shaft_speed=0")
+    slip = run.advance(0.05, run.inputs._replace(shaft_speed=shaft_speed), samples=5)["cage_slip"][-1]
+    assert np.isfinite(slip) == is_slip and not abs(slip) > 1.5
+
+
 def test_error_falls_with_the_tolerance():
     times = np.linspace(0.5e-3, 4e-3, 8)
     best = slips_at(simulation(*TIGHT), times)

@@ -14,7 +14,7 @@ import math
 from typing import NamedTuple
 
 from bearing_sim.levels.common.model import load_at, shaft_speed_at
-from bearing_sim.model.sample import COLUMN, SCALARS
+from bearing_sim.model.sample import COLUMN, REST, SCALARS
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.simd import highest, larger, load, spread, square_root, total
 from bearing_sim.physics.growth import clearance_at
@@ -104,7 +104,7 @@ def observe_course(t, cage_angle, cage_speed, equivalent, oil, model, interval, 
     row[COLUMN.cage_speed] = cage_speed
     row[COLUMN.ideal_cage_angle] = previous[COLUMN.ideal_cage_angle] + 0.5 * rotation * (1.0 - ratio)
     row[COLUMN.ideal_cage_speed] = ideal
-    row[COLUMN.cage_slip] = 1.0 - cage_speed / ideal if ideal != 0.0 else math.nan
+    row[COLUMN.cage_slip] = 1.0 - cage_speed / ideal if abs(shaft_speed) >= REST else math.nan
     row[COLUMN.inner_equivalent_load] = equivalent.inner
     row[COLUMN.outer_equivalent_load] = equivalent.outer
     row[COLUMN.inner_lamina_load] = equivalent.inner_lamina
