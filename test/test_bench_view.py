@@ -43,6 +43,7 @@ def test_the_command_offers_the_viewers_that_there_are():
     assert tuple(option.type.choices) == VIEWERS and option.default == DRAWING
 
 
+@pytest.mark.long
 def test_what_recording_costs_is_measured_with_a_viewer_and_every_tick_is_counted():
     report = recording_cost(load_scene("deng2017_table1"), 0.3, 1000.0, 1)
     if report["viewer"] != DRAWING and HOW_TO_GET_VULKAN not in report["viewer"]:

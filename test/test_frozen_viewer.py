@@ -46,6 +46,7 @@ def shown_rows(path):
     )
 
 
+@pytest.mark.long
 def test_a_frozen_viewer_holds_up_neither_run_nor_file_nor_close(tmp_path):
     port = free_port()
     sink = RerunSink(SCENE, path=tmp_path / "run.rrd", serve_port=port)
@@ -71,6 +72,7 @@ def test_a_frozen_viewer_holds_up_neither_run_nor_file_nor_close(tmp_path):
     assert shown_rows(tmp_path / "run.rrd") == 65 * 200, f"the file is complete (finished: {finished})"
 
 
+@pytest.mark.long
 def test_a_viewer_that_dies_is_nobody_elses_trouble_and_the_next_one_finds_everything():
     port = free_port()
     with RerunSink(SCENE, serve_port=port) as sink:

@@ -337,7 +337,7 @@ def test_slip_is_undefined_and_life_infinite_at_rest():
     assert math.isnan(sample["cage_slip"]) and math.isinf(sample["rating_life"]) and sample["damage"] == 0
 
 
-@pytest.mark.parametrize(("shaft_speed", "is_slip"), [(5e-30, False), (-5e-30, False), (2e-3, True), (-2e-3, True)])
+@pytest.mark.parametrize(("shaft_speed", "is_slip"), [(5e-30, False), (-5e-30, False), (1e-6, True), (-1e-6, True)])
 def test_a_shaft_that_a_ramp_has_hardly_begun_to_turn_has_no_slip_yet(shaft_speed, is_slip):
     """The first samples of a smooth ramp: a cage that creeps by rounding errors would slip by billions."""
     run = simulation("operating.shaft_speed=0")

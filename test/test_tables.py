@@ -269,6 +269,7 @@ def test_course_beside_a_thermal_network_is_the_same_as_one_advance_after_the_ot
     np.testing.assert_allclose(one.thermal.books, other.thermal.books, rtol=1e-4)
 
 
+@pytest.mark.long
 @pytest.mark.timeout(1050)
 def test_course_with_a_measured_temperature_leaves_the_rest_to_single_steps(warm):
     scene, table = warm

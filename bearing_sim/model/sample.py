@@ -38,10 +38,6 @@ NODE_OBSERVABLES = (
     "oil_outlet_temperature",
 )
 """Observables of the temperatures of a thermal network, in the order of its nodes (`bearing_sim.physics.thermal_network.NODE`)."""
-
-REST = 1e-3
-"""[rad/s] assumption: below a hundredth of a revolution a minute a shaft stands, and nothing has a slip; solvers leave 1e-14 behind."""
-
 OBSERVABLES = (
     Observable("time", "s", "simulated time since the start of the run"),
     Observable("shaft_angle", "rad", "shaft rotation since the start"),

@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.model.sample import REST
 from bearing_sim.scene.display import number
 from bearing_sim.scene.scene import Thresholds
 
@@ -23,6 +22,10 @@ SLIP_FROM_SPEED = Thresholds().slip_from_speed
 
 DIVIDED = ("cage_slip", "friction_moment", "rating_life", "modified_rating_life", "l10", "lnm", "l10r", "lnmr")
 """Observables that are divided by the shaft's speed."""
+
+
+REST = 1e-3
+"""[rad/s] assumption: below a hundredth of a revolution a minute a shaft stands, whatever the threshold; solvers leave 1e-14 behind."""
 
 
 def turns(speeds: np.ndarray, slip_from_speed: float = SLIP_FROM_SPEED) -> np.ndarray:

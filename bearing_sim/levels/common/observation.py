@@ -14,12 +14,13 @@ import math
 from typing import NamedTuple
 
 from bearing_sim.levels.common.model import load_at, shaft_speed_at
-from bearing_sim.model.sample import COLUMN, REST, SCALARS
+from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.simd import highest, larger, load, spread, square_root, total
 from bearing_sim.physics.growth import clearance_at
 from bearing_sim.physics.rating_life import oil_factors, rate_lives
 
+_STANDS = 1e-9  # [rad/s] assumption: a slower shaft is one of rounding errors, as at the begin of a smooth ramp, and so would be its slip
 _DAMAGE_EXPONENT = 10.0 / 3.0  # of a load in the damage of a turn (ISO 281)
 
 
@@ -104,7 +105,7 @@ def observe_course(t, cage_angle, cage_speed, equivalent, oil, model, interval, 
     row[COLUMN.cage_speed] = cage_speed
     row[COLUMN.ideal_cage_angle] = previous[COLUMN.ideal_cage_angle] + 0.5 * rotation * (1.0 - ratio)
     row[COLUMN.ideal_cage_speed] = ideal
-    row[COLUMN.cage_slip] = 1.0 - cage_speed / ideal if abs(shaft_speed) >= REST else math.nan
+    row[COLUMN.cage_slip] = 1.0 - cage_speed / ideal if abs(shaft_speed) >= _STANDS else math.nan
     row[COLUMN.inner_equivalent_load] = equivalent.inner
     row[COLUMN.outer_equivalent_load] = equivalent.outer
     row[COLUMN.inner_lamina_load] = equivalent.inner_lamina
