@@ -98,11 +98,12 @@ def table(scene_name, overrides, rebuild, workers, points, out, shared, against_
 def _show_response(scene, rebuild, workers, dask, as_json) -> None:
     """Build the response of a scene to its uncertain fields, or take the one that is kept, and show what it is good for."""
     from bearing_sim.cli.estimation import response_with_progress
-    from bearing_sim.estimation.response import response_path
+    from bearing_sim.estimation.response import bundled_path, response_path
 
     announce_compilation(scene)
     found = response_with_progress(scene, rebuild, workers, dask)
-    domain, path = found.domain, str(response_path(scene))
+    places = response_path(scene), bundled_path(scene)
+    domain, path = found.domain, str(next(filter(Path.exists, places), places[0]))
     if as_json:
         report = {"scene": scene.name, "file": path, "fields": list(found.names), "points": found.points, "seconds": found.seconds}
         print_json({**report, "domain": domain._asdict()})
