@@ -308,4 +308,3 @@ def test_files_of_the_web_viewer_are_taken_again_if_damaged_and_for_this_process
     monkeypatch.setattr(web, "cache_folder", lambda: Path("/proc"))
     elsewhere = web.viewer_files()
     assert (elsewhere / web._NEEDED[0]).is_file() and "/proc/web_viewer: nothing is kept there" in caplog.text
-    web._not_kept.cleanup()

@@ -149,14 +149,26 @@ def _checksum(version: int, data: bytes) -> str:
     return hashlib.sha256(b"%d " % version + data).hexdigest()
 
 
+def with_digest(data: bytes) -> bytes:
+    """Return data with a digest behind them, as `without_digest` reads them."""
+    return data + hashlib.sha256(data).digest()
+
+
+def without_digest(stored: bytes) -> bytes:
+    """Return what `with_digest` was given.  Raises `Damaged` where a bit or more differs."""
+    data = stored[:-_DIGEST]
+    if hashlib.sha256(data).digest() != stored[-_DIGEST:]:
+        raise Damaged("its digest does not fit its contents" if stored else "it is empty")
+    return data
+
+
 def packed(arrays: "Mapping[str, np.ndarray]") -> bytes:
     """Return arrays by name as the contents of a file, as `unpacked` reads it: compressed, and a digest of that."""
     import numpy as np  # here, because workers set their numbers of threads before they import it
 
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)
-    data = buffer.getvalue()
-    return data + hashlib.sha256(data).digest()
+    return with_digest(buffer.getvalue())
 
 
 def unpacked(stored: bytes, limit: Limit) -> "dict[str, np.ndarray]":
@@ -177,9 +189,7 @@ def unpacked(stored: bytes, limit: Limit) -> "dict[str, np.ndarray]":
 
     import numpy as np
 
-    data = stored[:-_DIGEST]
-    if hashlib.sha256(data).digest() != stored[-_DIGEST:]:
-        raise Damaged("its digest does not fit its contents" if stored else "it is empty")
+    data = without_digest(stored)
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         limit.check(sum(member.file_size for member in archive.infolist()), "its arrays")
     with np.load(io.BytesIO(data), allow_pickle=False) as file:

@@ -30,11 +30,9 @@ from numba.core.dispatcher import _FunctionCompiler
 from numba.core.environment import lookup_environment
 from numba.core.registry import CPUDispatcher
 
-from bearing_sim.files.kept import Damaged, kept_if_possible, read_kept, write_kept
+from bearing_sim.files.kept import kept_if_possible, read_kept, with_digest, without_digest, write_kept
 from bearing_sim.files.limits import COMPILED_FILE
 from bearing_sim.numerics.reference import refer
-
-_DIGEST = hashlib.sha256().digest_size
 
 
 class _Translation(CPUCodeLibrary):
@@ -96,10 +94,10 @@ def _code_alone(library):
 class _Compiler(_FunctionCompiler):
     """Compiles a function to be called from Python, as numba does, or translates it to be called from compiled code."""
 
-    entry: Callable
+    dispatcher: "LinkingDispatcher"
 
     def _compile_core(self, args, return_type):
-        function = self.entry if any(isinstance(each, types.BaseNamedTuple) for each in args) else self.py_func
+        function = _with_references(self.dispatcher) if any(isinstance(each, types.BaseNamedTuple) for each in args) else self.py_func
         library = _Program(self.targetdescr.target_context.codegen(), self.py_func.__qualname__)
         library.enable_object_caching()
         found = self._compile(function, args, return_type, library, self._flags())
@@ -137,7 +135,7 @@ class LinkingDispatcher(CPUDispatcher):
     def __init__(self, function: Callable, folder: Path, options: dict):
         super().__init__(function, targetoptions=options)
         self._compiler = _Compiler(function, self.targetdescr, options, self.locals, compiler.Compiler)
-        self._compiler.entry = _with_references(self)
+        self._compiler.dispatcher = self
         self._cache = _Files(self, folder)
         self._translated: dict[tuple, CompileResult] = {}
 
@@ -217,15 +215,11 @@ def _stored(found: CompileResult) -> bytes:
     found.fndesc.typemap = found.fndesc.calltypes = None
     environments = tuple(found._find_referenced_environments())
     parts = (library.name, library._get_compiled_object(), defined, found.fndesc, found.environment, found.signature, environments)
-    data = serialize.dumps(parts)
-    return hashlib.sha256(data).digest() + data
+    return with_digest(serialize.dumps(parts))
 
 
 def _loaded(stored: bytes, context) -> CompileResult:
-    digest, data = stored[:_DIGEST], stored[_DIGEST:]
-    if hashlib.sha256(data).digest() != digest:
-        raise Damaged("its digest does not fit its contents" if stored else "it is empty")
-    name, code, defined, description, environment, found_signature, environments = pickle.loads(data)
+    name, code, defined, description, environment, found_signature, environments = pickle.loads(without_digest(stored))
     library = _Program(context.codegen(), name)
     library.enable_object_caching()
     library._set_compiled_object(code)

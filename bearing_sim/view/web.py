@@ -6,6 +6,7 @@ makers.  Its files are therefore taken once from the program ``rerun``, which ca
 by this module with a policy that forbids the browser everything that is not on this machine.
 """
 
+import atexit
 import contextlib
 import hashlib
 import http.client
@@ -48,7 +49,6 @@ _POLICY = (
 _START_UP = 60.0  # [s] for the program to serve its files on a busy machine
 _CHUNK = 1 << 18  # byte
 _log = logging.getLogger(__name__)
-_not_kept: tempfile.TemporaryDirectory | None = None  # the files of the viewer, where they cannot be kept
 
 
 class NoWebViewer(RuntimeError):
@@ -181,7 +181,6 @@ def viewer_files() -> Path:
     NoWebViewer
         They are not in the package, and its program does not serve them.
     """
-    global _not_kept
     folder = cache_folder() / "web_viewer" / version("rerun-sdk")
     kept = read_kept(folder / _DIGESTS, JSON_FILE, lambda data: checked_contents(data, "web_viewer")[1])
     if kept is not None:
@@ -197,9 +196,10 @@ def viewer_files() -> Path:
                 if (Path(draft) / name).is_file():
                     os.replace(Path(draft) / name, folder / name)
         return folder
-    _not_kept = tempfile.TemporaryDirectory(prefix="bearing_sim_web_viewer_")  # until this process ends
-    _fill(Path(_not_kept.name))
-    return Path(_not_kept.name)
+    folder = Path(tempfile.mkdtemp(prefix="bearing_sim_web_viewer_"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)  # another server of this process may use them until then
+    _fill(folder)
+    return folder
 
 
 def _digests(folder: Path) -> dict[str, str]:
