@@ -55,18 +55,13 @@ CASES = {
     "view": Case(("view", RECORDING, "--no-open"), 3),
     "mission": Case(("mission", "--duration", "5", "--cage", SCENE), 2),
     "state export": Case(("state", "export", STATE)),
-    "study deng2017": Case(("study", "deng2017", "--quick"), 300),
     "study misalignment": Case(("study", "misalignment", SCENE, "--points", "2", "--slices", "5", "--crown", "none"), 30),
     "study resonances": Case(("study", "resonances", "deng2017_table1", "--points", "2"), 30),
     "study support": Case(("study", "support", "deng2017_table1", "--points", "2"), 30),
-    "study situations": Case(("study", "situations", "--only", "skid", "--no-pictures"), 60),
-    "study friction": Case(("study", "friction"), 90),
     "study cold-oil": Case(("study", "cold-oil", "nu215_rig", "--supply", "oil_bath", "--temperature", "20 degC", "--load", "1 kN"), 20),
     "study cold-start": Case(("study", "cold-start", "nu215_rig", "--idling", "30 s"), 20),
-    "study scenes": Case(("study", "scenes", "--count", "1"), 60),
     "study clearance": Case(("study", "clearance", SCENE, "--speed", "1000rpm:3000rpm:2", "--load", "5kN:5kN:1"), 3),
-    "study nightly": Case(("study", "nightly", "--samples", "1", "--no-corners", *_SHORT), 8),
-    "study extremes": Case(("study", "extremes", "--samples", "1", *_SHORT), 20),
+    "study extremes": Case(("study", "extremes", SCENE, "--samples", "1"), 20),
 }
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from bearing_sim.ros.measure import processes_of
+from measure import processes_of
 
 _TABLES = ("udp", "udp6", "udplite", "udplite6", "tcp", "tcp6", "raw", "raw6")
 _LISTENING, _UNCONNECTED = "0A", "07"  # states of TCP and UDP sockets in /proc/net (include/net/tcp_states.h of Linux)

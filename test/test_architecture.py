@@ -44,7 +44,7 @@ ROOMS = {
     "fleet": ("numpy pyarrow", "files scene levels simulation messages recording inputs model estimation runtime sweep"),
     "studies": (
         "numpy numba pandas scipy matplotlib pydantic sksundae",
-        "files scene numerics physics model levels simulation messages recording inputs vibration monitoring estimation runtime sweep",
+        "files scene numerics physics model levels simulation messages recording inputs monitoring estimation sweep",
     ),
     "cli": (
         "click numpy pydantic_core rich",

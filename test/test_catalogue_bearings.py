@@ -4,11 +4,11 @@
 import math
 
 import pytest
+from validation.catalogue_friction import BEARINGS
 
 from bearing_sim import Simulation, load_scene
 from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml
 from bearing_sim.scene.ratings import rate
-from bearing_sim.studies.friction import BEARINGS
 
 SCENE = """
 name: catalogue

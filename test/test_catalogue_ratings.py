@@ -6,13 +6,13 @@ import json
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from validation.catalogues import KOYO, SPEED, koyo_scene
 
 from bearing_sim.cli.main import main
 from bearing_sim.physics.lamina_life import stress_risers
 from bearing_sim.scene.loader import scene_from_yaml
 from bearing_sim.scene.ratings import rate
 from bearing_sim.studies.statics import statics
-from bearing_sim.studies.validation.catalogues import KOYO, SPEED, koyo_scene
 
 # Series 10: ratings of the same catalogue; nobody publishes rollers, so these are estimates that the load on the bearing does not ask for.
 LIGHT = {"NU 1010": (50, 57.5, 72.5, 21, 6.0, 33.6, 36.8), "NU 1014": (70, 80, 100, 21, 8.6, 57.9, 70.4)}

@@ -9,13 +9,15 @@ import shutil
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from deng2017 import claims as deng2017_claims
+from deng2017.__main__ import deng2017
+from deng2017.claims import CLAIMS, FAILS, HOLDS, IN_PART, Course, judge
+from deng2017.page import study_page
+from deng2017.study import D_VALUE, LEVELS, LOAD, LOW, ROUNDNESS, SPEED, STUDIES, plan_study
 from reference_slip import Reference
 
 from bearing_sim import Simulation, load_scene
-from bearing_sim.cli.main import main
-from bearing_sim.studies.deng2017 import claims as deng2017_claims
-from bearing_sim.studies.deng2017.claims import CLAIMS, FAILS, HOLDS, IN_PART, Course, judge
-from bearing_sim.studies.deng2017.study import D_VALUE, LEVELS, LOAD, LOW, ROUNDNESS, SPEED, STUDIES, plan_study
+from bearing_sim.studies.page import NoResults
 from bearing_sim.sweep.grid import point_count, read_axis
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, read_table
@@ -26,7 +28,7 @@ pytestmark = pytest.mark.long
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("study")
-    result = CliRunner().invoke(main, ["study", "deng2017", "--quick", "-o", str(folder), "--json"], catch_exceptions=False)
+    result = CliRunner().invoke(deng2017, ["--quick", "-o", str(folder), "--json"], catch_exceptions=False)
     assert result.exit_code == 0, result.output
     assert json.loads(result.stdout)["computed"] == len({task.key for task in plan_study(quick=True).tasks})
     return folder
@@ -198,8 +200,8 @@ def test_contours_of_the_machining_model_grow_as_the_arc_is_turned(folder):
 
 def test_a_second_call_computes_nothing_and_says_the_same(folder, about, tmp_path, monkeypatch):
     shutil.copy(folder / "study.journal", tmp_path)
-    monkeypatch.setattr("bearing_sim.studies.deng2017.run.draw_study", lambda *all_of_it: [])
-    result = CliRunner().invoke(main, ["study", "deng2017", "--quick", "-o", str(tmp_path), "--json"], catch_exceptions=False)
+    monkeypatch.setattr("deng2017.run.draw_study", lambda *all_of_it: [])
+    result = CliRunner().invoke(deng2017, ["--quick", "-o", str(tmp_path), "--json"], catch_exceptions=False)
     again = json.loads(result.stdout)
     assert again["computed"] == 0 and again["claims"] == about["claims"]
 
@@ -227,8 +229,7 @@ class Page(html.parser.HTMLParser):
 
 
 def page_of(folder, path):
-    result = CliRunner().invoke(main, ["report", str(folder), "-o", str(path)])
-    assert result.exit_code == 0, result.output
+    path.write_text(study_page(folder))
     page = Page()
     page.feed(path.read_text())
     assert page.open == []
@@ -237,6 +238,7 @@ def page_of(folder, path):
 
 def test_the_page_holds_all_it_shows_and_says_every_claim_figure_setting_and_version(folder, about, tmp_path):
     page, text = page_of(folder, tmp_path / "r.html")
+    assert (folder / "report.html").read_text() == (tmp_path / "r.html").read_text()
     assert len(page.sources) == len(about["figures"]) and all(source.startswith("data:image/png;base64,") for source in page.sources)
     assert {link for link in page.links if not link.startswith("#")} == {f"https://doi.org/{about['doi']}"}
     assert "url(" not in (tmp_path / "r.html").read_text() and "@import" not in (tmp_path / "r.html").read_text()
@@ -262,11 +264,21 @@ def test_the_page_shows_marks_and_scripts_as_they_are_written(folder, about, tmp
     assert text.count('<script>alert("x")</script> & <b>') >= 9
 
 
-def test_a_folder_without_a_study_is_refused_with_what_to_do(tmp_path):
-    result = CliRunner().invoke(main, ["report", str(tmp_path)])
-    assert result.exit_code == 2 and "bearing-sim study deng2017" in result.output
+def test_a_folder_without_a_study_is_refused(tmp_path):
+    with pytest.raises(OSError):
+        study_page(tmp_path)
     (tmp_path / "study.json").write_text("{")
-    assert CliRunner().invoke(main, ["report", str(tmp_path)]).exit_code == 2
+    with pytest.raises(NoResults, match="not readable as JSON"):
+        study_page(tmp_path)
+
+
+def test_the_page_of_a_study_shows_no_file_of_another_folder(tmp_path):
+    (tmp_path / "secret.png").write_bytes(b"secret")
+    about = {name: "" for name in ("title", "doi", "command", "quick", "points", "duration")} | {"levels": {}, "statuses": {}, "claims": []}
+    figure = {"file": "../secret.png", "title": "", "caption": "", "tables": []}
+    (tmp_path / "study.json").write_text(json.dumps(about | {"figures": [figure], "versions": {}, "sweeps": [], "scenes": {}}))
+    with pytest.raises(NoResults, match="expected the name of a file in the folder figures"):
+        study_page(tmp_path)
 
 
 def test_every_claim_names_its_figure_in_words_of_the_paper():

@@ -6,17 +6,17 @@ import math
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from validation.__main__ import main as validation
+from validation.catalog_rules import diameter_errors, fitted, held_back, left_out, printed_rating_ratios, sections_of, summary
+from validation.catalogues import BOUNDARIES
 
-from bearing_sim.cli.main import main
 from bearing_sim.scene.designation import DesignationError, boundaries, designations, is_designation, makers_rows, parse_designation
 from bearing_sim.scene.internal_dimensions import HIGH_CAPACITY, STANDARD, bearing_tree, section_of
 from bearing_sim.scene.loader import SceneError, scene_from_yaml, scene_to_yaml
 from bearing_sim.scene.mounting import clearance_limits
 from bearing_sim.scene.ratings import load_rating, rate
 from bearing_sim.scene.uncertainty import ranges_of, with_values
-from bearing_sim.studies.catalog_rules import diameter_errors, fitted, held_back, left_out, printed_rating_ratios, sections_of, summary
 from bearing_sim.studies.uncertainty import varied
-from bearing_sim.studies.validation.catalogues import BOUNDARIES
 
 SCENE = """
 name: designation
@@ -393,7 +393,7 @@ def test_a_full_complement_needs_a_level_whose_rollers_orbit_together_and_has_no
 
 
 def test_the_study_prints_its_tables():
-    result = CliRunner().invoke(main, ["study", "catalog"])
+    result = CliRunner().invoke(validation, ["catalog"])
     assert result.exit_code == 0 and "Koyo" in result.output and "each left out" in result.output
 
 

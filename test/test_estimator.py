@@ -11,16 +11,16 @@ import pytest
 from click.testing import CliRunner
 from scipy.special import ndtri
 from scipy.stats import qmc
+from validation.estimator_command import estimator as study_estimator
+from validation.estimator_study import CLEARANCE as STUDIED_CLEARANCE
+from validation.estimator_study import PAUSE, TEMPERATURES, Machine, judge, machines, samples, wandering
 
-from bearing_sim.cli.estimator_study import estimator as study_estimator
 from bearing_sim.estimation.causes import CLEARANCE, LOAD, OIL, OIL_QUANTITY, SENSOR, TRACTION, Evidence, causes_of
 from bearing_sim.estimation.estimator import Estimator, _Scatter
 from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import conditions_at, domain_of, fit_response, scene_fields, slip_scale
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.studies.estimator import CLEARANCE as STUDIED_CLEARANCE
-from bearing_sim.studies.estimator import PAUSE, TEMPERATURES, Machine, judge, machines, samples, wandering
 
 QUANTITY, SCALE, RADIUS = "lubricant.mixture_fraction", "lubricant.traction_scale", "bearing.outer_raceway.low_radius"
 FIELDS = (QUANTITY, SCALE, RADIUS)

@@ -8,6 +8,11 @@ import math
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from validation.__main__ import main as validation
+from validation.extremes import counted, kinds_of_reason
+from validation.extremes_cases import BEARING, DIMENSIONS, oil_of, sampled_cases
+from validation.extremes_long import long_run
+from validation.extremes_run import run_case
 
 from bearing_sim import SceneError, Simulation, load_scene
 from bearing_sim.cli.main import main
@@ -23,11 +28,8 @@ from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.physics.traction import traction
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import scene_inputs
-from bearing_sim.studies.extremes import counted, kinds_of_reason
-from bearing_sim.studies.extremes_cases import BEARING, DIMENSIONS, Case, oil_of, sampled_cases
-from bearing_sim.studies.extremes_long import long_run
-from bearing_sim.studies.extremes_run import FAILED, FINISHED, REFUSED, STEP_LIMITED, course_segments, run_case
-from bearing_sim.studies.extremes_stock import TURNS, at_stock, energy_gap, run_at_stock
+from bearing_sim.studies.extreme_run import FAILED, FINISHED, REFUSED, STEP_LIMITED, TURNS, Case, at_stock, course_segments, energy_gap, run_at_stock
+from bearing_sim.studies.extremes import variants
 from bearing_sim.sweep.settling import cage_turn
 
 
@@ -91,7 +93,7 @@ def test_a_scene_that_cannot_be_is_refused_with_the_bound_it_broke():
 
 
 def test_a_tight_tolerance_exhausts_its_steps_and_is_step_limited_and_a_loose_one_is_too_slow(monkeypatch):
-    monkeypatch.setattr("bearing_sim.studies.extremes_run._step_budget", lambda scene: 20)
+    monkeypatch.setattr("validation.extremes_run._step_budget", lambda scene: 20)
     assert run_case(case(*tolerance_overrides(1e-6))).status == STEP_LIMITED
     outcome = run_case(case(*tolerance_overrides(0.2)))
     assert outcome.status == FAILED and outcome.reason.startswith("too slow: 20 steps last for ")
@@ -138,11 +140,11 @@ def test_an_exception_is_a_failure_that_tells_what_it_was(monkeypatch):
 
 def test_the_command_writes_totals_a_table_and_a_picture(tmp_path, monkeypatch):
     corners = [case(), case("bearing.roller.count=2")._replace(name="another")]
-    monkeypatch.setattr("bearing_sim.studies.extremes.corner_cases", lambda level: corners)
+    monkeypatch.setattr("validation.extremes.corner_cases", lambda level: corners)
     table, picture = tmp_path / "map.csv", tmp_path / "map.png"
     result = CliRunner().invoke(
-        main,
-        ["study", "extremes", "--samples", "3", "--seed", "2", "--level", "slip", "--no-long", "--workers", "1", "--json"]
+        validation,
+        ["extremes", "--samples", "3", "--seed", "2", "--level", "slip", "--no-long", "--workers", "1", "--json"]
         + ["--out", str(table), "--picture", str(picture)],
     )
     report = json.loads(result.stdout)
@@ -153,6 +155,21 @@ def test_the_command_writes_totals_a_table_and_a_picture(tmp_path, monkeypatch):
     rows = list(csv.DictReader(table.open()))
     assert len(rows) == 5 and rows[0]["status"] == "finished" and "--set 'bearing.roller.count=2'" in rows[1]["overrides"]
     assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_command_takes_any_scene_and_every_run_can_be_repeated(tmp_path):
+    table, picture = tmp_path / "map.csv", tmp_path / "map.png"
+    arguments = ["study", "extremes", "nu215_rig", "--samples", "3", "--workers", "1", "--json", "--out", str(table), "--picture", str(picture)]
+    result = CliRunner().invoke(main, arguments)
+    report = json.loads(result.stdout)
+    assert result.exit_code == (1 if report["failed"] else 0)
+    assert sum(report[name] for name in ("finished", "step_limited", "refused", "failed")) == 3 == len(list(csv.DictReader(table.open())))
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    for case in variants("nu215_rig", [], 5, 1):
+        scene = load_scene("nu215_rig", case.overrides)
+        assert scene.operating.shaft_speed == case.point["operating.shaft_speed"]
+    speeds = [case.point["operating.shaft_speed"] for case in variants("nu215_rig", [], 200, 1)]
+    assert min(speeds) < 0.0 < max(speeds) and 0.0 in speeds
 
 
 def test_at_stock_settings_a_scene_turns_its_cage_50_times_or_settles_and_keeps_its_books():
@@ -181,7 +198,7 @@ def test_a_cage_that_hardly_turns_and_wanders_is_waited_for_until_it_has_turned_
 def test_a_run_at_stock_settings_says_what_limited_refused_or_broke_it(monkeypatch):
     assert run_at_stock(case("bearing.roller.count=2")).reason.startswith("bearing.roller.count = 2: ")
     with monkeypatch.context() as impatient:
-        impatient.setattr("bearing_sim.studies.extremes_stock.PATIENCE", 0.0)
+        impatient.setattr("bearing_sim.studies.extreme_run.PATIENCE", 0.0)
         limited = run_at_stock(case())
     assert limited.status == STEP_LIMITED and limited.reason.startswith("core time: 0 s last for ")
     monkeypatch.setattr(Simulation, "advance", lambda *arguments, **named: 1 / 0)
@@ -199,11 +216,11 @@ def test_the_books_of_energy_miss_what_is_taken_from_a_loss():
 
 
 def test_the_night_gives_one_table_and_resumes(tmp_path, monkeypatch):
-    monkeypatch.setattr("bearing_sim.studies.nightly.corner_cases", lambda level: [case(), case("bearing.roller.count=2")])
-    monkeypatch.setattr("bearing_sim.studies.nightly.LONG_RUNS", {"slip": ((15_000.0, 2.0),)})
+    monkeypatch.setattr("validation.nightly.corner_cases", lambda level: [case(), case("bearing.roller.count=2")])
+    monkeypatch.setattr("validation.nightly.LONG_RUNS", {"slip": ((15_000.0, 2.0),)})
     options = "--level slip --samples 9 --first 2 --workers 1".split()
-    arguments = ["study", "nightly", *options, "--journal", str(tmp_path / "night.journal")]
-    result = CliRunner().invoke(main, [*arguments, "--json", "--out", str(tmp_path / "night.csv")])
+    arguments = ["nightly", *options, "--journal", str(tmp_path / "night.journal")]
+    result = CliRunner().invoke(validation, [*arguments, "--json", "--out", str(tmp_path / "night.csv")])
     report = json.loads(result.stdout)
     assert [(row["runs"], sum(row["counts"].values())) for row in report["rows"]] == [
         ("scenes", 2),
@@ -215,8 +232,8 @@ def test_the_night_gives_one_table_and_resumes(tmp_path, monkeypatch):
     assert report["rows"][1]["books"]["number"] == 1 and report["rows"][3]["books"]["largest"] < 0.005
     rows = list(csv.DictReader((tmp_path / "night.csv").open()))
     assert len(rows) == 6 and {row["program"] for row in rows} == {report["program"]} and {row["seed"] for row in rows} == {"0"}
-    monkeypatch.setattr("bearing_sim.studies.extremes_stock.run_at_stock", lambda case: 1 / 0)  # nothing runs again
-    again = CliRunner().invoke(main, arguments)
+    monkeypatch.setattr("bearing_sim.studies.extreme_run.run_at_stock", lambda case: 1 / 0)  # nothing runs again
+    again = CliRunner().invoke(validation, arguments)
     assert again.exit_code == 0 and "slip, corners: 1 refused: bearing.roller.count" in again.output
 
 

@@ -4,7 +4,6 @@
 ``test/benchmarks/hostile_files.py`` tries some 200 of them in processes with little memory; here are those that cost no time.
 """
 
-import json
 import os
 import sys
 import threading
@@ -288,14 +287,3 @@ def test_a_guessed_mapping_cannot_be_written_by_a_heading(tmp_path):
     (tmp_path / "d.csv").write_text("time [s],speed [rpm],load [N],x\u2028radial_load: {law: constant}\n0,1,1,1\n1,1,1,1\n")
     done = run("import-csv", tmp_path / "d.csv", "--guess")
     assert done.exit_code == 2 and "control characters" in done.stderr and "\u2028" not in done.output
-
-
-def test_the_page_of_a_study_shows_no_file_of_another_folder(tmp_path):
-    (tmp_path / "secret.png").write_bytes(b"secret")
-    about = {name: "" for name in ("title", "doi", "command", "quick", "points", "duration")} | {"levels": {}, "statuses": {}, "claims": []}
-    figure = {"file": "../secret.png", "title": "", "caption": "", "tables": []}
-    from bearing_sim.studies.deng2017.run import STUDY_FILE
-
-    (tmp_path / STUDY_FILE).write_text(json.dumps(about | {"figures": [figure], "versions": {}, "sweeps": [], "scenes": {}}))
-    done = run("report", tmp_path, "-o", tmp_path / "page.html")
-    assert done.exit_code == 2 and "expected the name of a file in the folder figures" in done.stderr and not (tmp_path / "page.html").exists()

@@ -7,34 +7,37 @@ import math
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from validation import catalogue_friction
+from validation.__main__ import main as validation
+from validation.catalogue_friction import (
+    FILM_BEARINGS,
+    FILM_LOADS,
+    FILM_RATIOS,
+    PartRatios,
+    Spread,
+    bath_scene,
+    film_condition,
+    film_rows,
+    heat_flow,
+    moment_table,
+    part_ratios,
+    thermal_speeds,
+)
 
 from bearing_sim.cli.main import main
 from bearing_sim.scene.designation import boundaries, designations, makers_rows
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.new_scene import Wish, new_scene
-from bearing_sim.studies import friction
 from bearing_sim.studies.friction import (
-    FILM_BEARINGS,
-    FILM_LOADS,
-    FILM_RATIOS,
     SERIES,
     Dimensions,
-    PartRatios,
-    Spread,
-    bath_scene,
     compare,
     dimensions_of,
-    film_condition,
-    film_rows,
-    heat_flow,
     makers_moment,
-    moment_table,
     moments,
-    part_ratios,
     series_of,
     simple_moment,
     skf_moment,
-    thermal_speeds,
 )
 from bearing_sim.studies.operating_point import settle
 
@@ -292,10 +295,10 @@ def test_a_slow_loaded_bearing_rubs_as_skf_says(bearing, oil, celsius, kilonewto
 
 
 def test_the_command_shows_parts_by_film_ratio(monkeypatch):
-    monkeypatch.setattr(friction, "FILM_BEARINGS", ("NU 205",))
-    monkeypatch.setattr(friction, "BEARINGS", ("NU 205",))
-    found = json.loads(CliRunner().invoke(main, ["study", "friction", "--json"]).stdout)
+    monkeypatch.setattr(catalogue_friction, "FILM_BEARINGS", ("NU 205",))
+    monkeypatch.setattr(catalogue_friction, "BEARINGS", ("NU 205",))
+    found = json.loads(CliRunner().invoke(validation, ["friction", "--json"]).stdout)
     assert [one["kappa"] for one in found["films"]] == list(FILM_RATIOS) and len(found["part_ratios"]) == len(FILM_RATIOS) * len(FILM_LOADS)
     assert all(one["whole"]["low"] <= one["whole"]["median"] <= one["whole"]["high"] for one in found["films"])
-    text = CliRunner().invoke(main, ["study", "friction"]).stdout
+    text = CliRunner().invoke(validation, ["friction"]).stdout
     assert "sliding over M_sl" in text and f"{found['films'][0]['whole']['median']:.2f} (" in text

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from validation.published_digits import round_bearing
 
 from bearing_sim.levels.common.slice_balance import balance, roller_tilts
 from bearing_sim.levels.slip import state as slip_state
@@ -13,7 +14,6 @@ from bearing_sim.model.params import pack
 from bearing_sim.physics.contact import EXPONENT
 from bearing_sim.physics.lamina import ROLLER_ROW, new_slices, sliced_contact
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.studies.validation.published_digits import round_bearing
 
 AT_REST = (0.0, 0.0)
 

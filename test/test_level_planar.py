@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from validation.independent import INDEPENDENT
 
 from bearing_sim import Inputs, Simulation, load_scene
 from bearing_sim.levels.planar import model as planar
@@ -13,7 +14,6 @@ from bearing_sim.levels.planar.state import BLOCK, BORDER, LOCAL, ROLLERS, Rolle
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import ContactRow
 from bearing_sim.scene.loader import scene_from_yaml
-from bearing_sim.studies.validation.independent import INDEPENDENT
 
 
 def simulation(*overrides, inputs=None):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
+from validation.extremes_cases import sampled_cases
 
 from bearing_sim import Inputs, SceneError, Simulation, load_scene
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
@@ -36,8 +37,7 @@ from bearing_sim.model.table_span import Span
 from bearing_sim.numerics.linear_algebra import ALPHA_0, ALPHA_1, ALPHA_2, ALPHA_3, solve_cyclic
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import scene_inputs
-from bearing_sim.studies.extremes_cases import sampled_cases
-from bearing_sim.studies.extremes_stock import at_stock
+from bearing_sim.studies.extreme_run import at_stock
 from bearing_sim.studies.steady_check import compare, marched, solved
 
 RPM = math.pi / 30

@@ -14,11 +14,11 @@ import pytest
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
 
+from measure import Cost, _share, cost_of  # noqa: E402
 from node_overhead import _wait_until_running  # noqa: E402
 from ros_bench import fresh_domain  # noqa: E402
 
 from bearing_sim.messages import topics  # noqa: E402
-from bearing_sim.ros.measure import Cost, _share, cost_of  # noqa: E402
 from bearing_sim.runtime.solver_threads import THREAD_NAME, name_this_thread  # noqa: E402
 from bearing_sim.scene.loader import load_scene  # noqa: E402
 

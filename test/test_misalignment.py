@@ -6,12 +6,12 @@ import json
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from validation.slices import by_slices
 
 from bearing_sim import load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.studies import misalignment
 from bearing_sim.studies.misalignment import misalign
-from bearing_sim.studies.slices import by_slices
 from bearing_sim.sweep.pictures import new_figure
 
 SLOW = ["operating.shaft_speed=5000 rpm", "operating.radial_load=2 kN"]

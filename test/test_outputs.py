@@ -28,8 +28,6 @@ INPUTS = {
     "replay-fleet --bearings",
     "design --points",
     "uncertainty --log",
-    "report --tests",
-    "report --recordings",
     "table --from",
 }
 """Options with a path that is read; the state file of `replay` is also kept by it, as by the node."""

@@ -2,8 +2,7 @@
 """Published findings about slip that the model reproduces; those that it does not are named in doc/validation/trends.md."""
 
 import pytest
-
-from bearing_sim.studies.published_findings import NO_SLIP, gearbox_slip, rig_slip
+from validation.published_findings import NO_SLIP, gearbox_slip, rig_slip
 
 
 @pytest.mark.parametrize("speed", [1000, 5000])

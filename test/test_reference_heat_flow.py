@@ -3,9 +3,10 @@
 
 import numpy as np
 import pytest
+from validation.catalogue_friction import BEARINGS, heat_flow
+from validation.heat_and_friction import reference_heat
 
-from bearing_sim.studies.friction import BEARINGS, Dimensions, heat_flow
-from bearing_sim.studies.validation.heat_and_friction import reference_heat
+from bearing_sim.studies.friction import Dimensions
 
 
 def test_the_reference_heat_flow_is_that_of_the_standard():

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from rerun.chunk import RrdReader
+from situations.__main__ import situations
+from situations.situations import SITUATIONS
 
-from bearing_sim.cli import study
-from bearing_sim.studies.situations import SITUATIONS
 from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN
 
 pytestmark = pytest.mark.long
@@ -36,14 +36,14 @@ def command_output(folder):
         if "BEARING_SIM_PICTURES" not in os.environ:
             size = ["--size", "1000x640"]
             coarse = [each if each.fault else each._replace(rate=0.5 * each.rate) for each in SITUATIONS]
-            patch.setattr("bearing_sim.studies.situations.SITUATIONS", tuple(coarse))
+            patch.setattr("situations.situations.SITUATIONS", tuple(coarse))
         return _output_of(["--out", str(folder), *size, "--json"])
 
 
 def _output_of(words):
-    result = CliRunner().invoke(study.situations, words)
+    result = CliRunner().invoke(situations, words)
     if HOW_TO_GET_VULKAN in result.output:
-        result = CliRunner().invoke(study.situations, [*words, "--no-pictures", "--force"])
+        result = CliRunner().invoke(situations, [*words, "--no-pictures", "--force"])
     assert result.exit_code == 0, result.output
     return result.stdout
 
@@ -106,7 +106,7 @@ def test_every_picture_is_drawn(name, folder, reported):
 
 
 def test_an_unknown_situation_is_told_with_those_there_are(folder):
-    result = CliRunner().invoke(study.situations, ["--out", str(folder), "--only", "flight"])
+    result = CliRunner().invoke(situations, ["--out", str(folder), "--only", "flight"])
     assert result.exit_code == 2 and "skid_in_a_gust" in result.output
 
 

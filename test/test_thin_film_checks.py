@@ -4,10 +4,9 @@
 import math
 
 import pytest
-
-from bearing_sim.studies.validation import thin_films
-from bearing_sim.studies.validation.check import FAILS, HOLDS, run
-from bearing_sim.studies.validation.thin_films import (
+from validation import thin_films
+from validation.check import FAILS, HOLDS, run
+from validation.thin_films import (
     CHECKS,
     LARGE,
     SMALL,

@@ -13,17 +13,18 @@ import scipy.io
 from click.testing import CliRunner
 from measured_data import measured_file
 from synthetic_vibration import Machine, record
+from validation.__main__ import main as validation
+from validation.check import FAILS, HOLDS, IN_PART, NOT_RUN, Check, Comparison, compared, run
+from validation.checks import CHECKS, all_checks
+from validation.data_sets import DATA_SETS
+from validation.page import NOT_VALIDATED, html_page, markdown_page
+from validation.recorded_lines import RECORDINGS, recorded_checks
+from validation.suite import TESTED, SuiteError, suite_results
 
 from bearing_sim.cli.main import main
 from bearing_sim.scene.loader import load_bearing
 from bearing_sim.scene.quantity import to_si
 from bearing_sim.simulation import IntegrationError
-from bearing_sim.studies.validation.check import FAILS, HOLDS, IN_PART, NOT_RUN, Check, Comparison, compared, run
-from bearing_sim.studies.validation.checks import CHECKS, all_checks
-from bearing_sim.studies.validation.data_sets import DATA_SETS
-from bearing_sim.studies.validation.page import NOT_VALIDATED, html_page, markdown_page
-from bearing_sim.studies.validation.recorded_lines import RECORDINGS, recorded_checks
-from bearing_sim.studies.validation.suite import TESTED, SuiteError, suite_results
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "doc" / "validation.md"
@@ -64,7 +65,7 @@ def require_in_documents(check):
     for each in results:
         shown = lines(markdown_page([each], ""))[2]
         assert (shown[0], shown[1], shown[2], shown[5], shown[6]) in printed, (
-            "write the page again: bearing-sim report validation -o doc/validation.md"
+            "write the page again: python test/validation report -o doc/validation.md"
         )
 
 
@@ -73,7 +74,10 @@ def test_the_page_in_the_documents_has_run_every_check_with_a_command_and_a_date
     figures = [row for row in rows if row[6] in (HOLDS, IN_PART, FAILS, NOT_RUN)]
     assert len(figures) > 80 and not [row for row in figures if row[6] == NOT_RUN]
     for row in figures:
-        assert re.fullmatch(r"`(bearing-sim|pytest) .+`", row[7]) and re.fullmatch(r"20\d\d-\d\d-\d\d", row[8]), row
+        command = re.fullmatch(r"`(bearing-sim|python test/validation|python examples/deng2017|pytest) .+`", row[7])
+    assert command and re.fullmatch(
+            r"20\d\d-\d\d-\d\d", row[8]
+        ), row
     commands = {row[7].strip("`") for row in figures}
     assert {check.shown_command for check in all_checks()} <= commands
 
@@ -130,14 +134,14 @@ def test_a_check_that_cannot_be_computed_does_not_hold_and_leaves_the_others():
     checks = Check("broken", "group", fail), Check("sound", "group", lambda: [good]), Check("slow", "group", lambda: [good], is_long=True)
     broken, sound, slow = run(checks, quick=True)
     assert broken.verdict == FAILS and "no step converges" in broken.found
-    assert sound.verdict == HOLDS and sound.command == "bearing-sim report validation --only sound"
+    assert sound.verdict == HOLDS and sound.command == "python test/validation report --only sound"
     assert slow.verdict == NOT_RUN and slow.date == ""
 
 
 def test_a_recording_that_is_not_there_or_cannot_be_read_is_refused_before_anything_is_computed(tmp_path):
     assert {each.verdict for each in run(recorded_checks(None))} == {NOT_RUN}
     for expected in ("ob600_2.npz: no such file", "ob600_2.npz: cannot be read as NPZ"):
-        result = invoke("validation", "--recordings", tmp_path, "-o", tmp_path / "page.md")
+        result = invoke("--recordings", tmp_path, "-o", tmp_path / "page.md")
         assert result.exit_code == 2 and expected in result.output and not (tmp_path / "page.md").exists()
         (tmp_path / "ob600_2.npz").write_text("no archive")
 
@@ -210,12 +214,12 @@ def test_a_file_that_is_no_report_of_tests_is_refused_with_what_was_expected(tmp
 
 
 def invoke(*arguments):
-    return CliRunner().invoke(main, ["report", *map(str, arguments)])
+    return CliRunner().invoke(validation, ["report", *map(str, arguments)])
 
 
 def test_the_command_writes_the_page_of_chosen_checks(tmp_path):
     for name in ("page.html", "page.md"):
-        result = invoke("validation", "-o", tmp_path / name, "--only", "contour", "--only", "published_findings", "--quick")
+        result = invoke("-o", tmp_path / name, "--only", "contour", "--only", "published_findings", "--quick")
         assert result.exit_code == 0 and "holds: 1, not run: 1" in result.output
     assert (tmp_path / "page.html").read_text().startswith("<!doctype html>") and (tmp_path / "page.md").read_text().startswith("# Validation")
 
@@ -223,12 +227,10 @@ def test_the_command_writes_the_page_of_chosen_checks(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["validation", "--only", "contuor"], "--only contuor: there is no such check (did you mean 'contour'?); expected one of contour,"),
-        (["validation", "--recordings", "nowhere"], "nowhere: no such folder; --recordings expects one with ob600_2.npz, ib800_2.npz"),
-        (["validation", "--only", "contour", "--tests", "tests.xml"], "--only chooses single checks; give one of them"),
-        (["validation", "--tests", "nowhere.xml"], "nowhere.xml: no such file"),
-        (["table.parquet", "--quick"], "--quick are for `bearing-sim report validation`; table.parquet is a result"),
-        (["./validation"], "does not exist; expected a table"),
+        (["--only", "contuor"], "--only contuor: there is no such check (did you mean 'contour'?); expected one of contour,"),
+        (["--recordings", "nowhere"], "nowhere: no such folder; --recordings expects one with ob600_2.npz, ib800_2.npz"),
+        (["--only", "contour", "--tests", "tests.xml"], "--only chooses single checks; give one of them"),
+        (["--tests", "nowhere.xml"], "nowhere.xml: no such file"),
     ],
 )
 def test_what_cannot_be_reported_says_why(tmp_path, arguments, expected):

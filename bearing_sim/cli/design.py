@@ -125,12 +125,11 @@ def design(
         designed.grid.about.update(command=command_line(), study=study)
         require_same_study(out, study, studied.TABLES)
         files = studied.write_design(out.path, designed)
-        beside = _beside(scene, limits)
         if picture is not None:
             with picture.draft() as draft:
-                studied.draw(draft, designed, beside)
+                studied.draw(draft, designed)
             files.append(picture.path)
-    report = _report_design(scene, designed, beside, files)
+    report = _report_design(scene, designed, files)
     if as_json:
         print_json(report)
     else:
@@ -197,18 +196,9 @@ def _verify_level(asked, scene) -> str | None:
     return found
 
 
-def _beside(scene, limits):
-    from bearing_sim.studies.deng2017 import design as deng
-
-    asked = scene.bearing.name, scene.bearing.outer_raceway.lobes, limits.slip_below, limits.life_above
-    is_the_papers = asked == (deng.SCENE, deng.LOBES, deng.SLIP_BELOW, deng.LIFE_ABOVE) and scene.bearing.dimensions_at == "running"
-    return deng.BESIDE if is_the_papers and not limits.conditions.points else None
-
-
-def _report_design(scene, designed, beside, files) -> dict:
+def _report_design(scene, designed, files) -> dict:
     from bearing_sim.model.validity import counted
-    from bearing_sim.studies.deng2017.design import radii_within
-    from bearing_sim.studies.design import D_VALUE, KINDS, STATE
+    from bearing_sim.studies.design import KINDS, STATE
 
     about = designed.grid.about
     report = {name: about[name] for name in ("level", "verify_level", "life")} | about["wanted"]
@@ -221,12 +211,9 @@ def _report_design(scene, designed, beside, files) -> dict:
     for kind in KINDS:
         bands = [band for band in designed.bands if band.found.kind == kind]
         report[kind] = [band.found._asdict() | {"verdict": band.verdict, "verified": band.verified and band.verified._asdict()} for band in bands]
-        if beside is not None:
-            for name, borders in (("", [band.found for band in bands]), ("_verified", designed.recommended(kind))):
-                report[f"{kind}{name}_within_deng"] = radii_within(borders, designed.grid.values(D_VALUE), beside[1])._asdict()
     report["widest"] = designed.widest and designed.widest._asdict()
     report["checks"] = [check._asdict() for check in designed.checks]
-    return report | {"deng2017": beside and {"d_value": beside[1], "low_radius": beside[2]}, "files": list(map(str, files))}
+    return report | {"files": list(map(str, files))}
 
 
 def _print_design(report) -> None:
@@ -252,11 +239,6 @@ def _print_design(report) -> None:
         _print_bands(condition, report[kind], report["level"], verify_level)
         if report["beyond_the_map"][kind]:
             click.echo(f"  {report['beyond_the_map'][kind]}")
-        if report["deng2017"]:
-            (left, right), (low, high) = report["deng2017"]["d_value"], report["deng2017"]["low_radius"]
-            for name, at in (("", report["level"]), *((("_verified", verify_level),) if verify_level else ())):
-                found = report[f"{kind}{name}_within_deng"]["text"]
-                click.echo(f"  for every D from {left} to {right} mm, at {at}: {found}; Deng 2017 has {low:.4f} to {high:.4f} mm")
     _print_checks(report)
     warn(report["warnings"])
     click.echo(", ".join(report["files"]))

@@ -27,25 +27,17 @@ _BENCHMARKS = {
     "fleet": Entry("bench:fleet", "How many bearings one core holds in real time."),
 }
 _STUDIES = {
-    "deng2017": Entry("study:deng2017", "Reproduce the results of Deng 2017, claim by claim."),
     "damage": Entry("study:damage", "Compare the damage of a measured run between levels."),
     "misalignment": Entry("study:misalignment", "Edge pressure, tilt, skew and life against misalignment of the inner ring."),
     "support": Entry("study:support", "Response over speed with a support of shaft and outer ring, and without."),
     "resonances": Entry("study:resonances", "Where the passing rollers make the inner ring vibrate, over speed, and in which states it stays."),
-    "situations": Entry("study:situations", "Pictures of six situations, from start to fault, in rerun."),
     "clearance": Entry("study:clearance", "Running clearance over speed and load, thermal runaway, and what is lost at which speed."),
-    "slices": Entry("study:slices", "Convergence of level spatial with the number of slices, its quadrature, and the cost of both."),
-    "friction": Entry("study:friction", "Frictional moment and thermal reference speed against makers' models."),
-    "scenes": Entry("study:scenes", "Whether random scenes of catalogue bearings settle, level by level."),
-    "findings": Entry("study:findings", "Published findings about slip, and whether the model finds the same."),
+    "friction": Entry("study:friction", "Friction of a scene against makers' models."),
     "cold-oil": Entry("cold_oil:cold_oil", "Slip and skid load over load, temperature and supply of oil, from rolling and from a skid."),
     "cold-start": Entry(
         "cold_start:cold_start", "A cold start over time: slip, films, temperatures and sliding power while idling and as the load comes."
     ),
-    "estimator": Entry("estimator_study:estimator", "Whether the calibration of a running model is right about machines with hidden fields."),
-    "catalog": Entry("study:catalog_rules", "Rules for the inside of catalogue bearings, and their errors."),
-    "extremes": Entry("study:extremes", "Map which scenes finish, are step-limited, are refused or fail."),
-    "nightly": Entry("study:nightly", "Extreme scenes at stock settings, corners and long runs, with their books of energy."),
+    "extremes": Entry("study:extremes", "Which variants of a scene, at its extremes, finish, are step-limited, are refused or fail."),
 }
 _STATES = {
     "show": Entry("state:show", "Show the stored state of a bearing: life used, hours, starts, regimes."),
@@ -70,11 +62,11 @@ _COMMANDS = {
     "sweep": Entry("sweep:sweep", "Run a scene at all combinations of field values, into a table."),
     "plot": Entry("plot:plot", "Draw recorded runs over time or load, or the table of a sweep."),
     "design": Entry("design:design", "Map which outer raceways keep slip and life within limits, and verify them."),
-    "report": Entry("report:report", "Make one HTML page of a study, a sweep, a design or a recorded run."),
+    "report": Entry("report:report", "Make one HTML page of a sweep, a design or a recorded run."),
     "trade": Entry("trade:trade", "Measure speed against accuracy on a scene, and recommend a setting."),
     "bench": Entry("main:bench", "Measure how fast the model is on this machine."),
     "compile": Entry("bench:compile_levels", "Compile levels before their first run."),
-    "study": Entry("main:study", "Study the model itself, and the results of Deng 2017."),
+    "study": Entry("main:study", "Study a bearing: misalignment, support, resonances, clearance, friction, cold oil, extremes."),
     "info": Entry("recordings:info", "Show what a recording holds, where it comes from, and whether it is complete."),
     "compare": Entry("recordings:compare", "Compare two recordings topic by topic."),
     "recover": Entry("recordings:recover", "Recover the recording of a killed writer."),
@@ -85,6 +77,14 @@ _COMMANDS = {
     "mission": Entry("logs:mission", "Write the bundled synthetic mission as an MCAP log."),
     "fields": Entry("fields:fields", "Show the fields of a scene: unit, range, default and meaning."),
     "scenes": Entry("bearings:scenes", "List the bundled scenes, bearings and oils."),
+}
+
+
+# Where commands went that judged the code rather than a bearing: what to run instead, from a checkout of the repository.
+_MOVED = {
+    "deng2017": "python examples/deng2017 -o deng2017",
+    "situations": "python examples/situations --out pictures",
+    **{name: f"python test/validation {name}" for name in ("slices", "scenes", "findings", "catalog", "estimator", "nightly")},
 }
 
 
@@ -135,6 +135,8 @@ class LazyGroup(click.Group):
     def get_command(self, context, name):
         """Return a command by name; None if there is none."""
         if name not in self._entries:
+            if self.name == "study" and name in _MOVED:
+                raise UsageError(f"study {name} is no longer part of the program; from a checkout of the repository: {_MOVED[name]}")
             return None
         module, _, function = self._entries[name].place.partition(":")
         return getattr(importlib.import_module(f"bearing_sim.cli.{module}"), function)
@@ -161,7 +163,7 @@ def bench():
 
 @click.group("study", cls=LazyGroup, entries=_STUDIES, heading="Studies")
 def study():
-    """Run a study of the model itself."""
+    """Run a study of a bearing."""
 
 
 @click.group("state", cls=LazyGroup, entries=_STATES, heading="Commands")

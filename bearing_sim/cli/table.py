@@ -288,6 +288,8 @@ def _row_of(name, of_table, solved) -> tuple[str, str]:
 
 
 def _print(report) -> None:
+    from bearing_sim.studies.sheet import temperatures_text
+
     def spanned(values, unit):
         ends = f"{number(values[0], 6)} to {number(values[-1], 6)} {unit}, {len(values)} knots"
         return ends if len(values) > 1 else f"{number(values[0], 6)} {unit} only"

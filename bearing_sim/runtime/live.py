@@ -43,6 +43,7 @@ from bearing_sim.stored_state.keeper import StateKeeper
 if TYPE_CHECKING:
     from bearing_sim.estimation.live import LiveEstimation
     from bearing_sim.estimation.response import ResponseModel
+    from bearing_sim.vibration.meter import CageSpeedMeter
     from bearing_sim.vibration.reading import Block
 
 _REPLACED_WITHIN = 10.0  # [s] for the reset of a model that is held

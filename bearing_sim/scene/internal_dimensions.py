@@ -2,7 +2,7 @@
 """The inside of a bearing of the catalogue: what makers print of it, and rules for the rest, each with its error.
 
 Makers print raceways, flanges and ratings, but neither the rollers nor the cage.  The rules below were fitted to the bearings whose rollers
-follow from what is printed; `bearing_sim.studies.catalog` (``bearing-sim study catalog``) fits them again, and states their errors on bearings
+follow from what is printed; ``python test/validation catalog`` fits them again, and states their errors on bearings
 that are held back from the fit.  Every field that follows from a rule is listed in ``bearing.estimated`` with its range.
 """
 
@@ -21,7 +21,7 @@ CAGE_DENSITIES = {"polyamide": 1320.0, "steel": 7850.0, "brass": 8400.0}  # kg/m
 
 
 class DesignRules(NamedTuple):
-    """Coefficients of the rules for one design of section (``bearing-sim study catalog`` prints them).
+    """Coefficients of the rules for one design of section (``python test/validation catalog`` prints them).
 
     Attributes
     ----------

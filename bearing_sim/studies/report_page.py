@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""One self-contained HTML page of any result: a design, a sweep or other table, a recorded run or replay, a folder of these, the study of Deng 2017.
+"""One self-contained HTML page of any result: a design, a sweep or other table, a recorded run or replay, a folder of these.
 
 A page has the scene and its bearing, tables, pictures, warnings, where the result comes from, and the command that made it.
 """
@@ -31,8 +31,6 @@ from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities, value_at
 from bearing_sim.studies import design as studied
 from bearing_sim.studies import spectrum as spectra
-from bearing_sim.studies.deng2017.page import study_page
-from bearing_sim.studies.deng2017.run import STUDY_FILE
 from bearing_sim.studies.page import NoResults, command, document, folded, pairs, paragraph, picture, rows_table, warnings
 from bearing_sim.studies.run_plot import DEFAULT_PANELS, course_of, draw_over_time
 from bearing_sim.studies.sheet import results, sheet
@@ -61,7 +59,7 @@ def page_of(source: Path, tell: Callable[[Tally, Path], None] = lambda tally, pa
 
     Parameters
     ----------
-    source : a table (Parquet, or CSV beside it), a recording (MCAP file or bag's folder), or a folder of such files or of a study.
+    source : a table (Parquet, or CSV beside it), a recording (MCAP file or bag's folder), or a folder of such files.
     tell : called with what was used of each recording, and its path.
 
     Raises
@@ -72,11 +70,7 @@ def page_of(source: Path, tell: Callable[[Tally, Path], None] = lambda tally, pa
         A file cannot be opened.
     """
     if not source.exists():
-        raise NoResults(
-            f"{source}: does not exist; expected a table of sweep or design, a recording of run or replay, a folder of them, or validation"
-        )
-    if (source / STUDY_FILE).is_file():
-        return study_page(source)
+        raise NoResults(f"{source}: does not exist; expected a table of sweep or design, a recording of run or replay, or a folder of them")
     return document(*_part(source, tell)) if _is_result(source) else _folder_page(source, tell)
 
 
@@ -90,10 +84,7 @@ def _results_in(folder: Path) -> list[Path]:
     recordings = [path for suffix in _RECORDINGS for path in sorted(folder.glob(f"*{suffix}"))]
     bags = [path.parent for path in sorted(folder.glob("*/metadata.yaml"))]
     if not (found := [*tables, *recordings, *bags]):
-        raise NoResults(
-            f"{folder}: no results; expected the folder of a study ({STUDY_FILE}; run: bearing-sim study deng2017 -o {folder}), or tables (.parquet) "
-            "or recordings (.mcap)"
-        )
+        raise NoResults(f"{folder}: no results; expected tables (.parquet) or recordings (.mcap)")
     return found
 
 

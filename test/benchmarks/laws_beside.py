@@ -34,7 +34,7 @@ def skf_rolling_power(scene, viscosity: float) -> float:
 
 def rolling(generator: random.Random, known: list) -> tuple[float, float]:
     """Return the speed parameter 2 U of a random bearing and its rolling power over SKF's."""
-    series = None
+    series = limit = None
     while series not in _SERIES or not limit:
         text = generator.choice(known).designation.text
         bearing, series = load_bearing(text), series_of(text)

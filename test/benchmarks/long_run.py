@@ -22,12 +22,12 @@ from typing import NamedTuple
 import click
 import numpy as np
 import rclpy
+from measure import DOMAINS, START_LIMIT, end, log_tail
 from rosgraph_msgs.msg import Clock
 
 from bearing_sim.cli.reporting import print_rows
 from bearing_sim.messages import topics
 from bearing_sim.ros.interface import STATE_QOS
-from bearing_sim.ros.measure import DOMAINS, START_LIMIT, end, log_tail
 from bearing_sim.ros.messages import message, message_class
 from bearing_sim.simulation import Inputs
 

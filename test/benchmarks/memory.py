@@ -31,9 +31,9 @@ from pathlib import Path
 
 import click
 import numpy as np
+from measure import processes_of
 
 from bearing_sim.cli.reporting import print_rows
-from bearing_sim.ros.measure import processes_of
 
 _DOMAINS = range(60, 100)  # above the usual choices of users, below where ports collide with ephemeral ports
 _PATIENCE = 60.0  # [s] for an answer of the node

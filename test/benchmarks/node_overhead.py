@@ -23,9 +23,9 @@ from pathlib import Path
 from typing import IO, NamedTuple
 
 import click
+from measure import DOMAINS, START_LIMIT, Cost, cost_of, end, log_tail, taken
 
 from bearing_sim.cli.reporting import print_rows
-from bearing_sim.ros.measure import DOMAINS, START_LIMIT, Cost, cost_of, end, log_tail, taken
 
 _SETTLING = 10.0  # [s] after which memory should not grow
 _STEP = 1e-6  # relative difference between successive speeds

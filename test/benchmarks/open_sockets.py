@@ -108,7 +108,7 @@ def _program(folder: Path, *command: str) -> Iterator[tuple[subprocess.Popen, Ca
 def measuring(folder: Path) -> dict[str, list[Socket]]:
     """Return the sockets of the command that measures how many bearings a node monitors, and of its node."""
     os.environ["ROS_DOMAIN_ID"] = str(fresh_domain())
-    with _program(folder, sys.executable, "-m", "bearing_sim.ros.measure", "--set", "level=steady", "--bearings", "1") as (process, text):
+    with _program(folder, sys.executable, "-m", "measure", "--set", "level=steady", "--bearings", "1") as (process, text):
         return {"measuring a node": when_open(process, lambda found: len(found) > 8, text)}
 
 

@@ -21,10 +21,10 @@ import click
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from measure import processes_of  # noqa: E402
 from ros_bench import Client, fresh_domain  # noqa: E402
 
 from bearing_sim.cli.reporting import print_rows  # noqa: E402
-from bearing_sim.ros.measure import processes_of  # noqa: E402
 
 _ROOT = Path(__file__).resolve().parents[2]
 _IMPORT = "import numba"

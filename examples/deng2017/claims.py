@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.studies.deng2017.study import ANGLE, D_VALUE, LOAD, LOW, LOW_RADII, MASS, MIXTURE, ROUNDNESS, SPEED
 from bearing_sim.studies.machining import Machined, Pressing, RingSection, machine
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table
+from deng2017.study import ANGLE, D_VALUE, LOAD, LOW, LOW_RADII, MASS, MIXTURE, ROUNDNESS, SPEED
 
 HOLDS, IN_PART, FAILS = "holds", "holds in part", "does not hold"
 NOISE = 0.01  # relative; smaller changes between points do not count
@@ -373,7 +373,7 @@ def judge(tables: Tables, levels: Sequence[str]) -> list[Finding]:
 
     Parameters
     ----------
-    tables : of the sweeps in `bearing_sim.studies.deng2017.study`, by name and level.
+    tables : of the sweeps in `deng2017.study`, by name and level.
     levels : to judge, in this order.
     """
     return [Finding(number, figures, says, level, *test(tables, level)) for number, figures, says, test in CLAIMS for level in levels]

@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 from bearing_sim.files.limits import JSON_FILE
 from bearing_sim.files.reading import read_bytes
-from bearing_sim.studies.validation.check import FAILS, HOLDS, NOT_RUN, Result
+from validation.check import FAILS, HOLDS, NOT_RUN, Result
 
 GROUP = "Held by the test suite"
 _REPORT = "tests.xml"

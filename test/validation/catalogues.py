@@ -13,9 +13,9 @@ from bearing_sim.model.sample import new_block
 from bearing_sim.scene.loader import scene_from_mapping, scene_from_yaml
 from bearing_sim.scene.mounting import clearance_limits
 from bearing_sim.scene.ratings import rate
-from bearing_sim.studies.catalog_rules import left_out, printed_rating_ratios, summary
 from bearing_sim.studies.statics import statics
-from bearing_sim.studies.validation.check import HOLDS, IN_PART, Check, Comparison, compared, judged
+from validation.catalog_rules import left_out, printed_rating_ratios, summary
+from validation.check import HOLDS, IN_PART, Check, Comparison, compared, judged
 
 GROUP = "Catalogues"
 KOYO = {  # bore, raceway diameters F, E [mm], rollers, effective length [mm], C, C_0 [kN]
@@ -239,7 +239,7 @@ CHECKS = (
     Check("catalogue_ratings", GROUP, _ratings),
     Check("catalogue_lives", GROUP, _lives),
     Check("boundary_dimensions", GROUP, _boundaries),
-    Check("estimated_rollers", GROUP, _estimated_rollers, "bearing-sim study catalog"),
-    Check("printed_ratings", GROUP, _printed_ratings, "bearing-sim study catalog"),
+    Check("estimated_rollers", GROUP, _estimated_rollers, "python test/validation catalog"),
+    Check("printed_ratings", GROUP, _printed_ratings, "python test/validation catalog"),
     Check("characteristic_frequencies", GROUP, _frequencies),
 )

@@ -7,7 +7,7 @@ from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Simulation, scene_inputs
 from bearing_sim.studies.steady_check import compare
-from bearing_sim.studies.validation.check import Check, Comparison, compared, judged
+from validation.check import Check, Comparison, compared, judged
 
 GROUP = "Independent calculations, and levels among each other"
 _BEARING = "deng2017_table1"

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from bearing_sim.files.limits import JSON_FILE
 from bearing_sim.files.reading import NO_FILE, read_bytes, read_text, why_not_readable
-from bearing_sim.studies.deng2017.run import STUDY_FILE
 from bearing_sim.studies.page import NoResults, document, folded, pairs, picture
 from bearing_sim.sweep.table import written_by_us
+from deng2017.run import STUDY_FILE
 
 _CLASSES = {"holds": "holds", "holds in part": "part", "does not hold": "fails"}
 
@@ -20,7 +20,7 @@ def study_page(folder: Path) -> str:
 
     Parameters
     ----------
-    folder : written by `bearing_sim.studies.deng2017.run.run_study`.
+    folder : written by `deng2017.run.run_study`.
 
     Raises
     ------

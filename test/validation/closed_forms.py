@@ -22,8 +22,8 @@ from bearing_sim.scene.loader import load_scene, scene_from_yaml
 from bearing_sim.simulation import Simulation
 from bearing_sim.studies.statics import statics
 from bearing_sim.studies.uncertainty import design, indices
-from bearing_sim.studies.validation.catalogues import KOYO, koyo_scene
-from bearing_sim.studies.validation.check import Check, Comparison, compared
+from validation.catalogues import KOYO, koyo_scene
+from validation.check import Check, Comparison, compared
 
 GROUP = "Closed forms"
 _RPM = math.pi / 30

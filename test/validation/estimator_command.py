@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""``bearing-sim study estimator``: how good the calibration of a running model is."""
+"""``python test/validation estimator``: how good the calibration of a running model is."""
 
 import math
 import statistics
@@ -56,8 +56,8 @@ def estimator(scene_name, overrides, runs, steps, hours, faults, level, measured
         scene = load_scene(scene_name, [*overrides, *more])
         _require_sensors(scene, measured)
     announce_compilation(scene)
-    from bearing_sim.studies import estimator as study
     from bearing_sim.studies.response import obtain_response
+    from validation import estimator_study as study
 
     known = (_OIL,)
     with as_usage_error(UncertaintyError, ClusterError, JournalInUse), progress_bar("estimator", 1.0) as show:

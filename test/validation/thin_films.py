@@ -18,7 +18,7 @@ from bearing_sim.physics.film import RollingResistance, resist_rolling, resistan
 from bearing_sim.physics.mixed import FILM_RATIO, FULL_FILMS, MixedFriction, asperity_share
 from bearing_sim.physics.rating_life import KAPPA_EXPONENT, viscosity_ratio
 from bearing_sim.physics.starvation import Starvation, starvation_exponent, starvation_rate, starved_film, starved_resistance
-from bearing_sim.studies.validation.check import HOLDS, IN_PART, Check, Comparison, compared, judged, within
+from validation.check import HOLDS, IN_PART, Check, Comparison, compared, judged, within
 
 GROUP = "Thin films"
 DEGREES = (2.0, 5.0, 10.0, 30.0)  # S, the gap where the inlet begins to be full over the least thickness of a full film

@@ -20,7 +20,7 @@ from bearing_sim.scene.mounting import clearance_limits, tolerance_limits
 from bearing_sim.scene.ratings import load_rating
 from bearing_sim.scene.viscosity_index import reference_viscosities, viscosity_index
 from bearing_sim.studies.machining import Pressing, RingSection, machine
-from bearing_sim.studies.validation.check import Check, Comparison, compared
+from validation.check import Check, Comparison, compared
 
 GROUP = "Published digits"
 _ZERO = 273.15

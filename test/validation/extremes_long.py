@@ -9,9 +9,9 @@ import numpy as np
 
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import IntegrationError, Simulation
-from bearing_sim.studies.extremes_cases import BEARING
-from bearing_sim.studies.extremes_stock import energy_gap
+from bearing_sim.studies.extreme_run import energy_gap
 from bearing_sim.sweep.settling import cage_turn
+from validation.extremes_cases import BEARING
 
 LONG_RUNS = {
     "steady": ((15_000.0, 86_400.0),),

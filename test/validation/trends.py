@@ -4,9 +4,10 @@
 import tempfile
 from pathlib import Path
 
-from bearing_sim.studies.deng2017.run import run_study
-from bearing_sim.studies.published_findings import findings
-from bearing_sim.studies.validation.check import Check, Comparison, judged
+from deng2017.run import run_study
+
+from validation.check import Check, Comparison, judged
+from validation.published_findings import findings
 
 GROUP_OF_CLAIMS, GROUP_OF_FINDINGS = "Claims of Deng et al. (2017)", "Published trends"
 
@@ -33,6 +34,6 @@ def _findings() -> list[Comparison]:
 
 
 CHECKS = (
-    Check("claims_of_deng2017", GROUP_OF_CLAIMS, _claims, "bearing-sim study deng2017 -o deng2017", True),
-    Check("published_findings", GROUP_OF_FINDINGS, _findings, "bearing-sim study findings", True),
+    Check("claims_of_deng2017", GROUP_OF_CLAIMS, _claims, "python examples/deng2017 -o deng2017", True),
+    Check("published_findings", GROUP_OF_FINDINGS, _findings, "python test/validation findings", True),
 )

@@ -14,13 +14,13 @@ from bearing_sim.files.outputs import FORCE, Output, RefusedOutput, replaced
 from bearing_sim.levels.level import LEVELS as ALL_LEVELS
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.scene.loader import load_scene, scene_to_yaml
-from bearing_sim.studies.deng2017.claims import Finding, contour_finding, judge, machined_rings, machining_table
-from bearing_sim.studies.deng2017.design import answer, write_answer
-from bearing_sim.studies.deng2017.pictures import draw_study
-from bearing_sim.studies.deng2017.study import LEVELS, STUDIES, plan_study
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, write_table
 from bearing_sim.sweep.tasks import Journal, run_tasks
+from deng2017.claims import Finding, contour_finding, judge, machined_rings, machining_table
+from deng2017.design import answer, write_answer
+from deng2017.pictures import draw_study
+from deng2017.study import LEVELS, STUDIES, plan_study
 
 STUDY_FILE = "study.json"
 _JOURNAL = "study.journal"
@@ -85,7 +85,7 @@ def run_study(
     about = {
         "title": "Deng et al. 2017, Cage slip characteristics of a cylindrical roller bearing with a trilobe-raceway: the results with bearing_sim",
         "doi": "10.1016/j.cja.2017.07.001",
-        "command": shlex.join(["bearing-sim", "study", "deng2017", "-o", folder.name, *(["--quick"] if quick else []), *_as_options(overrides)]),
+        "command": shlex.join(["python", "examples/deng2017", "-o", folder.name, *(["--quick"] if quick else []), *_as_options(overrides)]),
         "quick": quick,
         "overrides": list(overrides),
         "points": len(planned.tasks),

@@ -13,8 +13,9 @@ from bearing_sim.physics.growth import Temperatures, growth_at, seats_at
 from bearing_sim.physics.thermal_network import NODE, NODES, NetworkInputs, heat_flows, new_work, settle
 from bearing_sim.scene.loader import scene_from_mapping
 from bearing_sim.simulation import IntegrationError
-from bearing_sim.studies.friction import BEARINGS, FILM_LOADS, FILM_RATIOS, dimensions_of, heat_flow, moment_table, part_ratios, thermal_speeds
-from bearing_sim.studies.validation.check import HOLDS, IN_PART, Check, Comparison, judged, within
+from bearing_sim.studies.friction import dimensions_of
+from validation.catalogue_friction import BEARINGS, FILM_LOADS, FILM_RATIOS, heat_flow, moment_table, part_ratios, thermal_speeds
+from validation.check import HOLDS, IN_PART, Check, Comparison, judged, within
 
 GROUP = "Heat and friction"
 FACTOR, MEDIAN = 2.0, 1.3  # within which single bearings and the median of all count as the same
@@ -161,7 +162,7 @@ def _over_films() -> list[Comparison]:
 
 CHECKS = (
     Check("reference_heat", GROUP, _reference_heat),
-    Check("thermal_speeds", GROUP, _thermal_speeds, "bearing-sim study friction"),
-    Check("frictional_moments", GROUP, _moments, "bearing-sim study friction"),
-    Check("friction_over_films", GROUP, _over_films, "bearing-sim study friction", True),
+    Check("thermal_speeds", GROUP, _thermal_speeds, "python test/validation friction"),
+    Check("frictional_moments", GROUP, _moments, "python test/validation friction"),
+    Check("friction_over_films", GROUP, _over_films, "python test/validation friction", True),
 )

@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What is run every night: scenes at the extremes at stock settings, corners, and long runs, in one table.
 
-Scenes and corners run as `bearing_sim.studies.extremes_stock` describes: stock settings, at least 50 turns of the cage or until they settle,
+Scenes and corners run as `bearing_sim.studies.extreme_run` describes: stock settings, at least 50 turns of the cage or until they settle,
 then the books of energy.  Corners run with their own settings, too.
 """
 
@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.studies.extremes import counted, long_outcome
-from bearing_sim.studies.extremes_cases import Case, corner_cases, sampled_cases
-from bearing_sim.studies.extremes_long import LONG_RUNS, LongRun, long_run_result
-from bearing_sim.studies.extremes_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Outcome, case_result
-from bearing_sim.studies.extremes_stock import StockOutcome, at_stock, stock_result
+from bearing_sim.studies.extreme_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Case, StockOutcome, at_stock, stock_result
 from bearing_sim.sweep.tasks import Journal, program_hash, run_tasks, task
+from validation.extremes import counted, long_outcome
+from validation.extremes_cases import corner_cases, sampled_cases
+from validation.extremes_long import LONG_RUNS, LongRun, long_run_result
+from validation.extremes_run import Outcome, case_result
 
 SAMPLES = {"steady": 2000, "slip": 2000, "planar": 500, "spatial": 200}
 """Scenes of the Latin hypercube, by level."""

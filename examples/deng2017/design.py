@@ -9,7 +9,6 @@ import numpy as np
 
 from bearing_sim.files.outputs import replaced
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.studies.deng2017.pictures import DENG_REGION, Pictured
 from bearing_sim.studies.design import (
     D_VALUE,
     END_OF_MAP,
@@ -29,6 +28,7 @@ from bearing_sim.sweep.grid import Axis, axis
 from bearing_sim.sweep.point import DURATION
 from bearing_sim.sweep.table import write_table
 from bearing_sim.sweep.tasks import Journal
+from deng2017.pictures import DENG_REGION, Pictured
 
 SCENE, LOBES = "deng2017_table1", 3
 SLIP_BELOW, LIFE_ABOVE = 10.0, 300.0  # %, h: at 45,000 rpm and 800 N

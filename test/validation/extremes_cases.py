@@ -6,32 +6,20 @@ All are overrides of the scene ``deng2017_table1``, so that ``bearing-sim run de
 
 import math
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
 
 from scipy.stats import qmc
 
 from bearing_sim.levels.level import LEVELS
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import tolerance_overrides
+from bearing_sim.studies.extreme_run import COURSES, Case
 
-COURSES = ("steady", "steady", "reversal", "stop", "start", "load_step", "ripple")  # of the inputs; steady ones twice as often
 _TRACTIONS = ("oil_4109", "constant", "kragelskii", "eyring")
 _CROWNS = ("none", "iso_log", "{law: straight_arc, straight_length: 4 mm, crown_radius: 1 m}")
 _DIAMETER, _INNER_RADIUS, _CAGE_BORE, _GUIDE_RADIUS = 7e-3, 27.875e-3, 29.6e-3, 33.5e-3  # of the bearing [m]
 _LARGEST_PLAY = 1.3  # times the clearance that leaves no bar between pockets
 _WIDEST_POCKET = 5e-3  # m of pocket clearance, the most that a scene takes; a corner asks for it
 _ROLLERS_THAT_FIT = 24  # with bars of the cage between them; for more rollers the bearing grows
-
-
-class Case(NamedTuple):
-    """One scene to run."""
-
-    name: str
-    level: str
-    overrides: tuple[str, ...]
-    course: str
-    point: Mapping[str, float | str]  # of the map, by dimension
-    seconds: float | None = None  # simulated; None: chosen by the study
 
 
 def _linear(low, high):

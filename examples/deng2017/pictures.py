@@ -10,10 +10,10 @@ import numpy as np
 from bearing_sim.files.outputs import replaced
 from bearing_sim.scene.display import heading
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.studies.deng2017.study import ANGLE, D_VALUE, LOAD, LOW, LOW_RADII, MASS, MIXTURE, ROUNDNESS, SPEED
 from bearing_sim.studies.machining import Machined
 from bearing_sim.sweep.pictures import COLOURS, MARKERS, map_of, new_figure, on_grid, plain_numbers
 from bearing_sim.sweep.table import Table
+from deng2017.study import ANGLE, D_VALUE, LOAD, LOW, LOW_RADII, MASS, MIXTURE, ROUNDNESS, SPEED
 
 Tables = Mapping[tuple[str, str], Table]
 _LOOKS = {"slip": {"ls": "-", "lw": 1.6}, "planar": {"ls": "--", "lw": 1.1}}
@@ -66,7 +66,7 @@ def draw_lines(path: Path, tables: Tables, name: str, x: str, profiles: Sequence
     path : of the picture.
     tables : by sweep and level.
     name, x : the sweep, and the column of the varied field.
-    profiles : value as text, and the result of `bearing_sim.studies.deng2017.study.load_profile`.
+    profiles : value as text, and the result of `deng2017.study.load_profile`.
     """
     figure = new_figure(15 if profiles else 10, 4.2)
     axes = figure.subplots(1, 3 if profiles else 2)
@@ -167,7 +167,7 @@ def draw_trajectories(path: Path, found: Mapping[float, dict], guide_clearance: 
     Parameters
     ----------
     path : of the picture.
-    found : results of `bearing_sim.studies.deng2017.study.trajectory` by low-point radius [mm].
+    found : results of `deng2017.study.trajectory` by low-point radius [mm].
     guide_clearance : radial clearance of the cage in its guide [um].
     """
     figure = new_figure(3.6 * len(found), 7)

@@ -8,8 +8,8 @@ from html import escape
 from bearing_sim.recording.provenance import git_hash, package_version, versions
 from bearing_sim.studies.page import command as command_block
 from bearing_sim.studies.page import document, pairs, paragraph
-from bearing_sim.studies.validation.check import FAILS, HOLDS, IN_PART, NOT_RUN, Result
-from bearing_sim.studies.validation.data_sets import DATA_SETS
+from validation.check import FAILS, HOLDS, IN_PART, NOT_RUN, Result
+from validation.data_sets import DATA_SETS
 
 TITLE = "Validation"
 NOT_VALIDATED = (

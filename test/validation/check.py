@@ -46,7 +46,7 @@ class Check(NamedTuple):
     name : by which it is chosen.
     group : heading under which it stands.
     compute : returns its comparisons.
-    command : that computes the same figures beside `bearing-sim report validation --only NAME`; empty if there is none.
+    command : that computes the same figures beside `python test/validation report --only NAME`; empty if there is none.
     is_long : whether it takes more than a few seconds.
     """
 
@@ -59,7 +59,7 @@ class Check(NamedTuple):
     @property
     def shown_command(self) -> str:
         """The command that computes its figures."""
-        return self.command or f"bearing-sim report validation --only {self.name}"
+        return self.command or f"python test/validation report --only {self.name}"
 
 
 class Result(NamedTuple):

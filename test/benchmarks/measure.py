@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Measure how many bearings a node monitors on this machine: ``python -m bearing_sim.ros.measure --bearings 40 --set level=steady``.
+"""Measure how many bearings a node monitors on this machine: ``python test/benchmarks/measure.py --bearings 40 --set level=steady``.
 
 Two sides communicate over DDS on the loopback interface: a `bearing_node` with the wanted number of bearings, and this process, which sends
 speed and load to each of them and listens to some of their outputs.  It does so with serialised messages and without an executor, so that most

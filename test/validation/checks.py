@@ -3,9 +3,9 @@
 
 from pathlib import Path
 
-from bearing_sim.studies.validation import catalogues, closed_forms, heat_and_friction, independent, published_digits, thin_films, trends
-from bearing_sim.studies.validation.check import Check
-from bearing_sim.studies.validation.recorded_lines import recorded_checks
+from validation import catalogues, closed_forms, heat_and_friction, independent, published_digits, thin_films, trends
+from validation.check import Check
+from validation.recorded_lines import recorded_checks
 
 CHECKS: tuple[Check, ...] = (
     *closed_forms.CHECKS,

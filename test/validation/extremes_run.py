@@ -9,55 +9,37 @@ died, a hang, too slow without settings that explain it, or a physically impossi
 
 import math
 import time
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES
 from bearing_sim.numerics.time_stepping import STEP_BUDGET
-from bearing_sim.scene.fidelity import level_of
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs, tolerances_of
-from bearing_sim.studies.extremes_cases import BEARING, Case
-from bearing_sim.sweep.point import LIVES
+from bearing_sim.studies.extreme_run import (
+    FAILED,
+    FINISHED,
+    REFUSED,
+    STEP_LIMITED,
+    Case,
+    Segment,
+    course_segments,
+    impossible,
+    rising_life,
+    unsteady_slip,
+)
 
-FINISHED, STEP_LIMITED, REFUSED, FAILED = OUTCOMES = ("finished", "step_limited", "refused", "failed")
 STEPS = 20_000  # budget of a run whose settings require small steps
 _PATIENT = 5  # times as many for other runs; needing more, one step per 0.2 us of 20 ms, is too slow
 _FEWEST_STEPS, _STOCK_SLICES = 2_000, 18 * 20  # of a run with expensive steps, with more rollers times slices than this
 _SHORTEST, _LONGEST, _PITCHES = 2e-3, 20e-3, 20.0  # simulated [s], and in roller pitches
 _PATIENCE = 300.0  # s of wall time; a longer run counts as a hang
-_SEGMENTS = 12  # of a run, at least; inputs are linear within each
 _SAMPLES = 4  # per segment
 _SEGMENT_TO_TIME = 2e-5  # s; the cost of shorter segments is ignored
-_STEP_SEGMENT = 1e-6  # s, duration of a step of the load
-_RIPPLE, _RIPPLE_SEGMENTS = 1e3, 8  # Hz; segments per period
 # A run that exhausts its steps is step-limited if its settings are tight, and too slow otherwise.  Tight settings are those of the references of the
 # bench: a tenth of the default tolerance or less.
 _TIGHT, _TIGHT_STEP = Integration().with_tolerances(0.1), 1e-5
-_LEAST_SLIP, _RISE_OF_LIFE = -0.05, 1.01
-_LONG_AFTER = 1e6  # s, after which the cage of level steady has reached its slip
-_RUNNING = 10.0  # rad/s of the shaft, below which slip and losses are not judged
-_NOT_COMPUTED = {"steady": ("roller_spin", "roller_rotation", "pocket_force")}  # NaN at these levels
-_NOT_IN_EVERY_SCENE = (
-    "contamination_factor",  # NaN without a cleanliness class
-    *(f"{name}_{kind}" for name in RING_TEMPERATURES for kind in ("measured", "uncorrected")),
-    *(*NODE_OBSERVABLES, "heat_to_oil", "heat_to_ambient"),  # NaN without a law of heat
-)
-_MAY_BE_INFINITE = (*LIVES, "static_safety")  # without load or at rest
-# Losses that cannot be negative at any instant by their laws.  Pocket friction follows spin alone (Deng 2017, eq. 13), and the published
-# torque of the guide land's film omits the power of its eccentric force; both may be negative.
-_LOSSES = (
-    "inner_sliding_power",
-    "outer_sliding_power",
-    "inner_rolling_power",
-    "outer_rolling_power",
-    "churning_power",
-    "damping_power",
-    "seal_power",
-)
 _FIRST_PARTS = (1e-3, 9e-3, 9e-2, 0.9)  # of the first segment, to distinguish stuck from slow runs
 
 
@@ -81,13 +63,6 @@ class Outcome(NamedTuple):
     asks_for_small_steps: bool = False  # whether the case's own tolerance or step does
 
 
-class Segment(NamedTuple):
-    """A segment of time over which the inputs change linearly to these values."""
-
-    duration: float  # [s]
-    inputs: Inputs
-
-
 def case_result(case: Case) -> dict:
     """Return the fields of the outcome of one case, without the case."""
     fields = run_case(case)._asdict()
@@ -98,8 +73,8 @@ def case_result(case: Case) -> dict:
 def run_case(case: Case) -> Outcome:
     """Run one case; any error becomes an outcome."""
     try:
-        scene = load_scene(BEARING, case.overrides)
-        scene = load_scene(BEARING, [*case.overrides, f"integration.step_budget={_step_budget(scene)}"])
+        scene = load_scene(case.scene, case.overrides)
+        scene = load_scene(case.scene, [*case.overrides, f"integration.step_budget={_step_budget(scene)}"])
         segments = first_divided(list(course_segments(case.course, case.seconds or _seconds(scene), scene_inputs(scene))))
         simulation = Simulation(scene, segments[0].inputs)
     except SceneError as error:
@@ -123,48 +98,6 @@ def _seconds(scene: Scene) -> float:
     pitches = 2 * math.pi * _PITCHES / (bearing.roller.count * max(0.5 * abs(scene.operating.shaft_speed) * (1 - bearing.diameter_ratio), 1e-9))
     step = integration.maximum_step if integration.fixed_step is None else integration.fixed_step
     return min(max(_SHORTEST, min(pitches, _LONGEST)), 0.5 * _step_budget(scene) * step)
-
-
-def course_segments(course: str, seconds: float, inputs: Inputs) -> Iterator[Segment]:
-    """Yield the segments of a course; the first one, of zero duration, gives the start.
-
-    Parameters
-    ----------
-    course : ``steady``; ``reversal`` of speed; ``stop`` and ``start`` with a rest; ``load_step`` there and back; ``ripple`` on the load.
-    seconds : duration of the course.
-    inputs : from which or to which it leads.
-    """
-
-    def at(speed, load):
-        return inputs._replace(shaft_speed=speed * inputs.shaft_speed, load_y=load * inputs.load_y, load_z=load * inputs.load_z)
-
-    if course == "ripple":
-        yield Segment(0.0, at(1.0, 1.0))
-        duration = min(1.0 / (_RIPPLE * _RIPPLE_SEGMENTS), seconds / _SEGMENTS)
-        for number in range(1, round(seconds / duration) + 1):
-            yield Segment(duration, at(1.0, 1.0 + 0.9 * math.sin(2 * math.pi * _RIPPLE * number * duration)))
-        return
-    step = min(_STEP_SEGMENT, 0.01 * seconds)
-    points = {
-        "steady": [(0.0, 1.0, 1.0), (1.0, 1.0, 1.0)],
-        "reversal": [(0.0, 1.0, 1.0), (0.25, 1.0, 1.0), (0.75, -1.0, 1.0), (1.0, -1.0, 1.0)],
-        "stop": [(0.0, 1.0, 1.0), (0.25, 1.0, 1.0), (0.5, 0.0, 1.0), (1.0, 0.0, 1.0)],
-        "start": [(0.0, 0.0, 1.0), (0.25, 0.0, 1.0), (0.75, 1.0, 1.0), (1.0, 1.0, 1.0)],
-        "load_step": [
-            (0.0, 1.0, 0.0),
-            (0.3, 1.0, 0.0),
-            (0.3 + step / seconds, 1.0, 1.0),
-            (0.7, 1.0, 1.0),
-            (0.7 + step / seconds, 1.0, 0.0),
-            (1.0, 1.0, 0.0),
-        ],
-    }[course]
-    yield Segment(0.0, at(*points[0][1:]))
-    for (start, speed, load), (end, next_speed, next_load) in zip(points, points[1:]):
-        pieces = max(1, math.ceil((end - start) * _SEGMENTS - 1e-9))
-        for piece in range(1, pieces + 1):
-            done = piece / pieces
-            yield Segment((end - start) * seconds / pieces, at(speed + done * (next_speed - speed), load + done * (next_load - load)))
 
 
 def first_divided(segments: list[Segment]) -> list[Segment]:
@@ -247,56 +180,6 @@ def _asks_for_small_steps(scene: Scene) -> bool:
     step = integration.maximum_step if integration.fixed_step is None else integration.fixed_step
     tolerances, tight = (tolerances_of(settings) for settings in (integration, _TIGHT))
     return any(given < bound for given, bound in zip(tolerances, tight)) or step < _TIGHT_STEP
-
-
-def rising_life(simulation: Simulation, inputs: Inputs) -> str:
-    """Return an error message if the life at the start rises with load while the slip does not; the simulation is reset afterwards.
-
-    A cage that more load brakes, by the friction in its pockets, slips more, and slower rollers press less on the outer raceway.
-    """
-    found = []
-    for factor in (0.5, 1.0, 2.0):
-        simulation.reset(inputs._replace(load_y=factor * inputs.load_y, load_z=factor * inputs.load_z))
-        if simulation.scene.level == "steady":  # the cage goes to the slip that the life belongs to
-            simulation.advance(_LONG_AFTER)
-        found.append((float(simulation.sample["rating_life"]), float(simulation.sample["cage_slip"])))
-    simulation.reset(inputs)
-    if any(life > _RISE_OF_LIFE * before and not slip > slip_before for (before, slip_before), (life, slip) in zip(found, found[1:])):
-        return f"life rises with load: {', '.join(f'{life:.6g}' for life, _ in found)} h at 0.5, 1 and 2 times the load"
-    return ""
-
-
-def impossible(block: np.ndarray, state: np.ndarray) -> str:
-    """Return an error message for physically impossible samples."""
-    if not np.isfinite(state).all():
-        return "the state is not finite"
-    turning = np.abs(block["shaft_speed"]) >= _RUNNING
-    for name in block.dtype.names:
-        values = block[name]
-        if name in (*_NOT_COMPUTED.get(level_of(block[0]), ()), *_NOT_IN_EVERY_SCENE):
-            continue
-        if name in ("cage_slip", "friction_moment"):  # NaN at rest
-            values = values[turning]
-        good = ~np.isnan(values) & (values > 0.0) if name in _MAY_BE_INFINITE else np.isfinite(values)
-        if not good.all():
-            return f"{name} = {values[~good].flat[0]}"
-    for name in ("inner_load", "outer_load"):
-        if (block[name] < 0.0).any():
-            return f"{name} = {block[name].min():.6g} N pulls"
-    scale = 1.0 + np.abs(block["shaft_power"])
-    for name in _LOSSES:
-        if (turning & (block[name] < -1e-6 * scale)).any():
-            return f"{name} = {block[name].min():.6g} W is a gain"
-    return ""
-
-
-def unsteady_slip(samples: np.ndarray, course: str) -> str:
-    """Return an error message if, at steady speed, the cage overtakes the shaft or turns backwards in the second half of the run."""
-    later = samples[len(samples) // 2 :]
-    if course != "steady" or abs(later["shaft_speed"][0]) < _RUNNING:
-        return ""
-    slip = float(later["cage_slip"].mean())
-    return "" if _LEAST_SLIP <= slip <= 1.0 - _LEAST_SLIP else f"cage slip {100 * slip:.4g} % in steady drive"
 
 
 def limits_of(simulation: Simulation) -> list[str]:

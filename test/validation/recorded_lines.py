@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from bearing_sim.files.limits import FileError
-from bearing_sim.studies.validation.check import FAILS, HOLDS, IN_PART, NOT_RUN, Check, Comparison, judged
 from bearing_sim.vibration.analysis import Geometry, analyse
 from bearing_sim.vibration.reading import read_vibration
 from bearing_sim.vibration.signal import Vibration
+from validation.check import FAILS, HOLDS, IN_PART, NOT_RUN, Check, Comparison, judged
 
 _ROLLERS = 13
 _SOURCE = "independent fit of the same recording; Li and others, Sensors 13, 2013"
