@@ -75,9 +75,7 @@ def test_the_page_in_the_documents_has_run_every_check_with_a_command_and_a_date
     assert len(figures) > 80 and not [row for row in figures if row[6] == NOT_RUN]
     for row in figures:
         command = re.fullmatch(r"`(bearing-sim|python test/validation|python examples/deng2017|pytest) .+`", row[7])
-    assert command and re.fullmatch(
-            r"20\d\d-\d\d-\d\d", row[8]
-        ), row
+        assert command and re.fullmatch(r"20\d\d-\d\d-\d\d", row[8]), row
     commands = {row[7].strip("`") for row in figures}
     assert {check.shown_command for check in all_checks()} <= commands
 
