@@ -20,6 +20,7 @@ from synthetic_run import synthetic_block
 from bearing_sim.cli.main import main
 from bearing_sim.inputs.log import InputLogError, read_input_log
 from bearing_sim.inputs.profile import judge
+from bearing_sim.messages.events import ReceivedInputs
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.mcap_format import CHECKSUM, CHECKSUM_RECORD, MAGIC, Message
 from bearing_sim.recording.mcap_reader import McapReader
@@ -39,7 +40,7 @@ def recording(tmp_path_factory):
     path = tmp_path_factory.mktemp("recorded") / "run.mcap"
     with McapSink(path, SCENE, START) as sink:
         for start in range(0, len(RUN), 10):
-            sink.write_inputs(float(RUN["time"][start]), Inputs(4000.0, 800.0, -50.0, 393.15))
+            sink.write(ReceivedInputs(float(RUN["time"][start]), Inputs(4000.0, 800.0, -50.0, 393.15)))
             sink.write(RUN[start : start + 10])
     return path
 

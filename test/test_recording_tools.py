@@ -20,7 +20,7 @@ from rosbags.typesys import Stores, get_typestore
 from synthetic_run import synthetic_block
 
 from bearing_sim.cli.main import main
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, ReceivedInputs
 from bearing_sim.messages.topics import outputs, recorded
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.recording.bag import RecordingError
@@ -44,9 +44,9 @@ for _name in ("inner_load", "outer_load", "pocket_force", "ring_tilt_y", "shaft_
 def record(path, block=RUN):
     with McapSink(path, SCENE, START) as sink:
         for start in range(0, len(block), 20):
-            sink.write_inputs(float(block["time"][start]), Inputs(4000.0, 800.0, -50.0, 393.15))
+            sink.write(ReceivedInputs(float(block["time"][start]), Inputs(4000.0, 800.0, -50.0, 393.15)))
             sink.write(block[start : start + 20])
-        sink.write_event(Event(0.2, Level.WARN, "slip.high", "slip", "is 6 %"))
+        sink.write(Event(0.2, Level.WARN, "slip.high", "slip", "is 6 %"))
     return path
 
 
@@ -280,7 +280,7 @@ def test_tables_refuse_what_is_not_there(recording, tmp_path):
 def test_two_runs_that_began_at_different_moments_are_compared_by_run_time(recording, tmp_path):
     with McapSink(tmp_path / "later.mcap", SCENE, START + 12_345_678_901) as sink:
         for start in range(0, len(RUN), 20):
-            sink.write_inputs(float(RUN["time"][start]), Inputs(4000.0, 800.0, -50.0, 393.15))
+            sink.write(ReceivedInputs(float(RUN["time"][start]), Inputs(4000.0, 800.0, -50.0, 393.15)))
             sink.write(RUN[start : start + 20])
     for pair in ((recording, tmp_path / "later.mcap"), (tmp_path / "later.mcap", recording)):
         told = json.loads(invoke("compare", *pair, "--json"))

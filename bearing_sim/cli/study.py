@@ -373,15 +373,13 @@ def _run(situation, rrd: Path) -> dict:
     with RerunFile(scene, rrd, duration=situation.duration) as sink:
         with progress_bar(situation.name.replace("_", " "), situation.duration) as progress:
             for item in play(situation, scene):
+                sink.write(item)
                 if isinstance(item, np.ndarray):
-                    sink.write(item)
                     blocks.append(item)
                     progress(float(item["time"][-1]))
                 elif isinstance(item, Measurement):
-                    sink.write_measurement(*item)
                     residuals.append(item)
                 else:
-                    sink.write_event(item)
                     kinds.append(item.kind)
     return _figures(situation, np.concatenate(blocks), residuals, kinds)
 
