@@ -4,7 +4,11 @@
 import struct
 
 from mcap.reader import make_reader
+from mcap.records import Metadata
+from mcap.writer import Writer
 
+from bearing_sim.recording.mcap_format import Message
+from bearing_sim.recording.mcap_reader import McapReader
 from bearing_sim.recording.writer import McapFile
 
 SECOND = 1_000_000_000
@@ -83,3 +87,23 @@ def flipped(path, target, byte, bit=0):
 
 def raw_cdr_float64(value):
     return b"\x00\x01\x00\x00" + struct.pack("<d", value)
+
+
+def without_checksums(path, target, **options):
+    """Write what an earlier version would have written, by the writer of the mcap library."""
+    reader = McapReader(path)
+    ids = {}
+    with open(target, "wb") as stream:
+        writer = Writer(stream, **options)
+        writer.start("ros2", "bearing_sim")
+        for record in reader:
+            if isinstance(record, Metadata):
+                writer.add_metadata(record.name, record.metadata)
+            elif isinstance(record, Message):
+                writer.add_message(ids["channel", record.channel_id], record.log_time, record.data, record.publish_time, record.sequence)
+            elif hasattr(record, "topic"):
+                schema = ids["schema", record.schema_id]
+                ids["channel", record.id] = writer.register_channel(record.topic, record.message_encoding, schema, record.metadata)
+            elif hasattr(record, "encoding"):
+                ids["schema", record.id] = writer.register_schema(record.name, record.encoding, record.data)
+        writer.finish()

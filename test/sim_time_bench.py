@@ -12,6 +12,7 @@ from recordings import JOINTS, SECOND, TEMPERATURE, WRENCH, joint_state, tempera
 from bearing_sim.inputs.log import read_input_log
 from bearing_sim.inputs.profile import judge
 from bearing_sim.messages import topics
+from bearing_sim.messages.events import Event, MeasuredClearance, Measurement, ReceivedInputs, Report, Start
 from bearing_sim.recording.writer import McapFile
 from bearing_sim.runtime.replay import replay
 from bearing_sim.scene.loader import load_scene
@@ -80,28 +81,24 @@ class ListSink:
         self.samples, self.inputs, self.measurements, self.clearances = {}, [], [], []
         self.events, self.diagnostics = [], []
 
-    def write(self, block):
-        for sample in block:
-            self.samples[self._ns(sample["time"])] = sample.copy()
+    keeps_all = True
 
-    def write_start(self, block):
-        self.write(block)
-
-    def write_inputs(self, time, inputs, channels):
-        known = {name: value for name, value in inputs._asdict().items() if not math.isnan(value)}  # NaN is not equal to itself
-        self.inputs.append((self._ns(time), known, tuple(channels)))
-
-    def write_measurement(self, time, cage_speed, residual, standard_error):
-        self.measurements.append((self._ns(time), cage_speed, residual))
-
-    def write_clearance(self, time, clearance, standard_error):
-        self.clearances.append((self._ns(time), clearance, standard_error))
-
-    def write_event(self, event):
-        self.events.append(event)
-
-    def write_diagnostics(self, time, events=(), values=None):
-        self.diagnostics.append((time, list(events), values))
+    def write(self, record):
+        match record:
+            case np.ndarray() | Start():
+                for sample in record.block if isinstance(record, Start) else record:
+                    self.samples[self._ns(sample["time"])] = sample.copy()
+            case ReceivedInputs(time, inputs, channels):
+                known = {name: value for name, value in inputs._asdict().items() if not math.isnan(value)}  # NaN is not equal to itself
+                self.inputs.append((self._ns(time), known, tuple(channels)))
+            case Measurement(time, cage_speed, residual):
+                self.measurements.append((self._ns(time), cage_speed, residual))
+            case MeasuredClearance(time, clearance, standard_error):
+                self.clearances.append((self._ns(time), clearance, standard_error))
+            case Event():
+                self.events.append(record)
+            case Report(time, events, values):
+                self.diagnostics.append((time, list(events), values))
 
     def close(self):
         self.closed = True

@@ -16,7 +16,7 @@ from bearing_sim.files.tally import Tally
 from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import message_type, typestore
 from bearing_sim.messages.diagnostics import report
-from bearing_sim.messages.events import Event, Level, MeasuredClearance
+from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement
 from bearing_sim.messages.topics import outputs
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.reader import Recording
@@ -181,7 +181,7 @@ def test_a_measured_cage_in_a_recording_of_ours_shows_its_residual(tmp_path):
         for k in range(60):
             sink.write(block[k : k + 1])
             if k % 2:
-                sink.write_measurement(float(block["time"][k]), float(block["ideal_cage_speed"][k] * 0.9), 0.1 - float(block["cage_slip"][k]))
+                sink.write(Measurement(float(block["time"][k]), float(block["ideal_cage_speed"][k] * 0.9), 0.1 - float(block["cage_slip"][k])))
     assert run(tmp_path / "run.mcap", "-o", tmp_path / "run.rrd", "--no-open").exit_code == 0
     times, residuals = column(tmp_path / "run.rrd", "/slip/residual")
     np.testing.assert_allclose(times, block["time"][1::2], atol=1e-6)
@@ -198,7 +198,7 @@ def test_a_measured_clearance_in_a_recording_of_ours_is_shown_in_micrometres_at_
         for k in range(60):
             sink.write(block[k : k + 1])
             if k % 10 == 3:
-                sink.write_clearance(float(block["time"][k]) - 0.001, 1e-6 * (20 - k), 1e-6 if k % 20 == 3 else math.nan)
+                sink.write(MeasuredClearance(float(block["time"][k]) - 0.001, 1e-6 * (20 - k), 1e-6 if k % 20 == 3 else math.nan))
     found = [item for item in Recording(tmp_path / "run.mcap").with_measurements() if isinstance(item, MeasuredClearance)]
     assert [each.clearance for each in found] == pytest.approx([1e-6 * (20 - k) for k in range(3, 60, 10)])
     assert [math.isnan(each.standard_error) for each in found] == [False, True] * 3
@@ -230,7 +230,7 @@ def test_a_cage_measured_while_the_shaft_speeds_up_is_compared_with_the_ideal_sp
     with McapSink(tmp_path / "run.mcap", SCENE, START) as sink:
         for k in range(0, 2500, 150):
             sink.write(block[k : k + 150])
-            sink.write_measurement(float(block["time"][k + 50]), float(0.9 * block["ideal_cage_speed"][k + 50]), math.nan)
+            sink.write(Measurement(float(block["time"][k + 50]), float(0.9 * block["ideal_cage_speed"][k + 50]), math.nan))
     assert run(tmp_path / "run.mcap", "-o", tmp_path / "run.rrd", "--no-open").exit_code == 0
     times, slips = column(tmp_path / "run.rrd", "/slip/measured")
     np.testing.assert_allclose(times, block["time"][50::150], atol=1e-6)
@@ -242,7 +242,7 @@ def test_measurements_that_a_live_view_gets_after_their_block_are_compared_with_
     with RerunFile(SCENE, tmp_path / "run.rrd") as sink:
         for k in range(0, 400, 100):
             sink.write(block[k : k + 100])
-            sink.write_measurement(float(block["time"][k + 50]), float(0.9 * block["ideal_cage_speed"][k + 50]), 0.0)
+            sink.write(Measurement(float(block["time"][k + 50]), float(0.9 * block["ideal_cage_speed"][k + 50]), 0.0))
     np.testing.assert_allclose(column(tmp_path / "run.rrd", "/slip/measured")[1], 10.0, atol=1e-3)
 
 

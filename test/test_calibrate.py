@@ -15,6 +15,7 @@ from bearing_sim.inputs.log import read_input_log
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.levels.steady.table_builder import solve_points
+from bearing_sim.messages.events import Measurement, ReceivedInputs
 from bearing_sim.recording.writer import McapSink
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs, Simulation
@@ -231,8 +232,8 @@ def record(path, course, scene_overrides=()):
     sample = Simulation(scene).advance(1e-4)
     with McapSink(path, scene, 1_700_000_000_000_000_000) as sink:
         for time, row, speed in zip(course.times.tolist(), course.inputs, course.cage_speeds.tolist()):
-            sink.write_inputs(time, Inputs(*row))
-            sink.write_measurement(time, speed, 0.0)
+            sink.write(ReceivedInputs(time, Inputs(*row)))
+            sink.write(Measurement(time, speed, 0.0))
         sample["time"] = course.times[-1]
         sink.write(sample)
     return path

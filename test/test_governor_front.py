@@ -250,7 +250,7 @@ def test_a_run_that_changed_its_setting_is_computed_again_to_the_bit(tmp_path, r
                 other = 1 - current
                 rungs[other].take_over(rungs[current])
                 current = other
-                sink.write_event(Event(float(block["time"][-1]), Level.WARN, "governor.change", settings[current].name, "changed"))
+                sink.write(Event(float(block["time"][-1]), Level.WARN, "governor.change", settings[current].name, "changed"))
     recording, again = Recording(path), tmp_path / "again.mcap"
     with McapSink(again, scene(), START) as sink:
         result = reproduce(recording, sink)

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from fake_simulation import FakeSimulation
+from list_sink import ListSink
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.runtime.health import Health, Phase
@@ -16,37 +17,6 @@ from bearing_sim.runtime.pacing import LONGEST_TICK, SHORTEST_LIMIT, tick_limit,
 from bearing_sim.scene.loader import load_scene
 
 START_NS = 1_700_000_000_000_000_000
-
-
-class ListSink:
-    """Keeps what it is given; fails on demand."""
-
-    def __init__(self, fails=False):
-        self.blocks, self.events, self.inputs, self.measurements, self.closed, self.fails = [], [], [], [], 0, fails
-
-    def write(self, block):
-        if self.fails:
-            raise OSError("no space left on device")
-        self.blocks.append(block)
-
-    def write_event(self, event):
-        self.events.append(event)
-
-    def write_measurement(self, time, cage_speed, residual, standard_error, origin):
-        self.measurements.append((cage_speed, residual))
-
-    def close(self):
-        self.closed += 1
-
-
-class ListRecorder(ListSink):
-    """A sink that wants inputs too."""
-
-    def write_inputs(self, time, inputs, channels, origin):
-        self.inputs.append((time, inputs, list(channels)))
-
-    def write_diagnostics(self, time, events, values):
-        self.events += events
 
 
 class Bench:
@@ -138,7 +108,7 @@ def test_a_stale_input_is_news_when_it_starts_and_gone_when_messages_come_again(
 
 def test_sinks_get_every_sample_once_in_order_and_recorders_the_inputs_too(bench):
     one = bench(sample_rate=1 / LONGEST_TICK)
-    sink, recorder = ListSink(), ListRecorder()
+    sink, recorder = ListSink(keeps_all=False), ListSink()
     one.live.sinks.attach("view", sink)
     one.live.sinks.attach("record", recorder)
     one.run(0.5)

@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 from fake_simulation import FakeSimulation
+from list_sink import ListSink
 from made_up_response import ASKING, FACTOR, FIELD, asking_scene, made_up_response
 from recordings import steady_log
 from rerun_files import column, views_in
@@ -26,7 +27,7 @@ from bearing_sim.messages import topics
 from bearing_sim.messages.bands import BANDS, ESTIMATES, Bands, bands_of_message
 from bearing_sim.messages.cdr import typestore
 from bearing_sim.messages.diagnostics import report
-from bearing_sim.messages.events import Level
+from bearing_sim.messages.events import Level, MeasuredClearance, Received
 from bearing_sim.messages.sample_messages import BandMessages
 from bearing_sim.messages.topics import MEASURED_CHANNELS
 from bearing_sim.model.sample import RING_TEMPERATURES
@@ -81,8 +82,8 @@ def test_a_recording_returns_bands_as_they_were_written(tmp_path):
     estimates = Bands(ESTIMATES, (FIELD, "lubricant.temperature"), ("", "K"), np.array([0.06]), np.arange(6.0).reshape(1, 2, 3))
     with McapSink(path, SCENE, START) as sink:
         sink.write(synthetic_block(SCENE, 0.02 * np.arange(5)))
-        sink.write_bands(bands)
-        sink.write_bands(estimates)
+        sink.write(bands)
+        sink.write(estimates)
     found = list(Recording(path).bands())
     assert [one.topic for one in found] == [BANDS] * 3 + [ESTIMATES]
     assert np.allclose([one.times[0] for one in found[:3]], bands.times) and np.array_equal(
@@ -110,7 +111,7 @@ def test_a_recording_with_another_message_on_the_topic_says_so(tmp_path):
     path = tmp_path / "run.mcap"
     with McapSink(path, SCENE, START) as sink:
         sink.write(synthetic_block(SCENE, 0.02 * np.arange(5)))
-        sink.write_received("/bands", "sensor_msgs/msg/JointState", START, BandMessages().each(some_bands(), [0, 0, 0])[0][:-100])
+        sink.write(Received("/bands", "sensor_msgs/msg/JointState", START, START, BandMessages().each(some_bands(), [0, 0, 0])[0][:-100]))
     with pytest.raises(RecordingError, match="a message on /bands cannot be read"):
         list(Recording(path).bands())
     assert sum(len(item) for item in Recording(path)) == 5, "samples can be read all the same"
@@ -204,24 +205,6 @@ def test_diagnostics_show_both_edges_with_their_subject(response):
     assert {"running clearance 5 % [m]", "running clearance 95 % [m]"} <= status["clearance"]
 
 
-class ListSink:
-    """Keeps the bands and the measured clearances that it is given."""
-
-    def __init__(self):
-        self.bands, self.clearances = [], []
-
-    def write_clearance(self, *reading):
-        self.clearances.append(reading)
-
-    def write_bands(self, bands):
-        self.bands.append(bands)
-
-    def write(self, *_):
-        pass
-
-    write_start = write_inputs = write_event = write_measurement = write_diagnostics = close = write
-
-
 def model(scene, inputs):
     """Return a simulation that solves nothing."""
     simulation = FakeSimulation(inputs)
@@ -296,7 +279,7 @@ def test_a_view_shades_from_one_edge_to_the_other(tmp_path):
     numbers = np.broadcast_to(np.array([[0.05, 0.03, 0.11], [300.0, 100.0, 1000.0], [1e-5, 0.0, 3e-5], [1e3, 1e2, 1e12]]), (50, 4, 3))
     with RerunFile(SCENE, path) as sink:
         sink.write(block)
-        sink.write_bands(Bands(BANDS, NAMES, UNITS, block["time"], numbers))
+        sink.write(Bands(BANDS, NAMES, UNITS, block["time"], numbers))
     expected = {"/slip/band": (3.0, 11.0), "/life/band": (2.0, 3.0), "/clearance/band": (0.0, 30.0), "/remaining_life/band": (2.0, 7.0)}
     for entity, edges in expected.items():
         (_, middle), (_, variance) = (column(path, entity, f"Measurements:{part}") for part in ("values", "variances"))
@@ -392,7 +375,7 @@ def test_a_measured_clearance_calibrates_a_live_model_and_is_recorded(response, 
         bench.run(0.3)
         assert bench.live.offer(topics.MEASURED_CLEARANCE, (3e-5, 1e-6), None, bench.now_ns, "probe") is None
         ((time, *reading),) = clearances
-        assert reading == [3e-5, 1e-6] and sink.clearances == [(time, 3e-5, 1e-6, topics.Origin(None, "probe"))]
+        assert reading == [3e-5, 1e-6] and sink.of(MeasuredClearance) == [MeasuredClearance(time, 3e-5, 1e-6, topics.Origin(None, "probe"))]
         refused = bench.live.offer(topics.MEASURED_CLEARANCE, (30.0,), None, bench.now_ns)
         assert refused.kind == "input.too_large" and len(clearances) == 1
     finally:

@@ -20,7 +20,7 @@ from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 
 from bearing_sim.messages.cdr import load_message_types
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, ReceivedInputs
 from bearing_sim.messages.topics import ALWAYS_KNOWN, Origin, outputs, recorded
 from bearing_sim.model.sample import new_block
 from bearing_sim.recording import provenance
@@ -52,9 +52,9 @@ def recording(tmp_path, scene):
     block = numbered_block(3)
     with McapSink(tmp_path / "run.mcap", scene, START) as sink:
         for sample in range(3):
-            sink.write_inputs(sample / 10, Inputs(4000.0 + sample, 800.0, -50.0, 393.15))
+            sink.write(ReceivedInputs(sample / 10, Inputs(4000.0 + sample, 800.0, -50.0, 393.15)))
             sink.write(block[sample : sample + 1])
-        sink.write_event(Event(0.2, Level.WARN, "slip.high", "", "slip is 6 %, expected below 5 %"))
+        sink.write(Event(0.2, Level.WARN, "slip.high", "", "slip is 6 %, expected below 5 %"))
     return sink.path, block
 
 
@@ -225,10 +225,10 @@ def test_a_fault_of_the_disk_reaches_the_writer(tmp_path):
 def test_inputs_keep_the_stamps_and_frames_of_their_senders(tmp_path, scene):
     with McapSink(tmp_path / "run.mcap", scene, START) as sink:
         inputs = Inputs(4000.0, 800.0, -50.0, 393.15)
-        sink.write_inputs(1.0, inputs, ["radial_load"], Origin(START + 990_000_000, "dyno"))
-        sink.write_inputs(1.0, inputs, ["shaft_speed"], Origin(None, ""))
-        sink.write_measurement(1.5, 1800.0, 0.01, 0.5, Origin(START + 1_490_000_000, "laser"))
-        sink.write_clearance(1.75, 3e-5, 1e-6, Origin(START + 1_740_000_000, "probe"))
+        sink.write(ReceivedInputs(1.0, inputs, ["radial_load"], Origin(START + 990_000_000, "dyno")))
+        sink.write(ReceivedInputs(1.0, inputs, ["shaft_speed"], Origin(None, "")))
+        sink.write(Measurement(1.5, 1800.0, 0.01, 0.5, Origin(START + 1_490_000_000, "laser")))
+        sink.write(MeasuredClearance(1.75, 3e-5, 1e-6, Origin(START + 1_740_000_000, "probe")))
     decoded = {topic: (log_time, message) for topic, log_time, message in messages(sink.path)}
     for topic, log_time, stamp_ns, frame in (
         ("/radial_load", 1_000_000_000, 990_000_000, "dyno"),
@@ -287,8 +287,8 @@ def test_once_types_are_loaded_no_message_of_a_recording_waits_for_one(tmp_path)
     load_message_types()
     loaded = message_type.cache_info().misses
     with McapSink(tmp_path / "run.mcap", load_scene("deng2017_table1", ["level=spatial"]), START) as sink:
-        sink.write_inputs(0.0, Inputs(4000.0, 800.0, -50.0, 393.15))
-        sink.write_measurement(0.0, 1800.0, 0.01)
+        sink.write(ReceivedInputs(0.0, Inputs(4000.0, 800.0, -50.0, 393.15)))
+        sink.write(Measurement(0.0, 1800.0, 0.01))
         sink.write(numbered_block(1))
-        sink.write_event(Event(0.2, Level.WARN, "slip.high", "", "slip is 6 %"))
+        sink.write(Event(0.2, Level.WARN, "slip.high", "", "slip is 6 %"))
     assert message_type.cache_info().misses == loaded

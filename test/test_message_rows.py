@@ -9,7 +9,7 @@ from recordings import spoiled, write_log
 from rosbags.typesys import Stores, get_typestore
 from synthetic_run import synthetic_block
 
-from bearing_sim.messages.events import Event, Level, Measurement
+from bearing_sim.messages.events import Event, Level, Measurement, ReceivedInputs
 from bearing_sim.recording import reader as recording_reader
 from bearing_sim.recording.compare import compare
 from bearing_sim.recording.mcap_format import Message
@@ -40,11 +40,11 @@ def recording(tmp_path_factory):
             if not len(part):
                 break
             time = float(part["time"][0])
-            sink.write_inputs(time, Inputs(4000.0 + time, 800.0, -50.0, 393.15), ("shaft_speed", "radial_load")[: 1 + size % 2])
+            sink.write(ReceivedInputs(time, Inputs(4000.0 + time, 800.0, -50.0, 393.15), ("shaft_speed", "radial_load")[: 1 + size % 2]))
             sink.write(part)
             if size % 7 == 0:
-                sink.write_event(Event(time, Level.WARN, f"slip.{size}", "", "slip is high"))
-                sink.write_measurement(time, 1800.0 + time, 0.01, 0.5)
+                sink.write(Event(time, Level.WARN, f"slip.{size}", "", "slip is high"))
+                sink.write(Measurement(time, 1800.0 + time, 0.01, 0.5))
     return path
 
 

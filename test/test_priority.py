@@ -18,7 +18,6 @@ from synthetic_run import synthetic_block
 from waiting import wait_for
 
 from bearing_sim.recording import priority
-from bearing_sim.recording.recorder import Recorder
 from bearing_sim.ros.warm_up import start_compiling
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed
@@ -61,7 +60,7 @@ def test_every_thread_of_the_view_runs_in_idle_time_in_the_session_of_its_feeder
 
 
 @pytest.mark.long
-def test_a_view_that_writes_a_file_gives_way_but_has_a_share_of_its_own_like_the_recorder(tmp_path):
+def test_a_view_that_writes_a_file_gives_way_but_has_a_share_of_its_own(tmp_path):
     with RerunSink(SCENE, path=tmp_path / "run.rrd", serve_port=free_port()) as sink:
         assert sink.wait_until_ready(60.0)
         feed(sink, 0.5)
@@ -84,17 +83,6 @@ def test_every_thread_of_a_viewer_that_we_start_beside_a_solver_runs_in_idle_tim
     assert len(found) > 5 and set(found.values()) == {IDLE}
 
 
-def test_the_recorder_gives_way_but_has_a_share_of_its_own_whatever_runs_in_the_session_of_its_feeder(tmp_path):
-    with Recorder() as recorder, recorder.open(tmp_path / "run.mcap", SCENE, 0) as sink:
-        feed(sink, 0.5)
-        assert set(policies(recorder.pid).values()) == {BATCH}
-        assert os.getpriority(os.PRIO_PROCESS, recorder.pid) == min(19, os.getpriority(os.PRIO_PROCESS, 0) + 5)
-        assert os.getsid(recorder.pid) == recorder.pid != os.getsid(0)
-        group = Path(f"/proc/{recorder.pid}/autogroup")
-        if group.exists() and group.read_text().strip():
-            assert group.read_text().split()[-1] == "5"
-
-
 def test_compiling_cheaper_levels_gives_way_but_does_not_wait_for_idle_time_which_a_solver_that_is_too_slow_leaves_none_of():
     process = start_compiling(SCENE, lower=True)
     try:
@@ -109,7 +97,8 @@ ON_ONE_CORE = """
 import os, subprocess, sys, time
 os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
 sys.path.insert(0, sys.argv[2])
-from test_priority import BLOCK, Recorder, SCENE
+from test_priority import BLOCK, SCENE
+from bearing_sim.recording.recorder import Recorder
 with Recorder(capacity=2_000_000) as recorder:
     sink = recorder.open(sys.argv[1], SCENE, 0)
     beside = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2)]
@@ -145,7 +134,8 @@ fcntl.ioctl(0, termios.TIOCSCTTY, 0)  # the terminal of this session, in whose f
 interrupted = []
 signal.signal(signal.SIGINT, lambda *_: interrupted.append(True))
 sys.path.insert(0, sys.argv[2])
-from test_priority import BLOCK, Recorder, RerunSink, SCENE, free_port
+from test_priority import BLOCK, RerunSink, SCENE, free_port
+from bearing_sim.recording.recorder import Recorder
 with Recorder() as recorder, RerunSink(SCENE, path=sys.argv[1] + ".rrd") as view, RerunSink(SCENE, serve_port=free_port()) as pictures:
     record = recorder.open(sys.argv[1] + ".mcap", SCENE, 0)
     written = 0
@@ -156,7 +146,7 @@ with Recorder() as recorder, RerunSink(SCENE, path=sys.argv[1] + ".rrd") as view
         record.write(block)
         view.write(block)
         written += 1
-    print(json.dumps([recorder.pid, view.pid, pictures.pid]), flush=True)  # as early as can be: the view may not even have begun to read
+    print(json.dumps([view.pid, pictures.pid]), flush=True)  # as early as can be: the view may not even have begun to read
     while not interrupted:
         write()
         time.sleep(0.05)
@@ -171,7 +161,7 @@ with Recorder() as recorder, RerunSink(SCENE, path=sys.argv[1] + ".rrd") as view
 
 
 @pytest.mark.long
-def test_ctrl_c_at_a_terminal_reaches_who_feeds_and_neither_recorder_nor_view_before_they_are_fed_to_the_end(tmp_path):
+def test_ctrl_c_at_a_terminal_reaches_who_feeds_and_no_view_before_it_is_fed_to_the_end(tmp_path):
     ours, terminal = os.openpty()
     command = [sys.executable, "-c", AT_A_TERMINAL, str(tmp_path / "run"), str(Path(__file__).parent)]
     with subprocess.Popen(command, stdin=terminal, stdout=subprocess.PIPE, text=True, start_new_session=True) as feeder:

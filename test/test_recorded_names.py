@@ -7,7 +7,7 @@ from rosbags.rosbag2 import Reader
 from synthetic_run import synthetic_block
 
 from bearing_sim.inputs.log import read_input_log
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, ReceivedInputs, Report
 from bearing_sim.messages.topics import OWN_NAMES, Names
 from bearing_sim.recording.bag import Limits
 from bearing_sim.recording.compare import compare
@@ -27,10 +27,10 @@ SWAPPED = {"cage_slip": "/damage", "damage": "/cage_slip", "shaft_speed": "/radi
 def record(path, names, limits=None):
     with McapSink(path, SCENE, START, names=names, **({} if limits is None else {"limits": limits})) as sink:
         for start in range(0, 200, 10):
-            sink.write_inputs(float(RUN["time"][start]), Inputs(4000.0 + start, 800.0, -50.0, 393.15))
+            sink.write(ReceivedInputs(float(RUN["time"][start]), Inputs(4000.0 + start, 800.0, -50.0, 393.15)))
             sink.write(RUN[start : start + 10])
-        sink.write_event(Event(1.0, Level.WARN, "bearing.slip", "", "slip is high"))
-        sink.write_diagnostics(1.5, (), {"cage slip [fraction]": 0.1})
+        sink.write(Event(1.0, Level.WARN, "bearing.slip", "", "slip is high"))
+        sink.write(Report(1.5, (), {"cage slip [fraction]": 0.1}))
     return path
 
 

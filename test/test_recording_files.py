@@ -14,7 +14,7 @@ from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 from synthetic_run import synthetic_block
 
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, ReceivedInputs
 from bearing_sim.recording import bag
 from bearing_sim.recording.bag import Limits, mcap_files
 from bearing_sim.recording.reader import Recording
@@ -33,7 +33,7 @@ RUN["inner_load"] *= 1 + 1e-3 * NOISE.normal(size=RUN["inner_load"].shape)  # do
 
 def write(sink, first=0, last=4000, step=50):
     for start in range(first, last, step):
-        sink.write_inputs(float(RUN["time"][start]), INPUTS)
+        sink.write(ReceivedInputs(float(RUN["time"][start]), INPUTS))
         sink.write(RUN[start : start + step])
 
 
@@ -239,7 +239,7 @@ def test_a_file_replaced_under_the_writer_leaves_both(tmp_path):
 def test_metadata_say_what_a_result_depends_on(tmp_path):
     with McapSink(tmp_path / "run.mcap", SCENE, START, seed=42) as sink:
         sink.write(RUN[:1])
-        sink.write_event(Event(0.1, Level.WARN, "slip.high", "", "text"))
+        sink.write(Event(0.1, Level.WARN, "slip.high", "", "text"))
     told = contents(tmp_path / "run.mcap").metadata[METADATA]
     assert told["seed"] == "42" and told["version_numpy"] == np.__version__
     assert {"scene", "level", "start_ns", "package_version", "git_hash", "version_python", "version_numba"} <= set(told)

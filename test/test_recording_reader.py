@@ -7,7 +7,7 @@ from recordings import steady_log, truncated
 from synthetic_run import synthetic_block
 
 from bearing_sim.messages.cdr import typestore
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, ReceivedInputs, Report
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.reader import ROWS_PER_BLOCK, Recording, _Samples
@@ -34,7 +34,7 @@ def path(block, tmp_path_factory):
     with McapSink(path, SCENE, START_NS) as sink:
         for sample in block:
             inputs = Inputs(sample["shaft_speed"], sample["load_y"], sample["load_z"], sample["oil_temperature"])
-            sink.write_inputs(float(sample["time"]), inputs)
+            sink.write(ReceivedInputs(float(sample["time"]), inputs))
             sink.write(sample.reshape(1))
     return path
 
@@ -67,7 +67,7 @@ def test_what_a_level_observes_comes_back_from_its_recording(level, tmp_path):
     simulation = Simulation(load_scene("deng2017_table1", [f"level={level}"]))
     block = simulation.advance(0.006, samples=ROWS_PER_BLOCK + 200)
     with McapSink(tmp_path / "run.mcap", simulation.scene, START_NS) as sink:
-        sink.write_inputs(0.0, simulation.inputs)
+        sink.write(ReceivedInputs(0.0, simulation.inputs))
         sink.write(block)
     read = np.concatenate(blocks(Recording(tmp_path / "run.mcap")))
     for name in block.dtype.names:
@@ -90,9 +90,9 @@ def test_lasting_trouble_is_told_once_and_again_only_after_it_was_gone(tmp_path)
         sink.write(synthetic_block(SCENE, TIMES[:1]))
         for second in range(20):
             lasting = [slip] if second < 5 or second > 10 else []
-            sink.write_diagnostics(float(second), lasting, {"cage slip [%]": 12.0})
+            sink.write(Report(float(second), lasting, {"cage slip [%]": 12.0}))
             if second == 3:
-                sink.write_event(stale._replace(time=3.5))
+                sink.write(stale._replace(time=3.5))
     read = [event for event in Recording(tmp_path / "run.mcap") if isinstance(event, Event)]
     assert read[1] == stale._replace(time=3.5), "every field comes back"
     assert [(event.time, event.level, event.kind, event.text) for event in read] == [
@@ -107,7 +107,7 @@ def test_trouble_that_comes_back_after_its_end_was_told_is_news(tmp_path):
     with McapSink(tmp_path / "run.mcap", SCENE, START_NS) as sink:
         sink.write(synthetic_block(SCENE, TIMES[:1]))
         for time, level in course:
-            sink.write_event(Event(time, level, "bearing.slip", "", "text"))
+            sink.write(Event(time, level, "bearing.slip", "", "text"))
     told = [event.level for event in Recording(tmp_path / "run.mcap") if isinstance(event, Event)]
     assert told == [Level.WARN, Level.OK, Level.WARN, Level.ERROR]
 
@@ -119,7 +119,7 @@ def test_log_of_inputs_is_no_recording_of_a_run(tmp_path):
 
 def test_recording_without_samples_is_refused(tmp_path):
     with McapSink(tmp_path / "run.mcap", SCENE, START_NS) as sink:
-        sink.write_inputs(0.0, Inputs(1.0, 2.0, 3.0, 300.0))
+        sink.write(ReceivedInputs(0.0, Inputs(1.0, 2.0, 3.0, 300.0)))
     with pytest.raises(RecordingError, match="no samples"):
         Recording(tmp_path / "run.mcap")
 

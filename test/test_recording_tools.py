@@ -15,12 +15,12 @@ import pyarrow.parquet
 import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
-from recordings import flipped, spoiled, steady_log, truncated
+from recordings import flipped, spoiled, steady_log, truncated, without_checksums
 from rosbags.typesys import Stores, get_typestore
 from synthetic_run import synthetic_block
 
 from bearing_sim.cli.main import main
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, ReceivedInputs
 from bearing_sim.messages.topics import outputs, recorded
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.recording.bag import RecordingError
@@ -44,9 +44,9 @@ for _name in ("inner_load", "outer_load", "pocket_force", "ring_tilt_y", "shaft_
 def record(path, block=RUN):
     with McapSink(path, SCENE, START) as sink:
         for start in range(0, len(block), 20):
-            sink.write_inputs(float(block["time"][start]), Inputs(4000.0, 800.0, -50.0, 393.15))
+            sink.write(ReceivedInputs(float(block["time"][start]), Inputs(4000.0, 800.0, -50.0, 393.15)))
             sink.write(block[start : start + 20])
-        sink.write_event(Event(0.2, Level.WARN, "slip.high", "slip", "is 6 %"))
+        sink.write(Event(0.2, Level.WARN, "slip.high", "slip", "is 6 %"))
     return path
 
 
@@ -113,7 +113,9 @@ def test_what_comes_after_a_damaged_chunk_is_recovered_too(recording, tmp_path):
 
 
 def test_messages_whose_channel_was_told_in_a_damaged_chunk_are_counted_as_lost(recording, tmp_path):
-    spoiled(recording, tmp_path / "broken.mcap", chunk=0)
+    """In files of other programs; a recording has them outside of chunks, too."""
+    without_checksums(recording, tmp_path / "foreign.mcap", chunk_size=64 * 1024)
+    spoiled(tmp_path / "foreign.mcap", tmp_path / "broken.mcap", chunk=0)
     whole, found = contents(recording), contents(tmp_path / "broken.mcap")
     readable = sum(isinstance(record, Message) for record in McapReader(tmp_path / "broken.mcap"))
     orphans = found.damaged - 1
@@ -280,7 +282,7 @@ def test_tables_refuse_what_is_not_there(recording, tmp_path):
 def test_two_runs_that_began_at_different_moments_are_compared_by_run_time(recording, tmp_path):
     with McapSink(tmp_path / "later.mcap", SCENE, START + 12_345_678_901) as sink:
         for start in range(0, len(RUN), 20):
-            sink.write_inputs(float(RUN["time"][start]), Inputs(4000.0, 800.0, -50.0, 393.15))
+            sink.write(ReceivedInputs(float(RUN["time"][start]), Inputs(4000.0, 800.0, -50.0, 393.15)))
             sink.write(RUN[start : start + 20])
     for pair in ((recording, tmp_path / "later.mcap"), (tmp_path / "later.mcap", recording)):
         told = json.loads(invoke("compare", *pair, "--json"))
@@ -291,4 +293,4 @@ def test_two_runs_that_began_at_different_moments_are_compared_by_run_time(recor
 
 def test_compare_says_which_file_is_not_whole(recording, tmp_path):
     flipped(recording, tmp_path / "flipped.mcap", recording.stat().st_size // 2)
-    assert "is flipped; what can be read of it is compared" in invoke("compare", recording, tmp_path / "flipped.mcap", code=1)
+    assert "; what can be read of it is compared" in invoke("compare", recording, tmp_path / "flipped.mcap", code=1)

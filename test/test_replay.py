@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from fake_simulation import FakeSimulation
+from list_sink import ListSink
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from measured_data import measured_file
@@ -23,7 +24,7 @@ from recordings import steady_log, write_log
 from bearing_sim.cli.main import main
 from bearing_sim.inputs.log import read_input_log
 from bearing_sim.inputs.profile import judge
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, Start
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.recording.append_file import AppendFile
 from bearing_sim.recording.writer import McapSink
@@ -37,29 +38,8 @@ SCENE = load_scene("deng2017_table1")
 HELD = Inputs(0.0, 0.0, 0.0, 393.15)
 
 
-class ListSink:
-    """Keeps what it is given."""
-
-    def __init__(self):
-        self.inputs, self.samples, self.events, self.diagnostics, self.starts, self.measurements = [], [], [], [], [], []
-
-    def write_start(self, block):
-        self.starts += list(block)
-
-    def write_measurement(self, time, cage_speed, residual, standard_error):
-        self.measurements.append((time, cage_speed, residual))
-
-    def write_inputs(self, time, inputs, channels):
-        self.inputs.append((time, inputs, tuple(channels)))
-
-    def write(self, block):
-        self.samples += list(block.copy())
-
-    def write_event(self, event):
-        self.events.append(event)
-
-    def write_diagnostics(self, time, events=(), values=None):
-        self.diagnostics.append((time, list(events), values))
+def samples(sink):
+    return [sample for block in sink.blocks for sample in block]
 
 
 def run(path, fails_at=None, watchers=(), scene=SCENE, **options):
@@ -76,20 +56,20 @@ def run(path, fails_at=None, watchers=(), scene=SCENE, **options):
     sink = ListSink()
     course = judge(read_input_log(path), scene.accepted_inputs, HELD)
     result = replay(scene, course, sink, watchers, model=model, **options)
-    assert [start["time"] for start in sink.starts] == [0.0], "a recording begins with the state at the start"
+    assert [start.block["time"] for start in sink.of(Start)] == [0.0], "a recording begins with the state at the start"
     return result, sink, made[0]
 
 
 def times(sink):
-    return [float(sample["time"]) for sample in sink.samples]
+    return [float(sample["time"]) for sample in samples(sink)]
 
 
 def test_one_output_at_each_stamp_with_the_inputs_of_that_stamp(tmp_path):
     path = write_log(tmp_path / "log.mcap", [(0.0, 100.0), (0.2, 300.0), (0.5, 300.0)], [(0.0, 0.0, 0.0), (0.4, 400.0, 40.0), (0.5, 400.0, 40.0)])
     result, sink, _ = run(path)
     assert times(sink) == pytest.approx([0.2, 0.4, 0.5])
-    assert [sample["shaft_speed"] for sample in sink.samples] == pytest.approx([300.0, 300.0, 300.0])
-    assert [sample["load_y"] for sample in sink.samples] == pytest.approx([200.0, 400.0, 400.0])
+    assert [sample["shaft_speed"] for sample in samples(sink)] == pytest.approx([300.0, 300.0, 300.0])
+    assert [sample["load_y"] for sample in samples(sink)] == pytest.approx([200.0, 400.0, 400.0])
     assert (result.samples, result.sim_seconds) == (3, pytest.approx(0.5))
     assert (result.steps, result.rejected_steps, result.non_finite_steps) == (7, 2, 1)
 
@@ -202,9 +182,7 @@ def test_outputs_of_a_level_that_takes_courses_are_written_many_at_once_and_say_
                 sample["cage_slip"] = 0.01 if now < 4.0 else 0.01 + 0.01 * (int(now) % 4 > 1)
                 return sample
 
-        lengths = []
         sink = ListSink()
-        sink.write = lambda block, write=sink.write: (lengths.append(len(block)), write(block))
 
         def model(scene, inputs):
             simulation = Waving(inputs)
@@ -212,15 +190,15 @@ def test_outputs_of_a_level_that_takes_courses_are_written_many_at_once_and_say_
             return simulation
 
         result = replay(scene, judge(read_input_log(log), scene.accepted_inputs, HELD), sink, model=model)
-        return lengths, sink, result
+        return [len(block) for block in sink.blocks], sink, result
 
     lengths, sink, result = replayed()
     monkeypatch.setattr(replaying, "_TOGETHER", 1)
     singly, expected, same = replayed()
     assert singly == [1] * 250 and (lengths == singly) == (make is FakeSimulation) and sum(lengths) == 250
     assert len(lengths) <= 3 or make is FakeSimulation
-    assert np.array(sink.samples).tobytes() == np.array(expected.samples).tobytes()
-    for name in ("inputs", "events", "diagnostics", "starts"):
+    assert np.array(samples(sink)).tobytes() == np.array(samples(expected)).tobytes()
+    for name in ("inputs", "events", "diagnostics"):
         assert repr(getattr(sink, name)) == repr(getattr(expected, name)), name
     assert len(sink.events) > 4 and (result.samples, result.weight, result.slip) == (same.samples, same.weight, same.slip)
 

@@ -18,6 +18,7 @@ from bearing_sim.cli.main import main
 from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import BANDS
+from bearing_sim.messages.events import Measurement, ReceivedInputs
 from bearing_sim.model.sample import joined
 from bearing_sim.recording.compare import compare
 from bearing_sim.recording.reader import Recording
@@ -64,7 +65,7 @@ def live_run(
         if cage_slip is not None:
             speed, now = (1.0 - cage_slip) * float(block["ideal_cage_speed"][-1]), float(block["time"][-1])
             estimation.measure(now, speed)
-            sink.write_measurement(now, speed, cage_slip - float(block["cage_slip"][-1]))
+            sink.write(Measurement(now, speed, cage_slip - float(block["cage_slip"][-1])))
         return estimation.take(block)
 
     simulation, beat, shift = Simulation(scene, Inputs(3000.0, 700.0, 0.0, 393.15)), tick_schedule(rate, publish_rate), 0.5
@@ -88,14 +89,14 @@ def live_run(
             block["time"] += shift
             if from_start or tick >= ticks // 2:
                 sink.write(block)
-                sink.write_inputs(float(block["time"][-1]), inputs)
+                sink.write(ReceivedInputs(float(block["time"][-1]), inputs))
                 for bands in estimate(block) if estimation is not None else ():
-                    sink.write_bands(bands)
+                    sink.write(bands)
     return path
 
 
 def sink_of_nothing():
-    return Mock(spec=["write", "write_received", "write_event", "write_bands"])
+    return Mock(spec=["write"])
 
 
 def bands_in(path):

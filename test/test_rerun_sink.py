@@ -34,7 +34,7 @@ pytestmark = pytest.mark.usefixtures("strict_rerun")
 def written(path, block, events=(), **options):
     with RerunFile(SCENE, path, **options) as sink:
         for event in events:
-            sink.write_event(event)
+            sink.write(event)
         for part in np.array_split(block, 9):
             sink.write(part)
     assert sink.failure is None

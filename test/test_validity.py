@@ -9,6 +9,7 @@ import time
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from list_sink import ListSink
 from recordings import write_log
 from scipy.integrate import solve_bvp
 
@@ -411,31 +412,6 @@ def test_a_number_has_moved_where_it_has_left_its_band(effect, moved):
     assert effect.moved == moved and (effect.size > 1.0) == bool(moved)
 
 
-class ListSink:
-    """Keeps samples and events."""
-
-    def __init__(self):
-        self.blocks, self.events, self.diagnostics = [], [], []
-
-    def write(self, block):
-        self.blocks.append(block)
-
-    def write_event(self, event):
-        self.events.append(event)
-
-    def write_inputs(self, time, inputs, channels, origin):
-        """Inputs are of no interest."""
-
-    def write_measurement(self, *measurement):
-        """Nor are measurements."""
-
-    def write_diagnostics(self, time, events, values):
-        self.diagnostics.append(list(events))
-
-    def close(self):
-        """Nothing is open."""
-
-
 @pytest.mark.parametrize(
     "overrides, load, expected",
     [
@@ -467,7 +443,7 @@ def test_the_node_reports_a_law_outside_of_its_range_in_diagnostics_and_recordin
         assumed = BY_NAME[name].source.startswith("assumption")
         assert event.level is (Level.OK if assumed else Level.WARN) and event.action
         assert ("; assumption: effect not " if assumed else "; warning: effect not ") in event.reason
-    assert expected <= {event.subject for event in sink.events} and expected <= {event.subject for event in sink.diagnostics[-1]}
+    assert expected <= {event.subject for event in sink.events} and expected <= {event.subject for event in sink.diagnostics[-1][1]}
     assert len([event for event in news if event.subject in expected]) == len(expected), "each is told once"
 
 

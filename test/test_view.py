@@ -29,7 +29,7 @@ def recording(tmp_path_factory):
     path = tmp_path_factory.mktemp("view") / "run.mcap"
     with McapSink(path, SCENE, 1_700_000_000_000_000_000) as sink:
         sink.write(synthetic_block(SCENE, 0.005 * np.arange(1, 61)))
-        sink.write_event(Event(0.2, Level.WARN, "bearing.slip", "cage slip", "6 % has reached 5 %"))
+        sink.write(Event(0.2, Level.WARN, "bearing.slip", "cage slip", "6 % has reached 5 %"))
     return path
 
 

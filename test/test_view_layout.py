@@ -11,7 +11,7 @@ import rerun.blueprint as rrb
 from rerun_files import column, views_in, written
 from synthetic_run import synthetic_block
 
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, Measurement
 from bearing_sim.messages.topics import MEASURED, MEASURED_CHANNELS, MEASURED_CLEARANCE
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.blueprint import blueprint
@@ -145,7 +145,7 @@ def test_residual_slip_is_written_in_points_and_a_zero_line_beside_it(tmp_path):
     with RerunFile(SLIP, tmp_path / "run.rrd") as sink:
         for part in np.array_split(block, 10):
             sink.write(part)
-            sink.write_measurement(float(part["time"][-1]), 0.95 * float(part["ideal_cage_speed"][-1]), 0.05 - float(part["cage_slip"][-1]))
+            sink.write(Measurement(float(part["time"][-1]), 0.95 * float(part["ideal_cage_speed"][-1]), 0.05 - float(part["cage_slip"][-1])))
     np.testing.assert_allclose(column(tmp_path / "run.rrd", "/slip/measured")[1], 5.0, rtol=1e-4)
     np.testing.assert_allclose(column(tmp_path / "run.rrd", "/slip/residual")[1], 5.0 - 100 * block["cage_slip"][9::10], atol=1e-4)
     assert set(column(tmp_path / "run.rrd", "/slip/no_residual")[1]) == {0.0}

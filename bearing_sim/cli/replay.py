@@ -373,14 +373,5 @@ def _version(origin: dict[str, str]) -> str:
 class _Nowhere:
     """A recording that drops everything."""
 
-    def write(self, block) -> None:
-        """Drop samples."""
-
-    def write_received(self, topic, ros_type, log_ns, data, publish_ns) -> None:
-        """Drop a message."""
-
-    def write_event(self, event) -> None:
-        """Drop an event."""
-
-    def write_bands(self, bands) -> None:
-        """Drop bands."""
+    def write(self, record) -> None:
+        """Drop a record."""

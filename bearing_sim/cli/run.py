@@ -112,7 +112,7 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
         warnings = graded(scene, exceedances, outcome.window[-1])
         for sink in sinks:
             for each in warnings:
-                sink.write_event(validity_event(outcome.simulated, each))
+                sink.write(validity_event(outcome.simulated, each))
     report = {**_report(simulation, outcome, wall, first - started), **warnings_report(scene, warnings), **_states_report(others, start)}
     report |= live_band_numbers(estimation.newest) if estimation is not None else {}
     bands = _bands(scene, uncertainty) if uncertainty else None
@@ -195,7 +195,7 @@ def _advance(simulation, plan, sinks, progress, estimation):
             sink.write(block)
         for bands in estimation.take(block) if estimation is not None else ():
             for sink in sinks:
-                sink.write_bands(bands)
+                sink.write(bands)
         progress(float(block["time"][-1]))
 
     def advance(seconds):

@@ -157,23 +157,15 @@ def _require_within(seconds: float | None, first: float, last: float) -> None:
 
 
 def _convert(source, out: Path) -> None:
-    from bearing_sim.messages.bands import Bands
-    from bearing_sim.messages.events import Event, MeasuredClearance, Measurement
+    import numpy as np
+
     from bearing_sim.view.worker import RerunFile
 
     with progress_bar(f"reading {source.path.name}", source.duration) as progress:
         with RerunFile(source.scene, out, source.start_ns, source.duration, source.largest_load or None) as sink:
             for item in source.with_measurements():
-                if isinstance(item, Measurement):
-                    sink.write_measurement(*item)
-                elif isinstance(item, MeasuredClearance):
-                    sink.write_clearance(*item)
-                elif isinstance(item, Bands):
-                    sink.write_bands(item)
-                elif isinstance(item, Event):
-                    sink.write_event(item)
-                else:
-                    sink.write(item)
+                sink.write(item)
+                if isinstance(item, np.ndarray):
                     progress(float(item["time"][-1]) - source.first_time)
 
 

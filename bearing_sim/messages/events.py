@@ -1,9 +1,15 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What happens in a run besides its samples: events that a person should know about, and measurements of the cage."""
+"""What happens in a run besides its samples: events that a person should know about, measurements of the cage, and what else a sink may keep."""
 
 import math
+from collections.abc import Iterable, Mapping
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bearing_sim.messages.bands import Bands
+from bearing_sim.messages.topics import ALWAYS_KNOWN, Origin
 
 
 class Level(IntEnum):
@@ -71,12 +77,14 @@ class Measurement(NamedTuple):
     cage_speed : [rad/s].
     residual : measured minus predicted cage slip, a fraction; NaN where there is no prediction to compare with.
     standard_error : of the cage speed [rad/s]; NaN where the sensor does not say.
+    origin : the sender's stamp and frame; None if ``time`` is all that is known.
     """
 
     time: float
     cage_speed: float
     residual: float
     standard_error: float = math.nan
+    origin: Origin | None = None
 
 
 class MeasuredClearance(NamedTuple):
@@ -87,8 +95,55 @@ class MeasuredClearance(NamedTuple):
     time : [s] since the start of the run.
     clearance : [m], negative is preload.
     standard_error : of the clearance [m]; NaN where the sensor does not say.
+    origin : as of `Measurement`.
     """
 
     time: float
     clearance: float
     standard_error: float = math.nan
+    origin: Origin | None = None
+
+
+class ReceivedInputs(NamedTuple):
+    """Inputs that arrived.
+
+    Attributes
+    ----------
+    time : when they were received [s] since the start of the run.
+    inputs : the `bearing_sim.simulation.Inputs` of that instant.
+    channels : which of them arrived; each channel may have stamps of its own.
+    origin : as of `Measurement`.
+    """
+
+    time: float
+    inputs: Any
+    channels: Iterable[str] = ALWAYS_KNOWN
+    origin: Origin | None = None
+
+
+class Start(NamedTuple):
+    """The state from which a run starts, a block of one sample, so that the run can be reproduced; it is not an output of the run."""
+
+    block: np.ndarray
+
+
+class Report(NamedTuple):
+    """What holds at a time [s] since the start of the run: events, and values for diagnostics (see `bearing_sim.messages.diagnostics.report`)."""
+
+    time: float
+    events: Iterable[Event] = ()
+    values: Mapping[str, object] = {}
+
+
+class Received(NamedTuple):
+    """A serialised message as it was recorded; times are [ns since the epoch]."""
+
+    topic: str
+    ros_type: str
+    log_ns: int
+    publish_ns: int
+    data: bytes
+
+
+Record = np.ndarray | Event | Measurement | MeasuredClearance | Bands | ReceivedInputs | Start | Report | Received
+"""What a sink takes; an array is a block of samples (see `bearing_sim.model.sample`), which nobody may change afterwards."""

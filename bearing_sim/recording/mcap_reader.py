@@ -102,7 +102,6 @@ class McapReader:
     in_rows : whether messages of a topic may come many at once, as `Rows`; none do if absent.
     stops_at_damage : whether to read nothing after the first damaged chunk or record.
     own_topics : whether topics are named as here, whatever a node that recorded them called them (see `mcap_format.own_topic`).
-    corrects : whether a single flipped bit is corrected where the checksums say which one it is; it counts as damage nevertheless.
 
     Attributes
     ----------
@@ -128,10 +127,9 @@ class McapReader:
         path: str | Path,
         in_rows: Callable[[str], bool] | None = None,
         stops_at_damage: bool = False,
-        corrects: bool = False,
         own_topics: bool = False,
     ):
-        self.path, self._in_rows, self._stops, self._corrects, self._own_topics = Path(path), in_rows, stops_at_damage, corrects, own_topics
+        self.path, self._in_rows, self._stops, self._own_topics = Path(path), in_rows, stops_at_damage, own_topics
         self._decompress = zstandard.ZstdDecompressor().decompress
         with _opened(self.path) as stream:
             self.size = self.path.stat().st_size
@@ -153,7 +151,7 @@ class McapReader:
         self._restart()
         with _opened(self.path) as stream:
             unneeded = {Opcode.MESSAGE_INDEX, *({Opcode.ATTACHMENT} if self._stops else ())}
-            sections = SectionReader(stream, self.size, self._report, self._corrects, unneeded)
+            sections = SectionReader(stream, self.size, self._report, unneeded)
             for section in sections:
                 self.read = sections.read
                 if not (self.damaged and self._stops):
@@ -189,9 +187,9 @@ class McapReader:
 
     def _noted(self, record, length: int) -> list:
         """Return a record of a length [byte] as a list, empty if it is of no use here; remember what later ones refer to."""
-        is_new = isinstance(record, Metadata)
-        is_new |= isinstance(record, Schema) and record.id not in self._schemas or isinstance(record, Channel) and record.id not in self.topics
-        self._texts += length if is_new else 0
+        if isinstance(record, Schema) and record.id in self._schemas or isinstance(record, Channel) and record.id in self.topics:
+            return []  # a repetition
+        self._texts += length if isinstance(record, (Metadata, Schema, Channel)) else 0
         if self._texts > self._most_texts:
             raise RecordingError(f"{self.path}: it has {RECORDING_TEXTS.refusal()}")
         if isinstance(record, Schema):

@@ -29,9 +29,6 @@ _BLOCK = 1024 * 1024  # [byte] read at once
 _FOOTER = len(packed(Footer(0, 0, 0)))  # [byte]
 _DATA_END = packed(DataEnd(0))
 _HEAD = re.compile(re.escape(CHECKSUM_HEAD))  # in zeros, which fill files after a loss of power, found ten times as fast as by bytes.find
-_CRC_POLYNOMIAL = 0xEDB88320  # of CRC-32 with the lowest bit first, as in zlib
-_LONGEST_CORRECTED = 1024 * 1024  # [byte] of a section, of which each bit is tried
-_MOST_CORRECTED = 100  # sections; more damage than that is no flipped bit here and there
 _MOST_SEARCHED = 2000  # sections whose end is searched; a file with more of them was made to waste time
 _LONGEST_SEARCH = 256 * 1024 * 1024  # [byte] in which the end of one section is searched; holes of a file may be longer
 _LONGEST_SUMMARY = 4 * 1024**3  # [byte]; that of a day at 1 kHz has a quarter of it
@@ -72,7 +69,6 @@ class SectionReader:
     stream : the file, which begins with the magic number.
     size : its length [byte].
     report : called for each damage, before the section is yielded.
-    corrects : whether a section in which one bit is flipped is corrected; it is reported nevertheless.
     unneeded : opcodes of records that need no report if they are longer than the limit.
 
     Attributes
@@ -83,9 +79,9 @@ class SectionReader:
     ends : why reading ended before that, or ``""``.
     """
 
-    def __init__(self, stream: BinaryIO, size: int, report: Report, corrects: bool = False, unneeded: Container[int] = ()):
-        self._stream, self._size, self._report, self._corrects, self._unneeded = stream, size, report, corrects, unneeded
-        self._longest, self._corrected = RECORDING_RECORD.value, 0
+    def __init__(self, stream: BinaryIO, size: int, report: Report, unneeded: Container[int] = ()):
+        self._stream, self._size, self._report, self._unneeded = stream, size, report, unneeded
+        self._longest = RECORDING_RECORD.value
         self._searched, self._left = 0, 4 * size + _BLOCK  # [byte] that searches may still look at; an honest file needs twice its size
         self.read, self.is_finished, self.ends = 0, False, ""
         self._has_sections = self._finds_checksum_record()
@@ -142,7 +138,8 @@ class SectionReader:
                     break
                 if after == self._size:
                     self.read, self.ends = after, self._reason(begin)
-                    yield self._last(begin, self._bytes(begin, min(end, begin + _LONGEST_SALVAGED)))
+                    data = self._bytes(begin, min(end, begin + _LONGEST_SALVAGED))  # its writer was stopped there, which is no damage
+                    yield Section(data[len(MAGIC) :] if begin == 0 else data, False)
                     return
                 window = _Window(self._stream, after, self._size)
                 if end - begin > self._longest + _LONGEST_INDEX:
@@ -211,66 +208,12 @@ class SectionReader:
 
     def _verified(self, begin: int, data: bytes, checksum: int | None) -> Section:
         """Return a section; ``checksum`` as of `_next_section`."""
-        if checksum is None:
-            return self._without_checksum(begin, data)
         records = data[len(MAGIC) :] if begin == 0 else data
-        difference = zlib.crc32(data) ^ checksum
-        if not difference:
-            return Section(records, True)
-        kind = _KINDS.get(records[0], "a record") if records else "a record"
-        where = f"{kind}, bytes {begin} to {begin + len(data)}"
-        if difference.bit_count() == 1:
-            self._report(f"a checksum record, byte {begin + len(data)}")
-            return Section(records, True)
-        bit = self._flipped_bit(data, difference)
-        if bit is None:
-            self._report(where)
-            return Section(records, False)
-        self._report(f"{where}: bit {bit % 8} of byte {begin + bit // 8} is flipped{', which was corrected' if self._corrects else ''}")
-        if not self._corrects:
-            return Section(records, False)
-        corrected = bytearray(data)
-        corrected[bit // 8] ^= 1 << bit % 8
-        return Section(bytes(corrected[len(MAGIC) :] if begin == 0 else corrected), True)
-
-    def _without_checksum(self, begin: int, data: bytes) -> Section:
-        """Return a section of which no checksum record was found."""
-        records, record = data[: -CHECKSUM_RECORD.size], data[-CHECKSUM_RECORD.size :]
-        if _differing_bits(record, checksum_record(begin, zlib.crc32(records))) == 1:
-            self._report(f"a checksum record, byte {begin + len(records)}")
-            data, is_sound = records, True
-        else:
-            self._report(f"bytes {begin} to {begin + len(data)}")
-            is_sound = False
-        return Section(data[len(MAGIC) :] if begin == 0 else data, is_sound)
-
-    def _last(self, begin: int, data: bytes) -> Section:
-        """Return what follows the last checksum record of an unfinished file: its writer was stopped there, which is no damage."""
-        records, record = data[: -CHECKSUM_RECORD.size], data[-CHECKSUM_RECORD.size :]
-        if _differing_bits(record, checksum_record(begin, zlib.crc32(records))) == 1:
-            return self._without_checksum(begin, data)
-        return Section(data[len(MAGIC) :] if begin == 0 else data, False)
-
-    def _flipped_bit(self, data: bytes, difference: int) -> int | None:
-        """Return which bit of some bytes is wrong if one is, counted from the lowest bit of the first byte; None otherwise.
-
-        A flipped bit changes a CRC by a number that depends only on its distance from the end and differs between all bits: the remainder of a
-        power of x (Koopman, 32-bit cyclic redundancy codes for internet applications, DSN 2002).
-
-        Parameters
-        ----------
-        data : the bytes.
-        difference : of their CRC-32 and the right one, bit by bit.
-        """
-        self._corrected += 1
-        if self._corrected > _MOST_CORRECTED or len(data) > _LONGEST_CORRECTED:
-            return None
-        remainder = 1
-        for bit in range(8 * len(data) - 1, -1, -1):
-            remainder = (remainder >> 1) ^ _CRC_POLYNOMIAL if remainder & 1 else remainder >> 1
-            if remainder == difference:
-                return bit
-        return None
+        is_sound = checksum is not None and zlib.crc32(data) == checksum
+        if not is_sound:
+            kind = _KINDS.get(records[0], "a record") if records else "a record"
+            self._report(f"{kind}, bytes {begin} to {begin + len(data)}")
+        return Section(records, is_sound)
 
     def _finish(self, window: "_Window", checksum: int | None) -> None:
         """Verify what follows the data section.
@@ -348,10 +291,6 @@ def records_in(data: bytes) -> Iterator[tuple[int, bytes]]:
             return
         if opcode != Opcode.MESSAGE_INDEX:
             yield opcode, data[begin:at]
-
-
-def _differing_bits(first: bytes, second: bytes) -> int:
-    return (int.from_bytes(first, "little") ^ int.from_bytes(second, "little")).bit_count() if len(first) == len(second) else 8 * len(second)
 
 
 class _Window:

@@ -165,14 +165,14 @@ class McapWriter:
     def add_schema(self, name: str, encoding: str, data: bytes) -> int:
         """Add a message type and return its id."""
         self._schemas.append(Schema(id=len(self._schemas) + 1, name=name, encoding=encoding, data=data))
-        self._append(packed(self._schemas[-1]))
+        self._append_twice(packed(self._schemas[-1]))
         return self._schemas[-1].id
 
     def add_channel(self, topic: str, message_encoding: str, schema_id: int, metadata: Mapping[str, str]) -> int:
         """Add a topic and return its id; ``schema_id`` 0 stands for no schema."""
         own = len(self._channels) + 1
         self._channels.append(Channel(id=own, schema_id=schema_id, topic=topic, message_encoding=message_encoding, metadata=dict(metadata)))
-        self._append(packed(self._channels[-1]))
+        self._append_twice(packed(self._channels[-1]))
         return own
 
     def add_message(self, message: Message) -> None:
@@ -298,6 +298,11 @@ class McapWriter:
         self._span, self._chunk_span = widened(self._span, first, last), widened(self._chunk_span, first, last)
         if self._size > CHUNK_SIZE:
             self.flush()
+
+    def _append_twice(self, packed: bytes) -> None:
+        """Put what later messages refer to into the file and into the chunk in progress: damage of one of the two makes no message unreadable."""
+        self._write(packed)
+        self._append(packed)
 
     def _append(self, packed: bytes | memoryview) -> None:
         self._parts.append(packed)

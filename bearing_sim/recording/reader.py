@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import yaml
@@ -19,7 +18,7 @@ from bearing_sim.files.tally import Tally
 from bearing_sim.messages.bands import Bands, bands_of_message
 from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, typestore
 from bearing_sim.messages.diagnostics import events_of
-from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement
+from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, Received
 from bearing_sim.messages.sample_messages import sample_columns
 from bearing_sim.messages.topics import (
     ARRAYS,
@@ -56,16 +55,6 @@ _ESTIMATED = {f"/{name}": name for name in ESTIMATED}
 _LAST_OF_SAMPLE = "/roller_loads"
 _LABEL = 12  # first byte of the first label in a serialised Float64MultiArray
 _OF_TILTING_LEVELS = tuple(field for name, topic in OUTPUTS.items() if topic.of_tilting_levels for field in ARRAYS[name].fields)
-
-
-class Received(NamedTuple):
-    """A message of an input or a measurement as it was recorded; times are [ns since the epoch]."""
-
-    topic: str
-    ros_type: str
-    log_ns: int
-    publish_ns: int
-    data: bytes
 
 
 class Recording:

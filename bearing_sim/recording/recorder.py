@@ -1,233 +1,131 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Recordings in real time, written by a process of their own (`bearing_sim.recording.recorder_server`).
+"""Recordings in real time: each is written by a thread of its own, so that a run never waits for a disk.
 
-Laying out, indexing and compressing messages takes interpreter time; a thread beside the solver would take it from the solver between its
-ticks.  Here a block is queued as it is, and a thread sends what has gathered to the other process ten times a second: one pickle of references,
-followed by the blocks' own bytes, written to a pipe without the interpreter's lock.  If nothing runs in real time, use
+Laying out, indexing and compressing a sample of all topics takes some 0.1 ms of a core, most of it without the interpreter's lock.  Records are
+queued as they are; ten times a second the thread takes what has gathered, and adjacent blocks of samples at once.  If nothing runs in real time, use
 `bearing_sim.recording.writer.McapSink` directly.
 
-What a kill loses, by construction: if the feeding process is killed, the recorder completes every file with all that had been sent (see
-`Recorder.backlog`).  If the recorder is killed, its files contain all that it had flushed, which `bearing_sim.recording.recovery` recovers, and the
-next write of the feeding process raises an OSError.  Sending happens every 0.1 s and flushing every 0.5 s as long as both processes get the
-processor; `test/benchmarks/recording_kills.py` measures what is lost in fact, also under load.
+If the process is killed, its files contain all that was flushed (see `bearing_sim.recording.writer.McapFile`), which
+`bearing_sim.recording.recovery` recovers: what is lost was written in the last 0.6 s, as long as the disk keeps up.
+`test/benchmarks/recording_kills.py` measures what is lost in fact; `test/benchmarks/recorder.py` compares the cost with that of other ways.
 """
 
-import fcntl
-import json
 import logging
-import math
-import os
-import pickle
-import signal
-import struct
-import subprocess
-import sys
 import threading
 import time as wall
-from collections import deque
-from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, suppress
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 
-from bearing_sim.messages import topics
-from bearing_sim.messages.bands import Bands
-from bearing_sim.messages.events import Event, Level
-from bearing_sim.model.sample import flat
-from bearing_sim.recording.bag import UNLIMITED, Limits
-from bearing_sim.recording.priority import with_low_priority
+from bearing_sim.messages.events import Level, Record
+from bearing_sim.model.sample import joined
+from bearing_sim.recording.append_file import NO_SPACE
+from bearing_sim.recording.writer import McapSink
 from bearing_sim.scene.scene import Scene
 
-_SEND_EVERY = 0.1  # [s] how often the solver may be disturbed; a killed process loses what it has not sent
-_PIPE = 1024 * 1024  # [byte] so that a late reader does not hold up the sending thread
-_SMALL = 512  # [byte] approximate size of an operation without a block
-_OPEN_WITHIN = 30.0  # [s] for a process that starts on a busy machine
+_GATHER = 0.1  # [s] how often the solver may be disturbed
+_SMALL = 512  # [byte] approximate size of a record that is no block
 _CLOSE_WITHIN = 5.0  # [s]
-_NICENESS = 5  # a file may be a fraction of a second late, the solver may not
-MOST_RESTARTS = 3
-"""How often a recording restarts within `WITHIN`; if its process is killed more often, it is given up."""
-
-WITHIN = 60.0
-"""[s]"""
-
+_RETRY_EVERY = 2.0  # [s] to complete a recording once there is space again; the last try is when the recorder is closed
 _log = logging.getLogger(__name__)
 
 
 class Recorder(AbstractContextManager):
-    """A process that writes recordings, one after the other and several at a time.
+    """Writes recordings in real time, one after the other and several at a time.
 
     Parameters
     ----------
-    capacity : how much may wait for the process [byte]; anything beyond is dropped and counted.
+    capacity : how much may wait to be written to each [byte]; anything beyond is dropped and counted.
     """
 
     def __init__(self, capacity: int = 64 * 1024 * 1024):
         self._capacity = capacity
-        self._client: RecorderClient | None = None
-        self._starting = threading.Lock()
+        self._recordings: list[LiveRecording] = []
+        self._ending = threading.Event()
 
-    def start(self) -> None:
-        """Start the process if there is none, so that the first recording need not wait for it; may be called from any thread."""
-        self._living_client()
-
-    @property
-    def pid(self) -> int | None:
-        """Id of the process; None if there is none."""
-        return self._client.pid if self._client is not None and self._client.end is None else None
-
-    @property
-    def backlog(self) -> int:
-        """How much waits to be sent to the process [byte]; 0 once everything written so far would survive the end of this process."""
-        return 0 if self._client is None else self._client.backlog
-
-    def open(
-        self,
-        path: str | Path,
-        scene: Scene,
-        start_ns: int,
-        limits: Limits = UNLIMITED,
-        advance: tuple[float, int] | None = None,
-        wait: bool = True,
-        frame: str = topics.FRAME,
-        metadata: Mapping[str, Mapping[str, str]] | None = None,
-        names: topics.Names = topics.OWN_NAMES,
-    ) -> "LiveRecording":
-        """Begin a recording; the other parameters are those of `bearing_sim.recording.writer.McapSink`.
-
-        Parameters
-        ----------
-        wait : whether to wait until the file is open; otherwise writes are queued meanwhile, and the first one after an error raises it.
-
-        Raises
-        ------
-        OSError
-            The file cannot be made, or no process can be started.
-        """
-        options = {"limits": limits, "advance": advance, "frame": frame, "metadata": metadata, "names": names}
-        recording = LiveRecording(self._living_client(), Path(path), scene, int(start_ns), options)
-        if wait:
-            recording.wait_until_open()
+    def open(self, path: str | Path, scene: Scene, start_ns: int, **options) -> "LiveRecording":
+        """Begin a recording; parameters and errors are those of `bearing_sim.recording.writer.McapSink`."""
+        recording = LiveRecording(McapSink(path, scene, start_ns, **options), self._capacity, self._ending)
+        self._recordings = [*(each for each in self._recordings if each.is_working), recording]
         return recording
 
     def close(self, timeout: float = _CLOSE_WITHIN) -> bool:
-        """Complete all recordings and end the process; a second call does nothing.
-
-        Parameters
-        ----------
-        timeout : longest wait [s].  A process that needs longer completes its files and ends by itself.
-
-        Returns
-        -------
-        whether it ended.
-        """
-        with self._starting:
-            client, self._client = self._client, None
-        return client.close(timeout) if client is not None else True
-
-    def __exit__(self, *_) -> None:
-        self.close()
-
-    def _living_client(self) -> "RecorderClient":
-        with self._starting:
-            if self._client is None or self._client.end is not None:
-                self._client = RecorderClient(self._capacity)
-            return self._client
-
-
-class _Recording(AbstractContextManager):
-    """The methods of `bearing_sim.recording.writer.McapSink`, each of which offers its arguments to the process that writes."""
-
-    def offer(self, name: str, arguments: tuple, size: int = 0) -> None:
-        """Take an operation with arguments of about this size [byte]."""
-        raise NotImplementedError
-
-    def write(self, block: np.ndarray) -> None:
-        """Write a block of samples, which must not be changed afterwards.
-
-        Raises
-        ------
-        OSError
-            The recording has failed since the last call: its file cannot be written, or its process was killed too often.
-        ValueError
-            It is closed.
-        """
-        if len(block):
-            numbers = flat(np.ascontiguousarray(block))
-            self.offer("write", (numbers, block["roller_angle"].shape[1]), numbers.nbytes)
-
-    write_start = write
-    """Write the state from which the run starts (see `bearing_sim.recording.writer.McapSink.write_start`)."""
-
-    def write_inputs(self, time: float, inputs, channels: Iterable[str] = topics.ALWAYS_KNOWN, origin: topics.Origin | None = None) -> None:
-        """Write the inputs that arrived at ``time`` [s] (see `bearing_sim.recording.writer.McapSink.write_inputs`)."""
-        self.offer("write_inputs", (time, inputs._asdict(), tuple(channels), origin))  # by name: their class would load the solver over there
-
-    def write_measurement(
-        self, time: float, cage_speed: float, residual: float, standard_error: float = math.nan, origin: topics.Origin | None = None
-    ) -> None:
-        """Write a measured cage speed and its standard error [rad/s] that arrived at ``time`` [s], and its residual slip."""
-        self.offer("write_measurement", (time, cage_speed, residual, standard_error, origin))
-
-    def write_clearance(self, time: float, clearance: float, standard_error: float = math.nan, origin: topics.Origin | None = None) -> None:
-        """Write a measured clearance and its standard error [m] that arrived at ``time`` [s]."""
-        self.offer("write_clearance", (time, clearance, standard_error, origin))
-
-    def write_bands(self, bands: Bands) -> None:
-        """Write quantities with their bands."""
-        self.offer("write_bands", (bands,), bands.numbers.nbytes)
-
-    def write_event(self, event: Event) -> None:
-        """Write one event as diagnostics."""
-        self.offer("write_event", (event,))
-
-    def write_diagnostics(self, time: float, events: Iterable[Event] = (), values: Mapping[str, object] | None = None) -> None:
-        """Write a diagnostics message."""
-        self.offer("write_diagnostics", (time, list(events), None if values is None else dict(values)))
+        """Complete all recordings within ``timeout`` [s]; return whether none is being written any more."""
+        until = wall.monotonic() + timeout
+        self._ending.set()
+        for recording in self._recordings:
+            with suppress(OSError):  # whoever closes the recording itself is told
+                recording.close(max(until - wall.monotonic(), 0.0))
+            recording.join(max(until - wall.monotonic(), 0.0))
+        self._recordings = [recording for recording in self._recordings if recording.is_working]
+        return not self._recordings
 
     def __exit__(self, *_) -> None:
         self.close()
 
 
-class LiveRecording(_Recording):
-    """One recording of a `Recorder`, with the methods of `bearing_sim.recording.writer.McapSink`.
+class LiveRecording(AbstractContextManager):
+    """A sink whose records are written by a thread; only `close` waits.
 
-    Only `wait_until_open` and `close` wait.
+    Parameters
+    ----------
+    sink : writes the records.
+    capacity : how much may wait to be written [byte].
+    ending : set when the last try to complete the recording is due.
 
     Attributes
     ----------
     path : the finished file's path, or the bag's.
-    dropped : blocks, inputs and reports dropped so far because the process did not keep up.
+    start_ns : time 0 of the samples [ns since the epoch].
+    dropped : records dropped so far because the disk did not keep up.
     """
 
-    def __init__(self, client: "RecorderClient", path: Path, scene: Scene, start_ns: int, options: dict):
-        self.path, self.start_ns, self.dropped = path, start_ns, 0
-        self._client, self._reported, self._closed = client, 0, False
-        self._number, self._state = client.register()
-        client.put(self._number, "open", (path.absolute(), scene, start_ns, options), urgent=True)
+    keeps_all = True
+
+    def __init__(self, sink: McapSink, capacity: int, ending: threading.Event):
+        self.path, self.start_ns, self.dropped = sink.path, sink.start_ns, 0
+        self._sink, self._capacity, self._ending = sink, capacity, ending
+        self._queue: list[Record] = []
+        self._backlog, self._reported = 0, 0
+        self._changed, self._closing, self._completed = threading.Condition(), threading.Event(), threading.Event()
+        self._error: OSError | None = None  # in writing
+        self._failure: OSError | None = None  # in completing
+        self._thread = threading.Thread(target=self._work, name="recorder", daemon=True)
+        self._thread.start()
 
     @property
-    def is_orphaned(self) -> bool:
-        """Whether the process has ended before this recording was complete."""
-        return self._client.end is not None
+    def is_working(self) -> bool:
+        """Whether its thread has something to do, or may get it."""
+        return self._thread.is_alive()
 
-    def wait_until_open(self) -> None:
-        """Wait until there is a file.
+    def write(self, record: Record) -> None:
+        """Queue a record, or drop it and count that if there is no room.  A block of samples must not be changed afterwards.
 
         Raises
         ------
         OSError
-            It cannot be made, or not within 30 s.
+            The recording has failed since the last call: its file cannot be written.
+        ValueError
+            It is closed.
         """
-        if not self._state.opened.wait(_OPEN_WITHIN):
-            self._client.put(self._number, "close", (), urgent=True)
-            raise OSError(f"{self.path} was not opened within {_OPEN_WITHIN:g} s by the recorder process")
-        if self._state.error is not None:
-            raise self._state.error
+        if self._closing.is_set():
+            raise ValueError(f"{self.path} is closed")
+        if self._error is not None:
+            raise self._error
+        size = _size(record)
+        with self._changed:
+            if self._backlog + size > self._capacity:
+                self.dropped += 1
+                return
+            self._queue.append(record)
+            self._backlog += size
+            self._changed.notify()
 
     def news(self) -> list[tuple[Level, str, str]]:
         """Return (level, kind, text) of what happened to the recording since the last call."""
-        news = [self._state.news.popleft() for _ in range(len(self._state.news))]
+        news = self._sink.news()
         if self.dropped > self._reported:
             self._reported = self.dropped
             text = f"the recording {self.path} does not keep up: {self.dropped} blocks, inputs and reports are missing from it so far"
@@ -240,245 +138,66 @@ class LiveRecording(_Recording):
         Raises
         ------
         OSError
-            It could not be completed, or not within ``timeout`` [s]; the recorder process then continues, even after the end of this one.
+            It could not be completed, or not within ``timeout`` [s]; its thread then continues while the process runs.
         """
-        if self._closed:
+        if self._closing.is_set():
             return
-        self._closed = True
-        earlier, self._state.error = self._state.error, None
-        self._client.put(self._number, "close", (), urgent=True)
-        if not self._state.closed.wait(timeout):
-            raise OSError(f"{self.path} is not complete after {timeout:g} s; the recorder process (id {self._client.pid}) is still completing it")
-        if self._client.end is not None and earlier is not None:
-            raise earlier
-        if self._state.error is not None:
-            raise self._state.error
-
-    def offer(self, name: str, arguments: tuple, size: int = 0) -> None:
-        """Queue an operation for the process, or drop it and count that if there is no room."""
-        if self._closed:
-            raise ValueError(f"{self.path} is closed")
-        if self._state.error is not None:
-            raise self._state.error
-        if not self._client.put(self._number, name, arguments, size + _SMALL):
-            self.dropped += 1
-
-
-class RestartingRecorder(_Recording):
-    """A `LiveRecording` that is replaced by another one, in a new file, when its process has ended.
-
-    What the killed process had not flushed is lost; the call that notices its end, and all later ones, go to the next file.  Errors of the
-    file itself, such as a full disk, are raised as they are, because another file would fare no better.
-
-    Parameters
-    ----------
-    begin : ``begin(wait)`` begins and returns a recording in a new file, and waits until it is open if ``wait``.
-    clock : [s], monotonic.
-
-    Attributes
-    ----------
-    start_ns : time 0 of the samples [ns since the epoch].
-
-    Raises
-    ------
-    OSError
-        The first recording cannot be begun.
-    """
-
-    def __init__(self, begin: Callable[[bool], LiveRecording], clock: Callable[[], float] = wall.monotonic):
-        self._begin, self._clock = begin, clock
-        self._current = begin(True)
-        self.start_ns = self._current.start_ns
-        self._dropped = 0  # by earlier recordings
-        self._restarts: deque[float] = deque()
-        self._news: list[tuple[Level, str, str]] = []
-
-    @property
-    def path(self) -> Path:
-        """Path of the present file, or bag, once it is finished."""
-        return self._current.path
-
-    @property
-    def dropped(self) -> int:
-        """Blocks, inputs and reports dropped so far because the process did not keep up."""
-        return self._dropped + self._current.dropped
-
-    def offer(self, name: str, arguments: tuple, size: int = 0) -> None:
-        """Offer an operation to the present recording, or to another one if the process of the present one has ended."""
-        try:
-            self._current.offer(name, arguments, size)
-        except OSError as error:
-            if not self._current.is_orphaned:
-                raise
-            self._restart(error)
-            self._current.offer(name, arguments, size)
-
-    def news(self) -> list[tuple[Level, str, str]]:
-        """Return (level, kind, text) of what happened to the recording since the last call."""
-        news, self._news = [*self._news, *self._current.news()], []
-        return news
-
-    def close(self, timeout: float = _CLOSE_WITHIN) -> None:
-        """Complete the recording (see `LiveRecording.close`)."""
-        self._current.close(timeout)
-
-    def _restart(self, error: OSError) -> None:
-        now = self._clock()
-        while self._restarts and now - self._restarts[0] > WITHIN:
-            self._restarts.popleft()
-        if len(self._restarts) == MOST_RESTARTS:
-            raise OSError(f"{error}; it was the {MOST_RESTARTS + 1}th process within {WITHIN:g} s, so no other is started") from None
-        self._restarts.append(now)
-        ended = self._current
-        self._current = self._begin(False)
-        self._dropped += ended.dropped
-        text = f"{ended.path} ends early, and what was not flushed is lost: {error}; the recording continues in {self._current.path}"
-        self._news += [*ended.news(), (Level.WARN, "recording.restarted", text)]
-
-
-class _State:
-    """What this process knows about a recording of the other one."""
-
-    def __init__(self):
-        self.opened, self.closed = threading.Event(), threading.Event()
-        self.error: OSError | None = None
-        self.news: deque[tuple[Level, str, str]] = deque()
-
-
-class RecorderClient:
-    """One recorder process, the queue of operations for it, and its reports.
-
-    Attributes
-    ----------
-    pid : id of the process.
-    backlog : size of the operations not sent yet [byte].
-    end : how the process ended, or None.
-    """
-
-    def __init__(self, capacity: int):
-        self._capacity, self.backlog, self._queue = capacity, 0, deque()
-        self._changed, self._urgent = threading.Condition(), threading.Event()
-        self._ended = False
-        self._states: dict[int, _State] = {}
-        self._registered = 0
-        self.end: str | None = None
-        # A session of its own: neither Ctrl-C nor the end of a terminal nor a signal to the whole group reaches the process, not even before
-        # Python could ignore it; the end of its input does.  It also gives the recorder a share of the processor of its own: in idle time, or
-        # with more niceness in the solver's session, it would fall behind beside two busy processes, and what falls behind is lost.
-        self._process = subprocess.Popen(
-            with_low_priority([sys.executable, "-m", "bearing_sim.recording.recorder_server"], _NICENESS),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env=dict(os.environ, PYTHONPATH=os.pathsep.join(place for place in sys.path if place)),
-            start_new_session=True,
-        )
-        self.pid = self._process.pid
-        _widen(self._process.stdin.fileno())
-        self._sender = threading.Thread(target=self._send, name="recorder-sender", daemon=True)
-        self._listener = threading.Thread(target=self._listen, name="recorder-listener", daemon=True)
-        self._sender.start()
-        self._listener.start()
-
-    def register(self) -> tuple[int, _State]:
-        """Return the number and the state of a new recording."""
+        self._closing.set()
         with self._changed:
-            number, self._registered = self._registered, self._registered + 1
-            state = self._states[number] = _State()
-            if self.end is not None:
-                self._give_up(state)
-        return number, state
-
-    def put(self, number: int, name: str, arguments: tuple, size: int = 0, urgent: bool = False) -> bool:
-        """Queue an operation; return whether there was room, which there always is for one without a size."""
-        with self._changed:
-            if size and self.backlog + size > self._capacity:
-                return False
-            self._queue.append((number, name, arguments, size))
-            self.backlog += size
             self._changed.notify()
-        if urgent:
-            self._urgent.set()
-        return True
+        if not self._completed.wait(timeout):
+            text = f"{self.path} is not complete after {timeout:g} s; it is being completed while this process runs"
+            raise OSError(f"{text}, and if that ends before, bearing-sim recover completes what was written")
+        if self._failure is not None:
+            raise self._failure
 
-    def close(self, timeout: float) -> bool:
-        """End the input and wait for the process to end, without waiting for one that never got anything to do."""
-        deadline = wall.monotonic() + timeout
-        with self._changed:
-            self._ended = True
-            self._changed.notify()
-        self._urgent.set()
-        if not self._registered:
-            self._process.kill()
-        self._sender.join(timeout)
-        self._listener.join(max(0.0, deadline - wall.monotonic()))
-        return not self._listener.is_alive()
+    def join(self, timeout: float) -> None:
+        """Wait at most so long [s] for the end of the thread."""
+        self._thread.join(timeout)
 
-    def _send(self) -> None:
-        pipe = self._process.stdin
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def _work(self) -> None:
         try:
-            while (gathered := self._gathered()) is not None:
-                operations = [operation for *operation, _ in gathered]
-                buffers: list[pickle.PickleBuffer] = []
-                head = pickle.dumps(operations, protocol=5, buffer_callback=buffers.append)
-                parts = [memoryview(head), *(buffer.raw() for buffer in buffers)]
-                pipe.write(struct.pack(f"<I{len(parts)}Q", len(parts), *(part.nbytes for part in parts)))
-                for part in parts:
-                    pipe.write(part)
-                pipe.flush()
+            while gathered := self._gathered():
+                for row, run in groupby(gathered, key=lambda record: record.itemsize if isinstance(record, np.ndarray) else 0):
+                    for record in [joined([np.ascontiguousarray(block) for block in run])] if row else run:
+                        self._sink.write(record)
                 with self._changed:
-                    self.backlog -= sum(size for *_, size in gathered)
-        except OSError:  # the process is gone; the listener says why
-            pass
-        finally:  # also after a programming error, so that the process completes its files
-            with suppress(OSError):
-                pipe.close()
+                    self._backlog -= sum(map(_size, gathered))
+        except (OSError, ValueError) as error:
+            self._error = error if isinstance(error, OSError) else OSError(str(error))
+        except Exception as error:  # even a programming error must leave a complete file, and be reported
+            _log.exception("the recording %s ends early", self.path)
+            self._error = OSError(f"{self.path} ends early, programming error: {error!r}")
+        self._complete()
 
-    def _gathered(self) -> list | None:
-        """Return what has gathered for a while; None when nothing more will come."""
+    def _gathered(self) -> list[Record]:
+        """Return what has gathered for a while; nothing once it is closed and all is written."""
         with self._changed:
-            self._changed.wait_for(lambda: self._queue or self._ended)
-        self._urgent.wait(_SEND_EVERY)
+            self._changed.wait_for(lambda: self._queue or self._closing.is_set())
+        self._closing.wait(_GATHER)
         with self._changed:
-            self._urgent.clear()
-            if self._ended:
-                self._urgent.set()  # no more pauses
-            gathered, self._queue = list(self._queue), deque()
-        return gathered or (None if self._ended else [])
+            gathered, self._queue = self._queue, []
+        return gathered
 
-    def _listen(self) -> None:
-        """Read the reports of the process, one line of JSON each, until it ends."""
-        for line in self._process.stdout:
-            report = json.loads(line)
-            state = self._states[report["recording"]]
-            state.news += [(Level[level], kind, text) for level, kind, text in report.get("news", ())]
-            if "error" in report:
-                number, text = report["error"]
-                state.error = OSError(text) if number is None else OSError(number, text)
-            if "closed" in report:
-                state.closed.set()
-                with self._changed:
-                    del self._states[report["recording"]]
-            if report.keys() & {"opened", "error"}:
-                state.opened.set()
-        code = self._process.wait()
-        self._process.stdout.close()
-        with self._changed:
-            self.end = f"was ended by {signal.Signals(-code).name}" if code < 0 else f"ended by itself with exit code {code}"
-            lost = list(self._states.values())
-            for state in lost:
-                self._give_up(state)
-        if lost:
-            _log.error("the recorder process %s (id %d); the run continues without it", self.end, self.pid)
-
-    def _give_up(self, state: _State) -> None:
-        if state.error is None:
-            text = f"the recorder process {self.end}; what it had flushed is in the unfinished file (.active), which bearing-sim recover completes"
-            state.error = OSError(text)
-        state.opened.set()
-        state.closed.set()
+    def _complete(self) -> None:
+        """Complete the file, again and again while the disk is full."""
+        is_last = False
+        while True:
+            try:
+                self._sink.close()
+                self._failure = None
+                return
+            except OSError as error:
+                self._failure = error
+                if is_last or error.errno not in NO_SPACE:
+                    return
+            finally:
+                self._completed.set()
+            is_last = self._ending.wait(_RETRY_EVERY)
 
 
-def _widen(pipe: int) -> None:
-    """Let a pipe buffer more, if the system can and allows it."""
-    with suppress(AttributeError, OSError):
-        fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, _PIPE)
+def _size(record: Record) -> int:
+    return _SMALL + (record.nbytes if isinstance(record, np.ndarray) else 0)

@@ -152,9 +152,8 @@ def foreign_contents(path: str | Path) -> Contents | None:
 def recover(source: str | Path, target: str | Path | Output, progress: Callable[[float], None] = lambda done: None) -> Contents:
     """Write all that can be read of an MCAP file into a sound one; return what was found.
 
-    Messages keep their bytes, times and order.  A chunk or a metadata record in which one bit is flipped is corrected, if the file has checksums
-    that say which one; what is damaged otherwise is left out.  Both are counted.  The metadata of the bag, which a ROS 2 recorder writes at the
-    end, is rebuilt if it is missing or does not count what was found.
+    Messages keep their bytes, times and order.  What is damaged is left out and counted.  The metadata of the bag, which a ROS 2 recorder writes at
+    the end, is rebuilt if it is missing or does not count what was found.
 
     Parameters
     ----------
@@ -173,7 +172,7 @@ def recover(source: str | Path, target: str | Path | Output, progress: Callable[
     """
     source = Path(source)
     output = target if isinstance(target, Output) else Output(target, inputs=[source])
-    reader = McapReader(source, corrects=True)  # before a draft is made
+    reader = McapReader(source)  # before a draft is made
     with output.draft() as draft, open(draft, "wb") as stream:
         copy = _Copy(stream)
         found = _walk(reader, progress, copy.take)

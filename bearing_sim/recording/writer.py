@@ -7,7 +7,7 @@
 import math
 import os
 import threading
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from types import MappingProxyType
@@ -19,7 +19,7 @@ from bearing_sim.files.outputs import rename_without_replacing, synchronise
 from bearing_sim.messages import diagnostics, topics
 from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.cdr import message_type
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, Received, ReceivedInputs, Record, Report, Start
 from bearing_sim.messages.sample_messages import BandMessages, InputMessages
 from bearing_sim.recording.append_file import AppendFile, set_aside
 from bearing_sim.recording.bag import ACTIVE, QOS_TEXT, UNLIMITED, Limits, Part, TopicCount, bag_metadata, write_bag_metadata
@@ -446,7 +446,7 @@ class SplitFiles:
 
 
 class McapSink(AbstractContextManager):
-    """Records a run: inputs as they arrived, every observable of every sample, events and diagnostics.
+    """Records a run: inputs as they arrived, every observable of every sample, events and diagnostics.  See `write`.
 
     Parameters
     ----------
@@ -468,6 +468,8 @@ class McapSink(AbstractContextManager):
     OSError
         The file cannot be made.
     """
+
+    keeps_all = True
 
     def __init__(
         self,
@@ -508,8 +510,33 @@ class McapSink(AbstractContextManager):
         """The finished file's path, or the bag's."""
         return self._files.path
 
-    def write(self, block: np.ndarray) -> None:
-        """Write a block of samples (see `bearing_sim.model.sample`); raises as `McapFile.write`, as all that follows."""
+    def write(self, record: Record) -> None:
+        """Write a record (see `bearing_sim.messages.events.Record`); raises as `McapFile.write`."""
+        match record:
+            case np.ndarray():
+                self._write_samples(record)
+            case Start(block):
+                self._write_samples(block)
+            case Event(time):
+                self._write_diagnostics(diagnostics.news, time, record)
+            case Report(time, events, values):
+                self._write_diagnostics(diagnostics.report, time, events, values)
+            case ReceivedInputs(time, inputs, channels, origin):
+                for channel in channels:
+                    self._write_input(topics.INPUTS[channel], time, inputs, origin)
+            case Measurement(time, cage_speed, residual, standard_error, origin):
+                self._write_input(topics.MEASUREMENTS[topics.MEASURED], time, (cage_speed, standard_error), origin)
+                self._write_input(topics.MEASUREMENTS[topics.RESIDUAL], time, residual, origin)
+            case MeasuredClearance(time, clearance, standard_error, origin):
+                self._write_input(topics.MEASUREMENTS[topics.MEASURED_CLEARANCE], time, (clearance, standard_error), origin)
+            case Bands():
+                times_ns = [self._time_ns(time) for time in record.times.tolist()]
+                for time_ns, message in zip(times_ns, self._band_messages.each(record, times_ns)):
+                    self._put(topics.ESTIMATED[record.topic], time_ns, message)
+            case Received(topic, ros_type, log_ns, publish_ns, data):
+                self._files.current.write_cdr(topic, ros_type, log_ns, data, publish_ns)
+
+    def _write_samples(self, block: np.ndarray) -> None:
         rollers = block["roller_angle"].shape[1]
         if rollers != self._rows.rollers:
             self._lay_out(rollers)
@@ -531,63 +558,17 @@ class McapSink(AbstractContextManager):
             self._last_period = int(periods[-1])
         return found
 
-    write_start = write
-    """Write the state from which the run starts, a block of one sample, so that the run can be reproduced; it is not an output of the run."""
-
-    def write_inputs(self, time: float, inputs, channels: Iterable[str] = topics.ALWAYS_KNOWN, origin: topics.Origin | None = None) -> None:
-        """Write the inputs that arrived at ``time`` [s].
-
-        Parameters
-        ----------
-        time : when they were received [s since the start].
-        inputs : the `bearing_sim.simulation.Inputs` of that instant.
-        channels : which of them arrived; each channel may have stamps of its own.
-        origin : the sender's stamp and frame; stamped with ``time`` if absent.
-        """
-        for channel in channels:
-            self._write_input(topics.INPUTS[channel], time, inputs, origin)
-
-    def write_measurement(
-        self, time: float, cage_speed: float, residual: float, standard_error: float = math.nan, origin: topics.Origin | None = None
-    ) -> None:
-        """Write a measured cage speed and its standard error [rad/s] that arrived at ``time`` [s], and its slip less the predicted slip."""
-        for name, source in ((topics.MEASURED, (cage_speed, standard_error)), (topics.RESIDUAL, residual)):
-            self._write_input(topics.MEASUREMENTS[name], time, source, origin)
-
-    def write_clearance(self, time: float, clearance: float, standard_error: float = math.nan, origin: topics.Origin | None = None) -> None:
-        """Write a measured clearance and its standard error [m] that arrived at ``time`` [s]."""
-        self._write_input(topics.MEASUREMENTS[topics.MEASURED_CLEARANCE], time, (clearance, standard_error), origin)
-
-    def write_bands(self, bands: Bands) -> None:
-        """Write quantities with their bands, a message at each of their instants."""
-        topic = topics.ESTIMATED[bands.topic]
-        times_ns = [self._time_ns(time) for time in bands.times.tolist()]
-        for time_ns, message in zip(times_ns, self._band_messages.each(bands, times_ns)):
-            self._files.current.write_cdr(f"/{topic.name}", topic.ros_type, time_ns, message)
-
     def _write_input(self, topic: topics.Topic, time: float, source, origin: topics.Origin | None) -> None:
         received_ns = self._time_ns(time)
         sent_ns = received_ns if origin is None or origin.stamp_ns is None else origin.stamp_ns
-        message = self._input_messages.serialized(topic, sent_ns, source, None if origin is None else origin.frame_id)
-        self._files.current.write_cdr(f"/{topic.name}", topic.ros_type, received_ns, message)
+        self._put(topic, received_ns, self._input_messages.serialized(topic, sent_ns, source, None if origin is None else origin.frame_id))
 
-    def write_received(self, topic: str, ros_type: str, time_ns: int, data: bytes, publish_ns: int | None = None) -> None:
-        """Copy a serialised message of another recording; times are [ns since the epoch]."""
-        self._files.current.write_cdr(topic, ros_type, time_ns, data, publish_ns)
+    def _write_diagnostics(self, message: Callable[..., dict], time: float, *contents) -> None:
+        (name, ros_type), time_ns = topics.DIAGNOSTICS, self._time_ns(time)
+        self._files.current.write(f"/{name}", ros_type, time_ns, message(time_ns, *contents, **self._status_names))
 
-    def write_event(self, event: Event) -> None:
-        """Write one event as diagnostics."""
-        time_ns = self._time_ns(event.time)
-        self._write_diagnostics(time_ns, diagnostics.news(time_ns, event, **self._status_names))
-
-    def write_diagnostics(self, time: float, events: Iterable[Event] = (), values: Mapping[str, object] | None = None) -> None:
-        """Write a report of all subjects (see `bearing_sim.messages.diagnostics.report`)."""
-        time_ns = self._time_ns(time)
-        self._write_diagnostics(time_ns, diagnostics.report(time_ns, events, values or {}, **self._status_names))
-
-    def _write_diagnostics(self, time_ns: int, message: dict) -> None:
-        name, ros_type = topics.DIAGNOSTICS
-        self._files.current.write(f"/{name}", ros_type, time_ns, message)
+    def _put(self, topic: topics.Topic, time_ns: int, message: bytes) -> None:
+        self._files.current.write_cdr(f"/{topic.name}", topic.ros_type, time_ns, message)
 
     def news(self) -> list[tuple[Level, str, str]]:
         """Return (level, kind, text) of what happened to the files since the last call: deleted and restored, not completed."""

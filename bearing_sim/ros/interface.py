@@ -8,7 +8,7 @@ import shlex
 import subprocess
 import time
 from collections.abc import Callable
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from difflib import SequenceMatcher
 from functools import partial
 from pathlib import Path
@@ -35,7 +35,7 @@ from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSet
 from bearing_sim.ros.polling import PolledSubscriptions
 from bearing_sim.ros.qos import INPUT_QOS, LOSSY_QOS, entities_of_bearing, profiles
 from bearing_sim.ros.rclpy_internals import raw_publish
-from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
+from bearing_sim.ros.recordings import fresh_path, limits_of, open_recording, open_view, prepare
 from bearing_sim.ros.warm_up import WarmUp, levels_to_compile
 from bearing_sim.runtime.governor import RECORD as GOVERNOR_RECORD
 from bearing_sim.runtime.governor import Governor, governor_record, settings_to_fall
@@ -309,9 +309,7 @@ class BearingInterface:
         """Compile or load the model, which takes seconds to minutes; runs on the thread of `WarmUp`."""
         settings = self.settings
         try:
-            recorder = None if follows_clock(self._node) else self._node.recorder
-            if settings.record or settings.has_view:
-                prepare(settings.has_view, recorder)
+            prepare(settings.has_view)
             self._outputs.prepare()
             self._response = kept_response(self.scene) if self.scene.estimation.is_asked else None
             simulation = warmed_up(self.scene)
@@ -320,9 +318,6 @@ class BearingInterface:
             self._settings, self._courses = settings_to_fall(self.scene, kept), () if kept is None else kept.at(self.scene).courses
             self._wants_governor = governs  # made once the run has begun, which does not wait for the code of other levels
             self._simulation = simulation
-            if not settings.record:  # for a recording that a service asks for, which reports why it cannot be made
-                with suppress(OSError):
-                    prepare(False, recorder)
         except IntegrationError as error:
             self.error = f"the scene's own operating conditions cannot be computed: {error}"
         except Exception as error:  # a programming error: reported by the node, where users look
@@ -703,11 +698,9 @@ class BearingInterface:
             return found
 
         def opened(start_ns: int):
-            limits, further = limits_of(self._shared), (self.settings.frame, records, self._recorded_names())
-            if follows_clock(self._node):
-                sink = open_lossless_recording(path, self.scene, start_ns, limits, *further)
-            else:
-                sink = open_recording(path, self.scene, start_ns, limits, self.live.schedule, self._node.recorder, *further)
+            schedule = None if follows_clock(self._node) else self.live.schedule
+            further = (self.settings.frame, records, self._recorded_names())
+            sink = open_recording(path, self.scene, start_ns, limits_of(self._shared), schedule, self._node.recorder, *further)
             self._log(f"recording {sink.path}" + (f" ({path} exists and is kept)" if sink.path != path else ""))
             return sink
 

@@ -146,7 +146,7 @@ class BearingNode(LifecycleNode):
         self._scenes: dict[str, Scene] = {}  # of the bearings of workers
         self._state, self._next_report_ns, self._reviewed = "unconfigured", 0, time.monotonic()
         self._warm_up = WarmUp()
-        self.recorder = Recorder()  # one process for the recordings of all bearings
+        self.recorder = Recorder()
         self.solver_threads = SolverThreads()
         self.parameters = ParameterServer(self)
         self._shared: NodeSettings | None = None

@@ -8,9 +8,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bearing_sim.messages.cdr import load_message_types
 from bearing_sim.messages.topics import FRAME, OWN_NAMES, Names
 from bearing_sim.recording.bag import Limits
-from bearing_sim.recording.recorder import Recorder, RestartingRecorder
+from bearing_sim.recording.recorder import Recorder
+from bearing_sim.recording.writer import McapSink
 from bearing_sim.runtime.pacing import TickSchedule
 from bearing_sim.scene.scene import Scene
 
@@ -18,23 +20,11 @@ if TYPE_CHECKING:
     from bearing_sim.ros.parameters import NodeSettings
 
 
-def prepare(view: bool, recorder: Recorder | None) -> None:
-    """Start or import what recordings need: half a second that would otherwise delay the first message.
-
-    Parameters
-    ----------
-    view : whether a view will be opened.
-    recorder : the process that will record; None if this process records.
-    """
+def prepare(view: bool) -> None:
+    """Import what recordings, and a ``view``, need: half a second that would otherwise delay the first message."""
     if view:
         with suppress(ModuleNotFoundError):  # reported when the view is opened
             importlib.import_module("bearing_sim.view.sink")
-    if recorder is not None:
-        recorder.start()
-        return
-    from bearing_sim.messages.cdr import load_message_types
-
-    importlib.import_module("bearing_sim.recording.writer")
     load_message_types()
 
 
@@ -43,23 +33,21 @@ def open_recording(
     scene: Scene,
     start_ns: int,
     limits: Limits,
-    schedule: TickSchedule,
+    schedule: TickSchedule | None,
     recorder: Recorder,
     frame: str = FRAME,
     records: Callable[[], Mapping[str, Mapping[str, str]]] = dict,
     names: Names = OWN_NAMES,
 ):
-    """Return a recording in real time, under a fresh name if ``path`` exists.
-
-    If the recording process is killed, the recording continues in another fresh file (see `bearing_sim.recording.recorder.RestartingRecorder`).
+    """Return a recording under a fresh name if ``path`` exists.
 
     Parameters
     ----------
     path : requested path, a file or a bag's folder.
     scene, start_ns : what is simulated, and time 0 of the samples [ns since the epoch].
     limits : of the size and duration of files.
-    schedule : of the live model.
-    recorder : the process that records.
+    schedule : of the live model; None for a run by sim time, which waits for its recording so that nothing is dropped.
+    recorder : what records in real time.
     frame : the bearing's.
     records : returns further metadata records of a recording that begins now, by name.
     names : under which topics and statuses are recorded.
@@ -69,27 +57,9 @@ def open_recording(
     OSError
         The file cannot be created.
     """
-    advance = (schedule.tick, schedule.samples) if schedule.every == 1 else None
-
-    def begin(wait: bool):
-        return recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait, frame=frame, metadata=records(), names=names)
-
-    return RestartingRecorder(begin)
-
-
-def open_lossless_recording(
-    path: Path,
-    scene: Scene,
-    start_ns: int,
-    limits: Limits,
-    frame: str = FRAME,
-    records: Callable[[], Mapping[str, Mapping[str, str]]] = dict,
-    names: Names = OWN_NAMES,
-):
-    """Return a recording written in this process, which the model waits for, as a run by sim time needs; otherwise as `open_recording`."""
-    from bearing_sim.recording.writer import McapSink
-
-    return McapSink(fresh_path(path), scene, start_ns, records(), limits=limits, frame=frame, names=names)
+    advance = (schedule.tick, schedule.samples) if schedule is not None and schedule.every == 1 else None
+    begin = McapSink if schedule is None else recorder.open
+    return begin(fresh_path(path), scene, start_ns, metadata=records(), limits=limits, advance=advance, frame=frame, names=names)
 
 
 def limits_of(settings: "NodeSettings") -> Limits:

@@ -19,7 +19,7 @@ from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import BANDS, Bands
 from bearing_sim.messages.diagnostics import SETTING_ERRORS, further_condition, sink_subject
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, ReceivedInputs, Report
 from bearing_sim.model.plausibility import plausibility
 from bearing_sim.model.sample import RING_TEMPERATURES, joined
 from bearing_sim.monitoring.limits import LimitsMonitor
@@ -332,7 +332,7 @@ class Model:
             return
         self._estimation.know([channel for channel, count in self.gate.accepted.items() if count])
         for bands in self._estimation.take(block):
-            self.sinks.write_bands(now, bands)
+            self.sinks.write(now, bands)
             self._bands.append(bands)
             if bands.topic == BANDS:
                 self._slip_band = float(bands.numbers[-1, bands.names.index("cage_slip"), 2])
@@ -360,7 +360,7 @@ class Model:
         self.level = level_of(events)
         news = self.health.news(events)
         for event in news:
-            self.sinks.write_event(event if event.time >= 0.0 else event._replace(time=0.0))
+            self.sinks.write(event.time, event if event.time >= 0.0 else event._replace(time=0.0))
         return news
 
     def condition(self, now_ns: int) -> Condition:
@@ -402,7 +402,8 @@ class Model:
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
         """Write a diagnostics report to the recorders."""
-        self.sinks.write_diagnostics(self.run_time(now_ns), condition.events, condition.values)
+        now = self.run_time(now_ns)
+        self.sinks.write(now, Report(now, condition.events, condition.values))
 
     def close(self, timeout: float = 2.0) -> bool:
         """Stop the solver, pass on its last results and complete the sinks.
@@ -608,7 +609,8 @@ class LiveModel(Model):
         self.tick(now_ns)
         now = self.run_time(now_ns)
         if channel not in topics.MEASURED_CHANNELS and self.sinks.recorders:
-            self.sinks.write_inputs(now, with_values(self.gate.held, channel, values), [channel], topics.Origin(stamp_ns, frame_id))
+            inputs = with_values(self.gate.held, channel, values)
+            self.sinks.write(now, ReceivedInputs(now, inputs, [channel], topics.Origin(stamp_ns, frame_id)))
         event = self.gate.offer(channel, now if stamp_ns is None else self.run_time(stamp_ns), values, now)
         if event is not None:
             self._note(event)
@@ -643,7 +645,8 @@ class LiveModel(Model):
         self.gate.hold_oil_temperature(temperature)
         if self.gate.accepted["shaft_speed"]:
             self.solver.post(self.gate.held)
-        self.sinks.write_inputs(self.run_time(now_ns), self.gate.held, ["oil_temperature"], topics.Origin(None, ""))
+        now = self.run_time(now_ns)
+        self.sinks.write(now, ReceivedInputs(now, self.gate.held, ["oil_temperature"], topics.Origin(None, "")))
 
     def collect(self, now_ns: int) -> list[Event]:
         """Pass results of the solver on and review the health (see `Model.collect`)."""
@@ -779,14 +782,14 @@ class LiveModel(Model):
             residual = measured - predicted
             if self.residual.time != before and not math.isnan(self.residual.time):
                 self._residuals = [(self.stamp(self.residual.time), self.residual.residual)]  # only the newest is published
-        self.sinks.write_measurement(now, self.gate.measured, residual, self.gate.standard_error, origin)
+        self.sinks.write(now, Measurement(now, self.gate.measured, residual, self.gate.standard_error, origin))
 
     def _take_clearance(self, now: float, origin: topics.Origin) -> None:
         """Let a measured clearance calibrate, while there is a sample that it belongs to."""
         reading = self.gate.latest(topics.MEASURED_CLEARANCE)
         if self._estimation is not None and self.solver.newest is not None and self.solver.phase is Phase.RUNNING and self._is_at_own_level:
             self._estimation.measure_clearance(now, *reading)
-        self.sinks.write_clearance(now, *reading, origin)
+        self.sinks.write(now, MeasuredClearance(now, *reading, origin))
 
     @property
     def _is_at_own_level(self) -> bool:

@@ -15,7 +15,7 @@ from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.inputs.profile import InputProfile
 from bearing_sim.messages.bands import BANDS, Bands
 from bearing_sim.messages.diagnostics import condition, further_condition
-from bearing_sim.messages.events import Event
+from bearing_sim.messages.events import Event, MeasuredClearance, ReceivedInputs, Report, Start
 from bearing_sim.model.sample import joined
 from bearing_sim.model.turning import SLIP_FROM_SPEED, Use, slip_statistics, slipping_seconds, turns, use_of
 from bearing_sim.model.validity import Exceedance, Law
@@ -287,13 +287,13 @@ class _Run:
                     if self._keeper is not None:
                         self._keeper.count(item.block, self._profile.start_ns, np.zeros(len(item.block)))
                     for recording in self._recordings:
-                        recording.write_start(item.block)
+                        recording.write(Start(item.block))
                     # Not where outputs take long, so that a recording that is cut short has them; nor where a measurement acts on the next output.
                     is_fast = getattr(run.simulation, "takes_profiles", False) and not self._scene.estimation.calibrated
                     together = _TOGETHER if is_fast else 1
                 else:
                     for recording in self._recordings:
-                        recording.write_inputs(*item)
+                        recording.write(ReceivedInputs(*item))
             if k % _PROGRESS_EVERY == 0:
                 self._progress(moment)
         if not run.given_up:
@@ -412,11 +412,11 @@ class _Run:
             numbers[~turns(speeds, self._result.slip_from_speed), bands.names.index("cage_slip")] = math.nan
             self._result.bands.append(bands._replace(numbers=numbers))
         for sink in (*self._recordings, *self._watchers):
-            sink.write_bands(bands)
+            sink.write(bands)
 
     def _write_measured(self, compared) -> None:
         for sink in (*self._recordings, *self._watchers):
-            sink.write_measurement(*compared)
+            sink.write(compared)
 
     def _report(self, sample, moment: float) -> None:
         """Write a change of the bearing's condition at once, and the condition once a second."""
@@ -440,7 +440,7 @@ class _Run:
             values = condition(sample) | further_condition(self._scene, sample) | self._monitor.values | residual.values(moment)
             values |= self._estimation.values(moment) if self._estimation is not None else {}
             for recording in self._recordings:
-                recording.write_diagnostics(moment, worst_first, values)
+                recording.write(Report(moment, worst_first, values))
 
     def _write_to_watchers(self) -> None:
         if self._watched:
@@ -452,13 +452,13 @@ class _Run:
     def _write_event(self, event: Event) -> None:
         self._result.events[event.kind] += 1
         for sink in (*self._recordings, *self._watchers):
-            sink.write_event(event)
+            sink.write(event)
 
     def _write_events_until(self, moment: float) -> None:
         """Write the events and the measured clearances of the log up to a time [s]."""
         while self._pending_clearances and self._pending_clearances[0][0] <= moment:
             for sink in (*self._recordings, *self._watchers):
-                sink.write_clearance(*self._pending_clearances[0])
+                sink.write(MeasuredClearance(*self._pending_clearances[0]))
             self._pending_clearances.popleft()
         while self._pending_events and self._pending_events[0].time <= moment:
             self._take_outputs()  # they come first

@@ -93,7 +93,7 @@ def reproduce(
     began = time.perf_counter()
     for item in recording.with_received():
         if isinstance(item, Received):
-            sink.write_received(item.topic, item.ros_type, item.log_ns, item.data, item.publish_ns)
+            sink.write(item)
             run.result.received += 1
             if bands is not None:
                 bands.receive(item)
@@ -117,7 +117,7 @@ def _write(block: np.ndarray, run: "_Run", sink, bands: ReproducedBands | None) 
     sink.write(block)
     if bands is not None and len(block):
         for each in bands.take(block, run.restarts):
-            sink.write_bands(each)
+            sink.write(each)
     run.restarts.clear()
 
 
@@ -191,7 +191,7 @@ class _Run:
     def _give_up(self, sample: np.void, error: IntegrationError, recorded: np.ndarray) -> np.ndarray:
         """Report what could not be computed, return what was recorded there, and continue from it."""
         self.result.failed += len(recorded)
-        self._sink.write_event(
+        self._sink.write(
             Event(float(sample["time"]), Level.ERROR, "reproduction.failed", "", str(error), "the run continues from the recorded sample")
         )
         self._simulation.resume(sample)

@@ -20,7 +20,8 @@ from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.inputs.gate import REQUIRED, ClockJumpFilter, InputGate, Message, Verdict
 from bearing_sim.inputs.profile import Arrival, OnlineInputProfile, gap_event
 from bearing_sim.messages import topics
-from bearing_sim.messages.events import Event, Level, Measurement
+from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, ReceivedInputs
+from bearing_sim.messages.events import Start as StartRecord
 from bearing_sim.monitoring.residual import Comparison
 from bearing_sim.runtime.advance_segment import Begun, Output
 from bearing_sim.runtime.live import Model, Published
@@ -394,11 +395,11 @@ class SimTimeModel(Model):
             elif isinstance(item, Begun):
                 if self.keeper is not None:
                     self.keeper.count(item.block, self.start_ns, np.zeros(len(item.block)))
-                self.sinks.write_start(item.time, item.block)
+                self.sinks.write(item.time, StartRecord(item.block))
             elif isinstance(item, Output):
                 self._take_output(item.block, item.weights)
             elif isinstance(item, Arrival):
-                self.sinks.write_inputs(*item)
+                self.sinks.write(item.time, ReceivedInputs(*item))
             else:
                 self._note_solver_event(item, item.time)
         self._pass_on(self._comparison.due())
@@ -429,7 +430,7 @@ class SimTimeModel(Model):
         if channel == topics.MEASURED:
             self._comparison.measure(time, value, standard_error)
         else:
-            self.sinks.write_clearance(time, value, standard_error)
+            self.sinks.write(time, MeasuredClearance(time, value, standard_error))
         if self._estimation is not None and not (self.keeper is not None and self.keeper.contained(self.stamp(time))):
             take = self._estimation.measure if channel == topics.MEASURED else self._estimation.measure_clearance
             take(time, value, standard_error)
@@ -452,7 +453,7 @@ class SimTimeModel(Model):
 
     def _pass_on(self, compared: Iterable[Measurement]) -> None:
         for measurement in compared:
-            self.sinks.write_measurement(*measurement)
+            self.sinks.write(measurement.time, measurement)
             if not math.isnan(measurement.residual):
                 self._residuals.append((self.stamp(measurement.time), measurement.residual))
 

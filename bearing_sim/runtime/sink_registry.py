@@ -1,38 +1,24 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The sinks of a running model by name.  A sink that cannot write is closed and reported; the model continues."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from typing import Protocol
 
-import numpy as np
-
-from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.diagnostics import sink_subject
-from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import Origin
-from bearing_sim.simulation import Inputs
+from bearing_sim.messages.events import Event, Level, ReceivedInputs, Record, Report, Start
 
 
 class Sink(Protocol):
-    """A destination of samples, events, measured cage speeds and clearances, and bands (see `bearing_sim.recording` and `bearing_sim.view`).
+    """A destination of records (see `bearing_sim.recording` and `bearing_sim.view`).
 
-    A block of samples must not be changed, and is not changed by its sender afterwards.
+    One with an attribute ``keeps_all`` that is true gets starts, inputs and reports, too.
     """
 
-    def write(self, block: np.ndarray) -> None: ...
-    def write_event(self, event: Event) -> None: ...
-    def write_measurement(self, time: float, cage_speed: float, residual: float, standard_error: float, origin: Origin | None = None) -> None: ...
-    def write_clearance(self, time: float, clearance: float, standard_error: float, origin: Origin | None = None) -> None: ...
-    def write_bands(self, bands: Bands) -> None: ...
+    def write(self, record: Record) -> None: ...
     def close(self) -> None: ...
 
 
-class Recorder(Sink, Protocol):
-    """A sink that also keeps the start, the inputs and the diagnostics."""
-
-    def write_start(self, block: np.ndarray) -> None: ...
-    def write_inputs(self, time: float, inputs: Inputs, channels, origin: Origin | None = None) -> None: ...
-    def write_diagnostics(self, time: float, events, values) -> None: ...
+_FOR_KEEPING = (Start, ReceivedInputs, Report)
 
 
 class SinkRegistry:
@@ -40,20 +26,20 @@ class SinkRegistry:
 
     Attributes
     ----------
-    by_name, recorders : dict[str, Sink], dict[str, Recorder]
-        All of them, and those that keep inputs and diagnostics too.
+    by_name, recorders : dict[str, Sink]
+        All of them, and those that keep the start, inputs and reports too.
     """
 
     def __init__(self):
         self.by_name: dict[str, Sink] = {}
-        self.recorders: dict[str, Recorder] = {}
+        self.recorders: dict[str, Sink] = {}
         self._failed: dict[str, Event] = {}
 
     def __contains__(self, name: str) -> bool:
         return name in self.by_name
 
     def attach(self, name: str, sink: Sink) -> None:
-        """Add a sink; one with ``write_inputs`` gets inputs and diagnostics too.
+        """Add a sink.
 
         Raises
         ------
@@ -64,7 +50,7 @@ class SinkRegistry:
             raise ValueError(f"there is a sink {name!r} already")
         self.by_name[name] = sink
         self._failed.pop(name, None)
-        if hasattr(sink, "write_inputs"):
+        if getattr(sink, "keeps_all", False):
             self.recorders[name] = sink
 
     def detach(self, name: str) -> Sink | None:
@@ -82,42 +68,11 @@ class SinkRegistry:
             sink.close()
         return sink
 
-    def write(self, now: float, block: np.ndarray) -> None:
-        """Write a block of samples to all sinks, at ``now`` [s]."""
-        self._each(self.by_name, now, "write", block)
-
-    def write_event(self, event: Event) -> None:
-        """Write an event to all sinks."""
-        self._each(self.by_name, event.time, "write_event", event)
-
-    def write_measurement(self, time: float, cage_speed: float, residual: float, standard_error: float, *origin: Origin) -> None:
-        """Write a measured cage speed and its standard error [rad/s] to all sinks."""
-        self._each(self.by_name, time, "write_measurement", time, cage_speed, residual, standard_error, *origin)
-
-    def write_clearance(self, time: float, clearance: float, standard_error: float, *origin: Origin) -> None:
-        """Write a measured clearance and its standard error [m] to all sinks."""
-        self._each(self.by_name, time, "write_clearance", time, clearance, standard_error, *origin)
-
-    def write_bands(self, now: float, bands: Bands) -> None:
-        """Write quantities with their bands to all sinks, at ``now`` [s]."""
-        self._each(self.by_name, now, "write_bands", bands)
-
-    def write_start(self, time: float, block: np.ndarray) -> None:
-        """Write the state at the start to all recorders."""
-        self._each(self.recorders, time, "write_start", block)
-
-    def write_inputs(self, time: float, inputs: Inputs, channels: Iterable[str], *origin: Origin) -> None:
-        """Write inputs that arrived at ``time`` [s] to all recorders."""
-        self._each(self.recorders, time, "write_inputs", time, inputs, channels, *origin)
-
-    def write_diagnostics(self, time: float, events: Iterable[Event], values: Mapping[str, object]) -> None:
-        """Write a diagnostics report to all recorders."""
-        self._each(self.recorders, time, "write_diagnostics", time, events, values)
-
-    def _each(self, sinks: Mapping[str, Sink], now: float, method: str, *arguments) -> None:
-        for name, sink in list(sinks.items()):
+    def write(self, now: float, record: Record) -> None:
+        """Write a record to all sinks that take it, at ``now`` [s]."""
+        for name, sink in list((self.recorders if isinstance(record, _FOR_KEEPING) else self.by_name).items()):
             try:
-                getattr(sink, method)(*arguments)
+                sink.write(record)
             except (OSError, ValueError) as error:
                 self.fail(name, now, error)
 

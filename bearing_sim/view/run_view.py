@@ -10,7 +10,7 @@ import numpy as np
 import rerun as rr
 
 from bearing_sim.messages.bands import Bands
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, Record
 from bearing_sim.messages.topics import ZERO_CELSIUS
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
@@ -223,10 +223,24 @@ class RunView:
         self._recording.log("/about", rr.TextDocument(about(scene, self._drawing.factor), media_type=rr.MediaType.MARKDOWN), static=True)
         self.dropped = 0
 
-    def write(self, block: np.ndarray) -> None:
-        """Take a block of samples; columns may wait for `flush`."""
-        if not len(block):
-            return
+    def write(self, record: Record) -> None:
+        """Take a record; columns of samples, and bands, may wait for `flush`.  Standard errors of measurements are not shown."""
+        match record:
+            case Event():
+                self._series.write_event(record)
+                if not self._live:
+                    self._frames.want()
+            case Measurement(time, cage_speed, residual):
+                self._series.note_measurement(time, cage_speed, residual)
+            case MeasuredClearance(time, clearance):
+                self._series.note_clearance(time, clearance)
+            case Bands():
+                if self._bands is not None:
+                    self._bands.write(record)
+            case np.ndarray() if len(record):
+                self._write_samples(record)
+
+    def _write_samples(self, block: np.ndarray) -> None:
         if self._newest is None:
             self._first_time = float(block["time"][0])
             self._series.write_event(Event(float(block["time"][0]), Level.OK, "run.start", "", "the run starts"))
@@ -246,25 +260,6 @@ class RunView:
         self._enter_maps(block[entered:])
         if sum(map(len, self._pending)) >= ROWS_PER_COLUMN:
             self.flush()
-
-    def write_event(self, event: Event) -> None:
-        """Take an event."""
-        self._series.write_event(event)
-        if not self._live:
-            self._frames.want()
-
-    def write_measurement(self, time: float, cage_speed: float, residual: float, standard_error: float = math.nan) -> None:
-        """Take a cage speed [rad/s] measured at ``time`` [s] and its residual slip, a fraction or NaN; its standard error is not shown."""
-        self._series.note_measurement(time, cage_speed, residual)
-
-    def write_clearance(self, time: float, clearance: float, standard_error: float = math.nan) -> None:
-        """Take a running clearance [m] measured at ``time`` [s]; its standard error is not shown."""
-        self._series.note_clearance(time, clearance)
-
-    def write_bands(self, bands: Bands) -> None:
-        """Take quantities with their bands; they may wait for `flush`."""
-        if self._bands is not None:
-            self._bands.write(bands)
 
     def write_dropped(self, dropped: int) -> None:
         """Show that ``dropped`` blocks in total were dropped before they reached the view."""

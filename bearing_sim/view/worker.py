@@ -13,7 +13,6 @@ process that feeds this one; whichever way that process ends, the input ends, an
 import atexit
 import json
 import logging
-import math
 import os
 import pickle
 import queue
@@ -28,9 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.messages.bands import Bands
-from bearing_sim.messages.events import Event, MeasuredClearance, Measurement
-from bearing_sim.messages.topics import Origin
+from bearing_sim.messages.events import Record
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view.run_view import NOTHING_KNOWN, RunView, ViewOptions
 from bearing_sim.view.viewer import incomplete, is_complete
@@ -78,7 +75,7 @@ def _rows(item) -> int:
 
 
 class View(AbstractContextManager):
-    """What takes blocks of samples, events, measurements and bands for a view, and drops and counts what does not fit into its queue.
+    """What takes records for a view, and drops and counts what does not fit into its queue.
 
     Attributes
     ----------
@@ -97,37 +94,11 @@ class View(AbstractContextManager):
         """Blocks, events and measurements dropped so far."""
         return self._dropped
 
-    def write(self, block: np.ndarray) -> None:
-        """Take a block of samples; returns at once."""
-        if len(block):
-            self.put(block.copy())
-
-    def write_event(self, event: Event) -> None:
-        """Take an event; returns at once."""
-        self.put(event)
-
-    def write_measurement(
-        self, time: float, cage_speed: float, residual: float, standard_error: float = math.nan, origin: Origin | None = None
-    ) -> None:
-        """Take a cage speed [rad/s] measured at ``time`` [s] and its residual slip: measured less predicted (a fraction, or NaN).
-
-        ``origin`` is kept by recordings and ignored here.
-        """
-        self.put(Measurement(time, cage_speed, residual, standard_error))
-
-    def write_clearance(self, time: float, clearance: float, standard_error: float = math.nan, origin: Origin | None = None) -> None:
-        """Take a running clearance [m] measured at ``time`` [s]; ``origin`` as of `write_measurement`."""
-        self.put(MeasuredClearance(time, clearance, standard_error))
-
-    def write_bands(self, bands: Bands) -> None:
-        """Take quantities with their bands; returns at once."""
-        self.put(bands)
-
-    def put(self, item: np.ndarray | Event | Measurement | MeasuredClearance | Bands) -> None:
-        """Queue an item, which must not be changed any more; returns at once, except if nothing is dropped."""
+    def write(self, record: Record) -> None:
+        """Queue a record, which must not be changed any more; returns at once, except if nothing is dropped."""
         if self._closed:
             raise ValueError("the rerun view is closed")
-        self._enqueue(item)
+        self._enqueue(record.copy() if isinstance(record, np.ndarray) else record)
 
     def _enqueue(self, item) -> None:
         try:
@@ -209,16 +180,7 @@ class ViewThread(View):
             item = self._next_item()
             if item is None or self._is_abandoned:
                 break
-            if isinstance(item, Event):
-                view.write_event(item)
-            elif isinstance(item, Measurement):
-                view.write_measurement(*item)
-            elif isinstance(item, MeasuredClearance):
-                view.write_clearance(*item)
-            elif isinstance(item, Bands):
-                view.write_bands(item)
-            elif len(item):
-                view.write(item)
+            view.write(item)
             if self._real_time and wall.monotonic() - flushed > _FLUSH_EVERY:
                 flushed = wall.monotonic()
                 view.flush()
@@ -325,7 +287,7 @@ def main() -> None:
             if isinstance(item, Dropped):
                 view.note_dropped(item.count)
             else:
-                view.put(item)
+                view.write(item)
     finished = [view.close(_FINISH_WITHIN[is_file]) for is_file, view in views.items()]
     _report(_state(views.values(), browsers))
     os._exit(0 if all(finished) else 1)  # rerun's own shutdown may wait for a viewer that stopped reading

@@ -79,10 +79,10 @@ def _run(situation, rrd: Path) -> dict:
                     blocks.append(item)
                     progress(float(item["time"][-1]))
                 elif isinstance(item, Measurement):
-                    sink.write_measurement(*item)
+                    sink.write(item)
                     residuals.append(item)
                 else:
-                    sink.write_event(item)
+                    sink.write(item)
                     kinds.append(item.kind)
     return _figures(situation, np.concatenate(blocks), residuals, kinds)
 

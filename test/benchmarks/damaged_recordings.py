@@ -33,7 +33,7 @@ from mcap.records import Attachment, Channel, Metadata, Schema
 from bearing_sim.cli.main import main
 from bearing_sim.cli.options import json_option
 from bearing_sim.cli.reporting import FailedRun, print_json, print_rows
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, ReceivedInputs, Report, Start
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import McapReader
@@ -139,14 +139,14 @@ def _as_node(path: Path, duration: float) -> None:
     inputs = Inputs(1500.0, 800.0, -50.0, 393.15)
     run = Simulation(load_scene(SCENE, _LEVEL), inputs)
     with McapSink(path, load_scene(SCENE, _LEVEL), _START) as sink:
-        sink.write_start(np.atleast_1d(run.sample))
+        sink.write(Start(np.atleast_1d(run.sample)))
         for k in range(round(duration / 0.01)):
-            sink.write_inputs(0.01 * k, inputs)
+            sink.write(ReceivedInputs(0.01 * k, inputs))
             sink.write(run.advance(0.01, inputs, 10))
             if k % 10 == 5:
-                sink.write_event(Event(0.01 * k, Level.WARN, "slip.high", "slip", f"is {k} %"))
+                sink.write(Event(0.01 * k, Level.WARN, "slip.high", "slip", f"is {k} %"))
             if k % 100 == 0:
-                sink.write_diagnostics(0.01 * k, [Event(0.01 * k, Level.OK, "solver.pace", "pace", "keeps up")], {"pace.lag": 0.001})
+                sink.write(Report(0.01 * k, [Event(0.01 * k, Level.OK, "solver.pace", "pace", "keeps up")], {"pace.lag": 0.001}))
 
 
 def whole(path: Path) -> Whole:

@@ -40,11 +40,9 @@ class _Kept:
     def __init__(self):
         self.samples = []
 
-    def write(self, block: np.ndarray) -> None:
-        self.samples += zip(block["time"].tolist(), block["cage_slip"].tolist())
-
-    def write_event(self, event) -> None:
-        pass
+    def write(self, record) -> None:
+        if isinstance(record, np.ndarray):
+            self.samples += zip(record["time"].tolist(), record["cage_slip"].tolist())
 
     def close(self) -> None:
         pass

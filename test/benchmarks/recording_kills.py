@@ -1,16 +1,14 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """How much a killed recording loses: ``python test/benchmarks/recording_kills.py``.
 
-A recording in real time has two processes: one simulates and feeds, the other writes (`bearing_sim.recording.recorder`).  The benchmark kills
-them at random moments, recovers every file, and counts what is missing.
+A thread of the process that simulates writes (`bearing_sim.recording.recorder`).  The benchmark kills the process at random moments, recovers every
+file, and counts what is missing.
 
-How to read it: "lost" is the time between the last sample handed over and the last sample recovered, by victim; no file may lose more than 1 s
-or have a hole before its last sample.  Exit code 1 otherwise.
+How to read it: "lost" is the time between the last sample handed over and the last sample recovered; no file may lose more than 1 s or have a hole
+before its last sample.  Exit code 1 otherwise.
 """
 
 import multiprocessing
-import os
-import signal
 import tempfile
 import time
 from collections.abc import Callable
@@ -22,6 +20,7 @@ import numpy as np
 
 from bearing_sim.cli.options import json_option
 from bearing_sim.cli.reporting import FailedRun, print_json, print_table
+from bearing_sim.messages.events import ReceivedInputs
 from bearing_sim.model.sample import new_block
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.reader import Recording
@@ -35,9 +34,6 @@ _BLOCK_PERIOD = 0.005  # [s] between blocks
 _LONGEST_RUN = 3.0  # [s]
 _START_UP = 60.0  # [s] for processes to start and to end on a busy machine
 _PROMISE = 1.0  # [s] that a killed recording may lose
-_WRITER_LOST = 42  # exit code of a feeder that noticed the end of its writer
-VICTIMS = ("feeder", "writer", "both")
-"""Processes to kill: the feeder, whose file the writer completes; the writer, whose file is recovered; both at once."""
 
 
 class Kill(NamedTuple):
@@ -45,14 +41,12 @@ class Kill(NamedTuple):
 
     Attributes
     ----------
-    victim : one of `VICTIMS`.
     after : when it was killed [s after its first sample].
     recorded, recovered : samples handed to the recording, and samples recovered.
     lost : time between the last sample handed over and the last one recovered [s].
     gaps : samples missing before the last one recovered.
     """
 
-    victim: str
     after: float
     recorded: int
     recovered: int
@@ -66,7 +60,7 @@ def kill_recordings(folder: Path, kills: int, seed: int, progress: Callable[[str
     Parameters
     ----------
     folder : for the recordings, which are kept.
-    kills : number of recordings; the victims alternate.
+    kills : number of recordings.
     seed : of the moments, uniform over `_LONGEST_RUN`.
     progress : called with a text after each kill.
 
@@ -75,47 +69,39 @@ def kill_recordings(folder: Path, kills: int, seed: int, progress: Callable[[str
     bearing_sim.recording.bag.RecordingError
         Nothing could be recovered from a file.
     RuntimeError
-        A process did not end as expected.
+        A recording did not begin.
     """
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload([__name__])
     moments = np.random.default_rng(seed).uniform(0.0, _LONGEST_RUN, kills)
     kills_done = []
     for number, moment in enumerate(moments.tolist()):
-        kills_done.append(_kill_one(context, folder / f"run_{number}.mcap", moment, VICTIMS[number % len(VICTIMS)]))
-        progress(f"{number + 1} of {kills}: {kills_done[-1].victim} killed after {kills_done[-1].after:.3f} s, lost {kills_done[-1].lost:.3f} s")
+        kills_done.append(_kill_one(context, folder / f"run_{number}.mcap", moment))
+        progress(f"{number + 1} of {kills}: killed after {kills_done[-1].after:.3f} s, lost {kills_done[-1].lost:.3f} s")
     return kills_done
 
 
-def _kill_one(context, path: Path, moment: float, victim: str) -> Kill:
-    recorded, writer = context.Value("q", 0), context.Value("q", 0)
-    feeder = context.Process(target=_record, args=(path, recorded, writer), daemon=True)
+def _kill_one(context, path: Path, moment: float) -> Kill:
+    recorded = context.Value("q", 0)
+    feeder = context.Process(target=_record, args=(path, recorded), daemon=True)
     feeder.start()
     _wait_until(lambda: recorded.value or feeder.exitcode is not None, f"{path} begins")
     began = time.monotonic()
     time.sleep(moment)
     after = time.monotonic() - began
-    if victim != "feeder":
-        os.kill(writer.value, signal.SIGKILL)
-    if victim != "writer":
-        feeder.kill()
+    feeder.kill()
     feeder.join()
-    if feeder.exitcode != (_WRITER_LOST if victim == "writer" else -signal.SIGKILL):
-        raise RuntimeError(f"the process that feeds {path} did not end because of the death of the {victim}; exit code {feeder.exitcode}")
-    times = _times(path, complete=victim == "feeder")
+    times = _times(path)
     if not len(times):
-        return Kill(victim, after, recorded.value, 0, recorded.value / RATE, 0)
+        return Kill(after, recorded.value, 0, recorded.value / RATE, 0)
     last = round(float(times[-1]) * RATE)
-    return Kill(victim, after, recorded.value, len(times), max(recorded.value - last, 0) / RATE, last - len(times))
+    return Kill(after, recorded.value, len(times), max(recorded.value - last, 0) / RATE, last - len(times))
 
 
-def _times(path: Path, complete: bool) -> np.ndarray:
-    """Return the times of the remaining samples [s]; the file is either about to be completed, or recovered."""
-    if complete:
-        _wait_until(path.exists, f"{path} is completed")
-    else:
-        remains, path = path.with_name(path.name + ".active"), path.with_name(f"{path.stem}_recovered.mcap")
-        recover(remains, path)
+def _times(path: Path) -> np.ndarray:
+    """Return the times of the samples that are recovered [s]."""
+    remains, path = path.with_name(path.name + ".active"), path.with_name(f"{path.stem}_recovered.mcap")
+    recover(remains, path)
     if not contents(path).messages:  # killed before anything had left the process
         return np.empty(0)
     return np.concatenate([item["time"] for item in Recording(path) if isinstance(item, np.ndarray)])
@@ -129,13 +115,12 @@ def _wait_until(condition: Callable[[], object], what: str) -> None:
         time.sleep(0.001)
 
 
-def _record(path: Path, recorded, writer) -> None:
-    """Record samples in real time and report their number after each block, until killed or until the writer is gone."""
+def _record(path: Path, recorded) -> None:
+    """Record samples in real time and report their number after each block, until killed."""
     scene = load_scene("deng2017_table1")
     inputs = Inputs(4712.0, 800.0, 0.0, 393.15)
     recorder = Recorder()
     sink = recorder.open(path, scene, time.time_ns())
-    writer.value = recorder.pid
     samples = round(_BLOCK_PERIOD * RATE)
     block = new_block(samples, scene.bearing.roller.count)
     noise = np.random.default_rng(1)
@@ -143,11 +128,8 @@ def _record(path: Path, recorded, writer) -> None:
     while True:
         block["inner_load"] = noise.normal(size=block["inner_load"].shape)  # incompressible
         block["time"] = (done + 1 + np.arange(samples)) / RATE
-        try:
-            sink.write_inputs(done / RATE, inputs)
-            sink.write(block.copy())
-        except OSError:
-            os._exit(_WRITER_LOST)
+        sink.write(ReceivedInputs(done / RATE, inputs))
+        sink.write(block.copy())
         done += samples
         recorded.value = done
         time.sleep(max(0.0, began + done / RATE - time.monotonic()))
@@ -159,8 +141,6 @@ def _record(path: Path, recorded, writer) -> None:
 @json_option
 def command(kills, seed, as_json):
     """Kill recordings of all observables at 1 kHz at random moments (SIGKILL), recover every file, and report what was lost.
-
-    The victims alternate: the feeder, whose file the writer completes; the writer; both at once.
 
     Exit code 1 if a file lost more than 1 s or has a gap.
     """
@@ -182,14 +162,9 @@ def command(kills, seed, as_json):
     if as_json:
         print_json({**report, "each": [kill._asdict() for kill in done]})
     else:
-        by_victim = {victim: np.array([kill.lost for kill in done if kill.victim == victim]) for victim in VICTIMS}
         rows = [
             ("recovered", f"{len(done)} of {kills} files"),
-            *(
-                (f"lost, {victim} killed", f"median {np.median(some):.3f} s, most {some.max():.3f} s")
-                for victim, some in by_victim.items()
-                if len(some)
-            ),
+            ("lost", f"median {np.median(lost):.3f} s, most {lost.max():.3f} s"),
             ("samples missing before the last", str(holes)),
         ]
         print_table(f"recordings of all observables at 1 kHz, killed (seed {seed})", rows)
