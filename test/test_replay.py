@@ -42,7 +42,7 @@ def samples(sink):
     return [sample for block in sink.blocks for sample in block]
 
 
-def run(path, fails_at=None, watchers=(), scene=SCENE, **options):
+def run(path, fails_at=None, views=(), scene=SCENE, **options):
     """Replay a log on the stand-in; returns result, sink and stand-in."""
     made = []
 
@@ -55,7 +55,7 @@ def run(path, fails_at=None, watchers=(), scene=SCENE, **options):
 
     sink = ListSink()
     course = judge(read_input_log(path), scene.accepted_inputs, HELD)
-    result = replay(scene, course, sink, watchers, model=model, **options)
+    result = replay(scene, course, sink, views, model=model, **options)
     assert [start.block["time"] for start in sink.of(Start)] == [0.0], "a recording begins with the state at the start"
     return result, sink, made[0]
 
@@ -155,7 +155,7 @@ def test_slip_above_its_limit_is_told_by_the_scenes_thresholds(tmp_path):
 
 def test_watchers_get_every_sample_and_event(tmp_path):
     watcher = ListSink()
-    _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=25.0), watchers=[watcher])
+    _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=25.0), views=[watcher])
     assert times(watcher) == times(sink) and len(times(sink)) == 250
     assert watcher.events == sink.events
 

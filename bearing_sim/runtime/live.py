@@ -25,6 +25,7 @@ from bearing_sim.model.sample import RING_TEMPERATURES, joined
 from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import ResidualMonitor
+from bearing_sim.monitoring.watchers import Watchers
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health, Phase, level_of, numbers, remarks
 from bearing_sim.runtime.pacing import LONGEST_TICK, Decimator, OutputCount, Pacer, WallClock, tick_schedule
@@ -153,7 +154,7 @@ class Model:
         self.scene, self.gate, self.solver, self.start_ns = scene, gate, solver, start_ns
         self.health, self.monitor, self.limits = Health(), Monitor(scene), LimitsMonitor(scene, laws_of_table(scene))
         self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
-        self.sinks = SinkRegistry()
+        self.sinks, self.watchers = SinkRegistry(), Watchers(scene)
         self.level = Level.OK
         self._conflicts = {channel: PublisherConflict(channel) for channel in CHANNELS}
         self._unused: set[str] = set()
@@ -326,6 +327,12 @@ class Model:
         bands, self._bands = self._bands, []
         return bands
 
+    def _watch(self, blocks: Sequence[np.ndarray], now: float) -> None:
+        """Let the optional watchers see samples, at run time ``now`` [s]."""
+        if blocks and self.scene.watchers:
+            for record in self.watchers.see(joined(blocks)):
+                self.sinks.write(now, record)
+
     def _estimate(self, block: np.ndarray, now: float) -> None:
         """Estimate at samples in order, shape (n,), at run time ``now`` [s]."""
         if self._estimation is None:
@@ -372,7 +379,7 @@ class Model:
         values |= self._flow_numbers(now)
         for conflict in self._conflicts.values():
             values |= conflict.values
-        values |= self.monitor.values | self.residual.values(now) | self.sinks.values | self._values()
+        values |= self.monitor.values | self.residual.values(now) | self.sinks.values | self._values() | self.watchers.values(now)
         values |= self.keeper.values if self.keeper is not None else {}
         values |= self._estimation.values(now) if self._estimation is not None else {}
         said = remarks(self.gate, self.solver, self._running_setting or self._running_level) | self.sinks.remarks
@@ -394,6 +401,8 @@ class Model:
             unused["estimate"] = "the scene does not ask for it"
         if self.keeper is None:
             unused["state"] = "nothing is remembered"
+        if not self.scene.watchers:
+            unused["watchers"] = "the scene names none"
         if topics.MEASURED in unused and not self.scene.uses_ring_temperatures:
             unused["residual"] = "nothing is measured that could be compared"
         if self.scene.thresholds.pocket_force_warning is None and self.scene.thresholds.pocket_force_error is None:
@@ -417,6 +426,7 @@ class Model:
         if self.keeper is not None:
             self._note_condition()
             self.keeper.save()
+        self.watchers.close()
         self.sinks.close(0.0)
         return stopped
 
@@ -483,7 +493,7 @@ class Model:
         """Return the events that hold at ``now`` [s], the worst first."""
         conflicts = [event for conflict in self._conflicts.values() if (event := conflict.event(now)) is not None]
         conflicts += [unused_event(now, channel) for channel in sorted(self._unused)]
-        judged = [*self.monitor.events(now), *self.limits.events(now)]
+        judged = [*self.monitor.events(now), *self.limits.events(now), *self.watchers.events(now)]
         if self._estimation is not None:
             judged += self._estimation.events(now)
         if self._estimation is None or not self._estimation.is_calibrated:  # else what the calibrated model does not explain is judged
@@ -509,6 +519,7 @@ class Model:
             self.gate.coverage = Coverage()
             self.monitor.restart()
             self.limits.restart()
+            self.watchers.restart(event.reason)
             self.residual.interrupt(event.time)
             if self._estimation is not None:
                 self._estimation.restart()
@@ -716,6 +727,7 @@ class LiveModel(Model):
         self._follow_setting()
         if blocks[judged:]:
             self.limits.take(blocks[-1])
+        self._watch(blocks, now)
         if blocks and self._estimation is not None:
             self._estimate(joined(blocks), now)
         if blocks and self.keeper is not None:
@@ -782,6 +794,7 @@ class LiveModel(Model):
             residual = measured - predicted
             if self.residual.time != before and not math.isnan(self.residual.time):
                 self._residuals = [(self.stamp(self.residual.time), self.residual.residual)]  # only the newest is published
+        self.watchers.hear(topics.MEASURED, now, self.gate.measured, self.gate.standard_error)
         self.sinks.write(now, Measurement(now, self.gate.measured, residual, self.gate.standard_error, origin))
 
     def _take_clearance(self, now: float, origin: topics.Origin) -> None:
@@ -789,6 +802,7 @@ class LiveModel(Model):
         reading = self.gate.latest(topics.MEASURED_CLEARANCE)
         if self._estimation is not None and self.solver.newest is not None and self.solver.phase is Phase.RUNNING and self._is_at_own_level:
             self._estimation.measure_clearance(now, *reading)
+        self.watchers.hear(topics.MEASURED_CLEARANCE, now, *reading)
         self.sinks.write(now, MeasuredClearance(now, *reading, origin))
 
     @property

@@ -13,15 +13,17 @@ import numpy as np
 
 from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.inputs.profile import InputProfile
+from bearing_sim.messages import topics
 from bearing_sim.messages.bands import BANDS, Bands
 from bearing_sim.messages.diagnostics import condition, further_condition
-from bearing_sim.messages.events import Event, MeasuredClearance, ReceivedInputs, Report, Start
+from bearing_sim.messages.events import Event, MeasuredClearance, Measurement, ReceivedInputs, Record, Report, Start
 from bearing_sim.model.sample import joined
 from bearing_sim.model.turning import SLIP_FROM_SPEED, Use, slip_statistics, slipping_seconds, turns, use_of
 from bearing_sim.model.validity import Exceedance, Law
 from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import Comparison, ResidualMonitor
+from bearing_sim.monitoring.watchers import Watchers
 from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
 from bearing_sim.runtime.health import Changes
 from bearing_sim.runtime.remembering import note, recall, warm_start
@@ -183,7 +185,7 @@ def replay(
     scene: Scene,
     profile: InputProfile,
     recording=None,
-    watchers: Iterable = (),
+    views: Iterable = (),
     rate: float | None = None,
     progress: Callable[[float], None] = lambda seconds: None,
     model: Callable[[Scene, Inputs], Simulation] = Simulation,
@@ -198,7 +200,7 @@ def replay(
     scene : what to simulate; of its operating conditions only the oil temperature is used, if the log has none.
     profile : the inputs (see `bearing_sim.inputs.profile.judge`).
     recording : a `bearing_sim.recording.writer.McapSink` or similar; None writes nothing.
-    watchers : further sinks, which get samples, measurements and events.
+    views : further sinks, which get samples, measurements and events.
     rate : outputs per simulated second [Hz]; by default one at each stamp of speed or load.
     progress : called repeatedly with the time reached [s].
     model : makes the simulation.
@@ -211,7 +213,7 @@ def replay(
     The result.  A stretch that cannot be integrated is skipped, reported by an event and counted, and the next one is tried from the last
     good state; after ten in a row the run is given up.
     """
-    return _Run(scene, profile, recording, tuple(watchers), rate, progress, keeper, response, laws).run(model)
+    return _Run(scene, profile, recording, tuple(views), rate, progress, keeper, response, laws).run(model)
 
 
 class _Run:
@@ -222,7 +224,7 @@ class _Run:
         scene: Scene,
         profile: InputProfile,
         recording,
-        watchers: tuple,
+        views: tuple,
         rate: float | None,
         progress: Callable,
         keeper: StateKeeper | None,
@@ -237,7 +239,7 @@ class _Run:
             self._estimation = LiveEstimation(scene, response)
             self._estimation.know([channel for channel, stamps in profile.stamps.items() if len(stamps)])
         self._newest: np.void | None = None  # that the keeper has counted
-        self._scene, self._profile, self._watchers, self._progress, self._rate = scene, profile, watchers, progress, rate
+        self._scene, self._profile, self._views, self._progress, self._rate = scene, profile, views, progress, rate
         self._recordings = (recording,) if recording is not None else ()
         self._result = Replay(profile.log_seconds, slip_from_speed=scene.thresholds.slip_from_speed)
         self._pending_events = list(profile.events)
@@ -246,7 +248,7 @@ class _Run:
         self._watched: list[np.ndarray] = []
         self._untaken: list[Output] = []
         self._next_report = 0.0
-        self._monitor, self._limits = Monitor(scene), LimitsMonitor(scene, laws)
+        self._monitor, self._limits, self._watchers = Monitor(scene), LimitsMonitor(scene, laws), Watchers(scene)
         self._unjudged: list[np.ndarray] = []
         self._unestimated: list[np.ndarray] = []
         self._comparison = Comparison(ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed))
@@ -268,7 +270,7 @@ class _Run:
 
     def run(self, model: Callable[[Scene, Inputs], Simulation]) -> Replay:
         began, began_cpu = time.perf_counter(), time.process_time()
-        result, outputs_only = self._result, not self._recordings and not self._watchers and not self._scene.estimation.calibrated
+        result, outputs_only = self._result, not self._recordings and not self._views and not self._scene.estimation.calibrated
         run = ProfileRun(partial(self._begin, model), outputs_only)
         segment = self._profile.segment(self._rate, self._scene.lubricant.temperature)
         together = 1
@@ -304,7 +306,8 @@ class _Run:
         self._write_events_until(math.inf)
         if self._profile.unknown_seconds:
             self._write_event(self._profile.unknown_event)
-        self._write_to_watchers()
+        self._watchers.close()
+        self._write_to_views()
         if self._newest is not None:
             self._note_condition()
         if run.simulation is not None:
@@ -356,10 +359,10 @@ class _Run:
             self._count(output)
         for recording in self._recordings:
             recording.write(block)
-        if self._watchers:
+        if self._views:
             self._watched.append(block)
             if sum(map(len, self._watched)) >= _WATCHED_BLOCK:
-                self._write_to_watchers()
+                self._write_to_views()
         if self._estimation is not None:
             self._unestimated.append(block)
             if self._scene.estimation.calibrated or sum(map(len, self._unestimated)) >= _ESTIMATED:  # measurements act from output to output
@@ -395,13 +398,15 @@ class _Run:
 
     def _judge(self, block: np.ndarray) -> None:
         """Judge outputs one by one, or all at once if none of them can raise or clear an alarm."""
-        if len(block) > 1 and not self._changes.holding and self._monitor.is_calm(block):
+        if len(block) > 1 and not self._changes.holding and not self._scene.watchers and self._monitor.is_calm(block):
             self._monitor.take_calm(block[:-1])
             for compared in self._comparison.predict(block[:-1]):
                 self._write_measured(compared)
             block = block[-1:]
         for k in range(len(block)):
             self._monitor.take(block[k : k + 1])
+            for record in self._watchers.see(block[k : k + 1]):
+                self._write(record)
             for compared in self._comparison.predict(block[k : k + 1]):
                 self._write_measured(compared)
             self._report(block[k], float(block["time"][k]))
@@ -411,12 +416,11 @@ class _Run:
             numbers, speeds = bands.numbers.copy(), block["shaft_speed"][np.searchsorted(block["time"], bands.times)]
             numbers[~turns(speeds, self._result.slip_from_speed), bands.names.index("cage_slip")] = math.nan
             self._result.bands.append(bands._replace(numbers=numbers))
-        for sink in (*self._recordings, *self._watchers):
-            sink.write(bands)
+        self._write(bands)
 
-    def _write_measured(self, compared) -> None:
-        for sink in (*self._recordings, *self._watchers):
-            sink.write(compared)
+    def _write_measured(self, compared: Measurement) -> None:
+        self._watchers.hear(topics.MEASURED, compared.time, compared.cage_speed, compared.standard_error)
+        self._write(compared)
 
     def _report(self, sample, moment: float) -> None:
         """Write a change of the bearing's condition at once, and the condition once a second."""
@@ -424,7 +428,7 @@ class _Run:
         judged = residual.events(moment)
         if self._estimation is not None:  # what the calibrated model does not explain, instead of what the scene's own values do not
             judged = self._estimation.events(moment) if self._estimation.is_calibrated else [*judged, *self._estimation.events(moment)]
-        changes = self._changes.take(moment, (*self._monitor.events(moment), *judged))
+        changes = self._changes.take(moment, (*self._monitor.events(moment), *self._watchers.events(moment), *judged))
         if changes or moment >= self._next_report:
             self._judge_limits()  # their events come first
             self._estimate()
@@ -439,26 +443,31 @@ class _Run:
             worst_first = sorted(holding, key=lambda event: -event.level)
             values = condition(sample) | further_condition(self._scene, sample) | self._monitor.values | residual.values(moment)
             values |= self._estimation.values(moment) if self._estimation is not None else {}
+            values |= self._watchers.values(moment)
             for recording in self._recordings:
                 recording.write(Report(moment, worst_first, values))
 
-    def _write_to_watchers(self) -> None:
+    def _write_to_views(self) -> None:
         if self._watched:
             block = np.concatenate(self._watched)
             self._watched = []
-            for watcher in self._watchers:
-                watcher.write(block)
+            for view in self._views:
+                view.write(block)
 
     def _write_event(self, event: Event) -> None:
         self._result.events[event.kind] += 1
-        for sink in (*self._recordings, *self._watchers):
-            sink.write(event)
+        self._write(event)
+
+    def _write(self, record: Record) -> None:
+        for sink in (*self._recordings, *self._views):
+            sink.write(record)
 
     def _write_events_until(self, moment: float) -> None:
         """Write the events and the measured clearances of the log up to a time [s]."""
         while self._pending_clearances and self._pending_clearances[0][0] <= moment:
-            for sink in (*self._recordings, *self._watchers):
-                sink.write(MeasuredClearance(*self._pending_clearances[0]))
+            reading = MeasuredClearance(*self._pending_clearances[0])
+            self._watchers.hear(topics.MEASURED_CLEARANCE, *reading[:3])
+            self._write(reading)
             self._pending_clearances.popleft()
         while self._pending_events and self._pending_events[0].time <= moment:
             self._take_outputs()  # they come first

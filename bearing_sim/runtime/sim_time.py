@@ -411,6 +411,7 @@ class SimTimeModel(Model):
             self.keeper.restart()
         self.monitor.restart()
         self.limits.restart()
+        self.watchers.restart("the run starts")
         if self._estimation is not None:
             self._estimation.restart()
         self.residual.interrupt(-math.inf)
@@ -427,6 +428,7 @@ class SimTimeModel(Model):
 
     def _measure(self, channel: str, time: float, value: float, standard_error: float) -> None:
         """Take a measurement of one of `bearing_sim.messages.topics.MEASURED_CHANNELS` and its standard error [SI] of a run time [s]."""
+        self.watchers.hear(channel, time, value, standard_error)
         if channel == topics.MEASURED:
             self._comparison.measure(time, value, standard_error)
         else:
@@ -442,6 +444,7 @@ class SimTimeModel(Model):
             self._counted = block[-1]
         self.monitor.take(block)
         self.limits.take(block)
+        self._watch([block], float(block["time"][-1]))
         self.sinks.write(float(block["time"][-1]), block)
         self._estimate(block, float(block["time"][-1]))
         self._pass_on(self._comparison.predict(block))

@@ -30,6 +30,7 @@ from bearing_sim.scene.support import Support, support_errors
 from bearing_sim.scene.uncertainty import Range, messages, nearest, quantities, range_errors, with_values
 from bearing_sim.scene.vibration import VibrationInput
 from bearing_sim.scene.wants import MEASURED
+from bearing_sim.scene.watchers import watcher_errors
 
 NO_CLEARANCE_LIMIT = -1e-3
 """A threshold of the running clearance that none falls below [m]."""
@@ -387,6 +388,7 @@ class Scene:
     uncertainty: tuple[Range, ...] = ()  # a mapping of field to range in a file, see `bearing_sim.scene.uncertainty`
     estimation: Estimation = field(default_factory=Estimation)
     vibration: VibrationInput = field(default_factory=VibrationInput)
+    watchers: tuple[str, ...] = ()  # names of optional watchers of a run, see `bearing_sim.monitoring.watchers`
 
     def at(
         self,
@@ -491,7 +493,7 @@ class Scene:
         errors = step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + support_errors(self)
         errors += axial_errors(self) + sink_errors(self.heat, self.lubricant) + given_errors(self.heat, self.bearing.dimensions_at)
         errors += cleanliness_errors(self)
-        return errors + range_errors(self) + estimation_errors(self)
+        return errors + range_errors(self) + estimation_errors(self) + watcher_errors(self)
 
 
 def _without_estimates(scene: Scene, paths: Container[str]) -> Scene:

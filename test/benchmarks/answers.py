@@ -19,7 +19,11 @@ BUNDLED = ("deng2017_table1", "deng2017_table1_cold", "deng2017_table2", "nu215_
 _SECONDS, _SAMPLES = 3e-3, 6
 _NOT_COMPARED = re.compile(r"second|wall|cpu|time_factor|commit|hash|version|path|file|folder|megabytes|command|started|built|real")
 _COMMANDS = {
-    **{f"run {scene} {level}": ("run", scene, "--set", f"level={level}", "--duration", "0.02") for scene in BUNDLED[:3] for level in ("slip", "steady")},
+    **{
+        f"run {scene} {level}": ("run", scene, "--set", f"level={level}", "--duration", "0.02")
+        for scene in BUNDLED[:3]
+        for level in ("slip", "steady")
+    },
     **{f"loads {scene}": ("loads", scene) for scene in BUNDLED},
     "catalog": ("catalog",),
     "catalog NU 210": ("catalog", "NU 210"),
@@ -39,6 +43,7 @@ def _mappings() -> list[dict]:
     import random
 
     import random_scenes
+
     from bearing_sim.scene.designation import designations
     from bearing_sim.scene.loader import SceneError, scene_from_mapping
 

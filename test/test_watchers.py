@@ -1,0 +1,115 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Optional watchers of a run: named by the scene, imported only then, the same in every kind of run, and unable to end it."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from test_replay import run, steady_log
+
+from bearing_sim import SceneError, load_scene
+from bearing_sim.messages.diagnostics import subject_of
+from bearing_sim.messages.events import Event, Level, Measurement, Report
+from bearing_sim.model.sample import new_block
+from bearing_sim.monitoring.loaded_rollers import LoadedRollers
+from bearing_sim.monitoring.watchers import Watcher, Watchers
+from bearing_sim.scene import watchers as registry
+
+
+class Seen(Watcher):
+    """Keeps what it is told; fails at a time."""
+
+    fails_at = np.inf
+
+    def __init__(self, scene):
+        super().__init__(scene)
+        self.times, self.heard, self.ended = [], [], False
+        Seen.newest = self
+
+    def hear(self, channel, time, value, standard_error):
+        self.heard.append((channel, time))
+
+    def see(self, block):
+        if block["time"][-1] >= self.fails_at:
+            raise ZeroDivisionError("on purpose")
+        self.times += block["time"].tolist()
+        return [Event(float(block["time"][-1]), Level.OK, "watcher.seen.kept", "", "kept")] if len(self.times) == 1 else ()
+
+    def events(self, now):
+        return [Event(now, Level.WARN, "anything", "", "more than two seconds")] if now > 2.0 else ()
+
+    def values(self, now):
+        return {"samples": len(self.times)}
+
+    def close(self):
+        self.ended = True
+
+
+@pytest.fixture
+def seen(monkeypatch):
+    monkeypatch.setitem(registry.WATCHERS, "seen", f"{__name__}:Seen")
+    return load_scene("deng2017_table1", ["watchers=[seen]"])
+
+
+def replayed(scene, path):
+    result, sink, _ = run(path, scene=scene)
+    return result, sink
+
+
+def test_a_watcher_sees_every_sample_of_a_replay_once_in_order_and_what_it_says_is_recorded(seen, tmp_path):
+    result, sink = replayed(seen, steady_log(tmp_path / "log.mcap", duration=4.0))
+    watcher = Seen.newest
+    assert watcher.times == [float(sample["time"]) for block in sink.blocks for sample in block] and watcher.ended
+    kinds = [event.kind for event in sink.of(Event)]
+    assert kinds.count("watcher.seen") == 1 and "watcher.seen.kept" in kinds
+    assert sink.of(Report)[-1].values["seen: samples"] > 0
+    assert [time for _, time in watcher.heard] == [one.time for one in sink.of(Measurement)]
+
+
+def test_a_watcher_that_fails_is_named_and_the_run_continues(seen, tmp_path, monkeypatch):
+    monkeypatch.setattr(Seen, "fails_at", 1.0)
+    result, sink = replayed(seen, steady_log(tmp_path / "log.mcap", duration=4.0))
+    failed = [event for event in sink.of(Event) if event.kind == "watcher.seen" and event.level == Level.ERROR]
+    assert len(failed) == 1 and "ZeroDivisionError: on purpose" in failed[0].reason and result.samples == sum(map(len, sink.blocks))
+    assert max(Seen.newest.times) < 1.0
+
+
+def test_without_watchers_named_nothing_is_imported_for_them():
+    code = "import sys; from bearing_sim.runtime import live, replay; print('bearing_sim.monitoring.loaded_rollers' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split() == ["False"]
+
+
+@pytest.mark.parametrize(
+    ("named", "expected"),
+    [("[loaded_roller]", "did you mean 'loaded_rollers'"), ("[loaded_rollers, loaded_rollers]", "named twice"), ("[os:system]", "there is no watcher")],
+)
+def test_a_watcher_that_is_not_there_is_refused(named, expected):
+    with pytest.raises(SceneError, match=expected):
+        load_scene("deng2017_table1", [f"watchers={named}"])
+
+
+def test_loaded_rollers_warns_while_the_shaft_turns_and_no_roller_is_loaded():
+    scene = load_scene("deng2017_table1")
+    watcher, block = LoadedRollers(scene), new_block(3, scene.bearing.roller.count)
+    block["shaft_speed"], block["inner_load"][:2, :5] = 1000.0, 7.0
+    watcher.see(block[:2])
+    assert not watcher.events(0.0) and watcher.values(0.0) == {"rollers loaded": 5, "fewest rollers loaded": 5}
+    watcher.see(block[2:])
+    assert len(watcher.events(0.0)) == 1 and watcher.values(0.0)["fewest rollers loaded"] == 0
+    block["shaft_speed"] = 0.0
+    watcher.see(block[2:])
+    assert not watcher.events(0.0)
+
+
+def test_an_event_of_a_watcher_belongs_to_the_status_of_watchers():
+    assert subject_of(Event(0.0, Level.WARN, "watcher.loaded_rollers", "", "x")) == "watchers"
+
+
+def test_all_watchers_of_a_scene_are_asked():
+    scene = load_scene("deng2017_table1", ["watchers=[loaded_rollers]"])
+    watchers, block = Watchers(scene), new_block(1, scene.bearing.roller.count)
+    watchers.see(block)
+    assert watchers.values(0.0) == {"loaded_rollers: rollers loaded": 0, "loaded_rollers: fewest rollers loaded": 0}
+    watchers.restart("reset")
+    assert watchers.values(0.0) == {}
