@@ -82,7 +82,11 @@ def test_without_watchers_named_nothing_is_imported_for_them():
 
 @pytest.mark.parametrize(
     ("named", "expected"),
-    [("[loaded_roller]", "did you mean 'loaded_rollers'"), ("[loaded_rollers, loaded_rollers]", "named twice"), ("[os:system]", "there is no watcher")],
+    [
+        ("[loaded_roller]", "did you mean 'loaded_rollers'"),
+        ("[loaded_rollers, loaded_rollers]", "named twice"),
+        ("[os:system]", "there is no watcher"),
+    ],
 )
 def test_a_watcher_that_is_not_there_is_refused(named, expected):
     with pytest.raises(SceneError, match=expected):
