@@ -15,7 +15,7 @@ room             purpose
 ``simulation``   the facade: `Simulation`, `Inputs`
 ``messages``     what topics and recordings carry: topics, events, the CDR layout of messages
 ``inputs``       everything that comes in: gate, profiles over time, logs, CSV import, the synthetic mission
-``recording``    MCAP out and in: writer, writer process, reader, recovery, comparison, export
+``recording``    MCAP out and in: writer, recorder, reader, recovery, comparison, export
 ``monitoring``   thresholds, alarms, residual slip and its CUSUM, film ratio
 ``estimation``   bands of results by uncertain fields, and their calibration by measurements
 ``runtime``      running against a clock: wall time and sim time, solver thread, pacing, governor, health, sinks, replay

@@ -49,6 +49,10 @@ def slips_in(path):
         return 0
 
 
+def given_up(client, since=0):
+    return [text for level, name, text in client.statuses(since) if level == 2 and "sink.failed" in name and text.startswith("record: ")]
+
+
 @pytest.mark.long
 def test_what_a_killed_node_had_flushed_is_recovered_and_says_how_to_repeat_the_run(launch, tmp_path):
     process, client = launch(f"record:={tmp_path / 'run.mcap'}")

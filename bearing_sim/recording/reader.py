@@ -293,6 +293,8 @@ class _Samples:
 
     def blocks_with_rows(self, topics: tuple[str, ...], rows: Rows) -> Iterator[np.ndarray]:
         """Enter rows, all at once if each is a sample; yield the blocks that get full."""
+        if all(_SAMPLE_TOPICS[topic].repeats for topic in topics):
+            return
         log_ns = rows.all_log_ns()
         first = log_ns[:, 0]
         are_samples = first[0] != self._log_ns and (first[1:] != first[:-1]).all() and (log_ns == first[:, None]).all()

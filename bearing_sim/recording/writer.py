@@ -7,7 +7,7 @@
 import math
 import os
 import threading
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from types import MappingProxyType
@@ -164,7 +164,7 @@ class McapFile(AbstractContextManager):
             self._writer.add_message(Message(channel.id, self._counts[topic], time_ns, time_ns if publish_ns is None else publish_ns, data))
 
     def write_rows(
-        self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray, whole: SampleRows | None = None, chosen: Sequence[int] = ()
+        self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray, further: SampleRows | None = None, chosen: Sequence[int] = ()
     ) -> None:
         """Write the messages of all topics of a layout for a block of samples.  Raises as `write`.
 
@@ -173,43 +173,31 @@ class McapFile(AbstractContextManager):
         layout : of the topics, which are written in no other way.
         block : samples, shape (n,).
         times_ns : log, publish and header time of each [ns since the epoch], uint64.
-        whole : of some of the samples: of these topics and further ones, which only those samples have.
+        further : of further topics, which only some of the samples have; their messages come before the others of the sample.
         chosen : the indices of these samples, in order.
         """
         if not len(block):
             return
-        is_chosen = np.zeros(len(block), bool)
-        is_chosen[np.asarray(chosen, int)] = True
         with self._lock:
             self._require_open()
-            common, parts = {topic.name for topic in layout.topics}, {}
-            for kind, each in ((False, layout), (True, whole)):
-                if (is_chosen == kind).any():
-                    parts[kind] = self._filled(each, block, times_ns, np.flatnonzero(is_chosen == kind), common)
-            for name in common:
-                self._counts[f"/{name}"] += len(block)
-            written, starts = {False: 0, True: 0}, [0, *(np.flatnonzero(np.diff(is_chosen)) + 1).tolist()]
-            for start, end in zip(starts, [*starts[1:], len(block)]):
-                kind = bool(is_chosen[start])
-                rows, ids = parts[kind]
-                begin, written[kind] = written[kind], written[kind] + end - start
-                self._writer.add_rows(whole if kind else layout, rows[begin : written[kind]], times_ns[start:end], ids)
+            rows, ids = self._filled(layout, block, times_ns)
+            seldom, seldom_ids = self._filled(further, block[chosen], times_ns[chosen]) if len(chosen) else ((), ())
+            start = 0
+            for k, place in enumerate(chosen):
+                self._writer.add_rows(layout, rows[start:place], times_ns[start:place], ids)
+                self._writer.add_rows(further, seldom[k : k + 1], times_ns[place : place + 1], seldom_ids)
+                start = place
+            self._writer.add_rows(layout, rows[start:], times_ns[start:], ids)
             self._span = widened(self._span, int(times_ns.min()), int(times_ns.max()))
 
-    def _filled(
-        self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray, places: np.ndarray, common: Collection[str]
-    ) -> tuple[np.ndarray, list[int]]:
-        """Return the records of some samples of a block and the ids of their channels; count them but for the ``common`` topics, which all have."""
+    def _filled(self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray) -> tuple[np.ndarray, list[int]]:
+        """Return the records of a block and the ids of their channels, and count them."""
         names = [f"/{topic.name}" for topic in layout.topics]
         ids = [(self._channels.get(name) or self._register(name, topic.ros_type)).id for name, topic in zip(names, layout.topics)]
-        among = np.arange(len(places))
-        own = [topic.name not in common for topic in layout.topics]
-        sequences = [self._counts[name] + 1 + (among if is_own else places) for name, is_own in zip(names, own)]
-        which = slice(None) if len(places) == len(block) else places
-        rows = layout.filled(block[which], times_ns[which], ids, sequences)
-        for name, is_own in zip(names, own):
-            self._counts[name] += len(places) * is_own
-        return rows, ids
+        sequences = [self._counts[name] + 1 + np.arange(len(block)) for name in names]
+        for name in names:
+            self._counts[name] += len(block)
+        return layout.filled(block, times_ns, ids, sequences), ids
 
     def __exit__(self, kind, *_) -> None:
         """Complete the file, or remove it if an exception ends the block or it cannot be completed."""
@@ -488,8 +476,7 @@ class McapSink(AbstractContextManager):
         self.start_ns, self._frame = int(start_ns), frame
         self._status_names = {"component": names.component, "hardware_id": names.hardware_id or scene.bearing.name}
         recorded = topics.recorded(scene).values()
-        self._topics = tuple(topic for topic in recorded if not topic.repeats)
-        self._whole_topics = tuple(sorted(recorded, key=lambda topic: not topic.repeats))  # those that repeat others come first
+        self._topics = [[topic for topic in recorded if topic.repeats == repeats] for repeats in (False, True)]
         self._lay_out(scene.bearing.roller.count)
         self._band_messages, self._input_messages = BandMessages(frame), InputMessages()
         self._last_period = -1  # of `REPEATING_RATE`, in which a sample was written with its repeating topics
@@ -538,17 +525,16 @@ class McapSink(AbstractContextManager):
 
     def _write_samples(self, block: np.ndarray) -> None:
         rollers = block["roller_angle"].shape[1]
-        if rollers != self._rows.rollers:
+        if rollers != self._rows[0].rollers:
             self._lay_out(rollers)
         # In parts of about a chunk: when the disk is full, no more is left to be written than the space that is reserved for the end of the file.
-        per_part = max(1, CHUNK_SIZE // self._whole_rows.size)
+        per_part = max(1, CHUNK_SIZE // sum(rows.size for rows in self._rows))
         for part in (block[start : start + per_part] for start in range(0, len(block), per_part)):
             times_ns = np.uint64(self.start_ns) + np.rint(part["time"] * 1e9).astype(np.int64).astype(np.uint64)
-            self._files.current.write_rows(self._rows, part, times_ns, self._whole_rows, self._with_repeating(part["time"]))
+            self._files.current.write_rows(self._rows[0], part, times_ns, self._rows[1], self._with_repeating(part["time"]))
 
     def _lay_out(self, rollers: int) -> None:
-        self._rows = SampleRows(self._topics, rollers, self._frame)
-        self._whole_rows = SampleRows(self._whole_topics, rollers, self._frame)
+        self._rows = [SampleRows(topics, rollers, self._frame) for topics in self._topics]
 
     def _with_repeating(self, times: np.ndarray) -> np.ndarray:
         """Return the indices of the samples that are written with their repeating topics: the first one of each period of `REPEATING_RATE`."""

@@ -320,7 +320,6 @@ EVENTS = {
     "pace.outputs": ("WARN", "in each of five seconds more than a fiftieth of the outputs was left out"),
     "recording.dropped": ("WARN", "the recording does not keep up with the run"),
     "recording.part": ("ERROR", "a file of a recording could not be completed"),
-    "recording.restarted": ("WARN", "the writer ended early; the recording continues in a new file"),
     "recording.restored": ("WARN", "a file was deleted or replaced while it was written, and was restored"),
     "recording.set_aside": ("WARN", "the unfinished file of a killed run had the name of this recording and has another one now"),
     "reproduction.failed": ("ERROR", "a sample of a recording could not be computed again; the run continues from the recorded one"),
