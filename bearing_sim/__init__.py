@@ -22,7 +22,7 @@ room             purpose
 ``runtime``      running against a clock: wall time and sim time, solver thread, pacing, governor, health, sinks, replay
 ``view``         pictures in rerun
 ``sweep``        a scene at many points: tasks, journal, tables
-``studies``      questions answered by many runs: bench, trade-off, uncertainty, calibration, design, the paper's results
+``studies``      questions answered by many runs: bench, fleet, trade-off, uncertainty, calibration, design, the paper's results
 ``cli``          the command line ``bearing-sim``
 ``ros``          the ROS 2 node and player
 ``programs``     the installed programs

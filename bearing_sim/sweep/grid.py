@@ -278,7 +278,7 @@ class Frame(Protocol):
     def to_dict(self, orient: Any) -> Any: ...
 
 
-Varied = Mapping[str, Iterable[float | str] | str] | Sequence[Axis] | Sequence[Mapping[str, float | str]] | Frame
+Varied = Mapping[str, Iterable[float | str] | str] | Sequence[Axis] | Sequence[Mapping[str, Any]] | Frame
 
 
 def run_sweep(

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Replay of many logs, one bearing each, on all cores or on a Dask cluster: a table with one row for each bearing.
+"""A fleet: replay of many logs, one bearing each, on all cores or on a Dask cluster: a table with one row for each bearing.
 
 A log that cannot be read or computed is a row that says why.  Results are kept in a journal by what they depend on: the contents of the log, how it
 is read, the scene and this program.  Nothing that is in it is computed again.
@@ -14,14 +14,12 @@ from contextlib import contextmanager
 from dataclasses import replace as with_fields
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.estimation.response import ResponseModel, response_digest
 from bearing_sim.estimation.two_states import laws_of_table
 from bearing_sim.files.tally import PartlyUsedWarning
-from bearing_sim.fleet.logs import Log, Reading, read_log
 from bearing_sim.inputs.csv_text import TableError
 from bearing_sim.inputs.log import InputLogError
 from bearing_sim.inputs.profile import judge
@@ -35,6 +33,7 @@ from bearing_sim.runtime.replay import Replay, replay
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation
+from bearing_sim.studies.fleet_logs import Bearing, Log, read_log
 from bearing_sim.sweep.point import FAILED, OK, REFUSED, Column
 from bearing_sim.sweep.table import Table
 from bearing_sim.sweep.tasks import UNAVAILABLE, Journal, Task, program_hash, run_tasks, task
@@ -44,7 +43,17 @@ PARTLY = "partly used"
 
 STATUSES = (OK, PARTLY, FAILED, REFUSED, UNAVAILABLE)
 
-_SOURCES = ("estimation/*.py", "fleet/*.py", "inputs/*.py", "messages/*.py", "monitoring/*.py", "recording/*.py", "runtime/*.py", "sweep/tasks.py")
+_SOURCES = (
+    "studies/fleet.py",
+    "studies/fleet_logs.py",
+    "sweep/tasks.py",
+    "estimation/*.py",
+    "inputs/*.py",
+    "messages/*.py",
+    "monitoring/*.py",
+    "recording/*.py",
+    "runtime/*.py",
+)
 _TABLES_KEPT = 4  # by a worker
 
 # By name: unit, name in `bearing_sim.runtime.replay.Replay.band_statistics`, by what the unit is smaller than that there, meaning.
@@ -102,22 +111,6 @@ NOTES = (
     Column("warnings", "", "laws used outside of their ranges, each with its worst value"),
 )
 COLUMNS = (*NAMES, *TEXTS, *RESULTS, *NOTES)
-
-
-class Bearing(NamedTuple):
-    """One bearing of a fleet.
-
-    Attributes
-    ----------
-    name : serial number, or the name of its log.
-    log, reading : what it has been through, and how that is read.
-    scene : what it is; or why it is not known.
-    """
-
-    name: str
-    log: Log
-    reading: Reading
-    scene: Scene | SceneError
 
 
 def replay_fleet(
