@@ -46,6 +46,7 @@ setup(
             "scene/scenes/*.yaml",
             "ros/dds/*.xml",
             "ros/profiles/*.yaml",
+            "studies/*.csv",
         ],
     },
     data_files=[

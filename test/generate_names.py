@@ -3,15 +3,19 @@
 
 from pathlib import Path
 
+import numpy as np
+
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.sweep.point import RESULTS
+from bearing_sim.sweep.settling import Outcome
 
 STUB = Path(__file__).resolve().parents[1] / "bearing_sim/model/names.pyi"
 
 
 def stub() -> str:
     """Return the text of the stub."""
-    kinds = {each.name: "float" for each in RESULTS} | {each.name: "NDArray[np.float64]" if each.per_roller else "float" for each in OBSERVABLES}
+    kinds = {name: kind.__name__ if kind is not np.ndarray else "np.ndarray" for name, kind in Outcome.__annotations__.items()}
+    kinds |= {each.name: "float" for each in RESULTS} | {each.name: "NDArray[np.float64]" if each.per_roller else "float" for each in OBSERVABLES}
     return "\n".join(
         [
             "# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0",
@@ -20,6 +24,8 @@ def stub() -> str:
             "",
             "import numpy as np",
             "from numpy.typing import NDArray",
+            "",
+            "from bearing_sim.simulation import Counters",
             "",
             "ObservableName = Literal[",
             *(f'    "{each.name}",' for each in OBSERVABLES),

@@ -50,6 +50,7 @@ class Settled(SettledResults):
     Attributes
     ----------
     scene : at the operating point and the level that were computed.
+    outcome : how the run ended, with its ``slip`` and ``counters``; all that it has is also here.
     verdict : ``settled``; otherwise what the bearing did: ``drifting``, ``limit cycle``, ``wandering``, ``too short`` to tell, or
         ``no steady state`` at level steady.
     reason : the same in a sentence; empty where it has settled.
@@ -69,26 +70,6 @@ class Settled(SettledResults):
     def settled(self) -> bool:
         """Whether slip, temperature and life rest."""
         return self.outcome.settled
-
-    @property
-    def verdict(self) -> str:
-        """What the bearing did at the end, see the class."""
-        return self.outcome.verdict
-
-    @property
-    def reason(self) -> str:
-        """Why it has not settled, and what it was doing; empty if it has."""
-        return self.outcome.reason
-
-    @property
-    def settling_time(self) -> float:
-        """Since when slip has been as at the end [s]; NaN where it has not settled."""
-        return self.outcome.settling_time
-
-    @property
-    def window(self) -> np.ndarray:
-        """Samples of the last fifth of the run."""
-        return self.outcome.window
 
     @property
     def sample(self) -> np.void:
@@ -118,6 +99,8 @@ class Settled(SettledResults):
     if not TYPE_CHECKING:  # a checker knows the names from `SettledResults`
 
         def __getattr__(self, name: str):
+            if name in Outcome._fields:
+                return getattr(self.outcome, name)
             if name in _RESULTS:
                 return self.results[name]
             if name in _OBSERVED:
@@ -126,7 +109,7 @@ class Settled(SettledResults):
             raise AttributeError(f"no result {name!r}{did_you_mean(name, [*_RESULTS, *_OBSERVED])}; to_pandas() lists the results")
 
     def __dir__(self) -> list[str]:
-        return sorted({*super().__dir__(), *_RESULTS, *_OBSERVED})
+        return sorted({*super().__dir__(), *Outcome._fields, *_RESULTS, *_OBSERVED})
 
     def __getstate__(self) -> dict:
         # Without what is computed on demand, whose mapping cannot be pickled.
