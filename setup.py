@@ -39,12 +39,14 @@ setup(
         package_name: [
             "py.typed",
             "__init__.pyi",
+            "model/names.pyi",
             "scene/catalog/*/*.yaml",
             "scene/catalog/designations/*.csv",
             "scene/scenes/*.bands.npz",
             "scene/scenes/*.yaml",
             "ros/dds/*.xml",
             "ros/profiles/*.yaml",
+            "studies/*.csv",
         ],
     },
     data_files=[
@@ -81,6 +83,7 @@ setup(
             "flake8>=7",
             "hypothesis>=6",
             "ipykernel>=6",
+            "mypy>=1.15",
             "mcap-ros2-support>=0.5",
             "nbclient>=0.10",
             "pymcap-cli>=0.34",

@@ -2,7 +2,8 @@
 """Cage slip and rating life of high-speed cylindrical roller bearings, live or offline.
 
 Start here: `load_scene` reads what to simulate, `settle` finds where it comes to rest, `run_sweep` does so at many points, `Simulation` advances it
-in time, `to_pandas` and `to_xarray` turn its samples into tables.
+in time, `Recording` reads what a run has recorded, `to_pandas` and `to_xarray` turn samples into tables.  `scene_fields` and `OBSERVABLES` list
+what a scene has and what a sample holds.
 
 ===============  =====================================================================================================
 room             purpose
@@ -21,7 +22,7 @@ room             purpose
 ``runtime``      running against a clock: wall time and sim time, solver thread, pacing, governor, health, sinks, replay
 ``view``         pictures in rerun
 ``sweep``        a scene at many points: tasks, journal, tables
-``studies``      questions answered by many runs: bench, trade-off, uncertainty, calibration, design, the paper's results
+``studies``      questions answered by many runs: bench, fleet, trade-off, uncertainty, calibration, design, the paper's results
 ``cli``          the command line ``bearing-sim``
 ``ros``          the ROS 2 node and player
 ``programs``     the installed programs
@@ -31,26 +32,17 @@ room             purpose
 ``doc/architecture.md`` says which room may import which, and in which file to change what.
 """
 
+import re
 from importlib import import_module
+from pathlib import Path
 
-_EXPORTS = {
-    "Scene": "scene.scene",
-    "SceneError": "scene.errors",
-    "load_scene": "scene.loader",
-    "Simulation": "simulation",
-    "Inputs": "simulation",
-    "IntegrationError": "simulation",
-    "settle": "studies.operating_point",
-    "Settled": "studies.operating_point",
-    "run_sweep": "sweep.grid",
-    "to_pandas": "model.labelled",
-    "to_xarray": "model.labelled",
-}
+# The stub that type checkers read says which name is in which module.
+_EXPORTS = {name: module for module, name in re.findall(r"^from (\S+) import (\w+)", Path(__file__).with_suffix(".pyi").read_text(), re.MULTILINE)}
 __all__ = list(_EXPORTS)
 
 
 def __getattr__(name):
     # Loaded at first use: the simulation brings its compiler with it, which a look at the version does not need.
     if name in _EXPORTS:
-        return getattr(import_module(f"bearing_sim.{_EXPORTS[name]}"), name)
+        return getattr(import_module(_EXPORTS[name]), name)
     raise AttributeError(f"module 'bearing_sim' has no attribute {name!r}")

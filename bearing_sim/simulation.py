@@ -2,6 +2,7 @@
 """Simulation: owns time, state and workspace of one bearing; ``advance`` returns a block of samples."""
 
 import math
+import numbers
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
@@ -21,7 +22,7 @@ from bearing_sim.model.temperatures import given_temperatures, lubricate_scene
 from bearing_sim.numerics.compilation import compiled_for
 from bearing_sim.numerics.time_stepping import COUNT, NEEDS_POINT, NOT_EVALUATED, OK, REASONS, new_counts, new_memory
 from bearing_sim.scene.fidelity import NUMBERS
-from bearing_sim.scene.quantity import Quantity
+from bearing_sim.scene.quantity import Quantity, to_si
 from bearing_sim.scene.scene import OPERATING_POINT, Integration, Operating, Scene
 from bearing_sim.scene.uncertainty import quantities
 
@@ -214,6 +215,8 @@ class Simulation:
     def __init__(
         self, scene: Scene, inputs: Inputs | None = None, table: "Table | None" = None, start: np.void | None = None, nodes: np.ndarray | None = None
     ):  # fmt: skip
+        if not isinstance(scene, Scene):
+            raise TypeError(f"scene = {scene!r}: expected a Scene; load_scene reads one by name or from a file: Simulation(load_scene(...))")
         self.scene = scene
         self._params, self._tolerances = pack(scene), tolerances_of(scene.integration)
         self._dtype = sample_dtype(self._params.rollers.count)
@@ -300,7 +303,7 @@ class Simulation:
         return sample
 
     def take_over(self, other: "Simulation") -> None:
-        """Continue from the state of another simulation of the same bearing, at another level or with other settings.
+        """Continue from the state of another `Simulation` of the same bearing, at another level or with other settings.
 
         Time, inputs, damage, the angles of all bodies and the speeds of cage and rollers continue without a jump; see
         `bearing_sim.levels.common.state_transfer`.  Counters keep counting this simulation's own work.
@@ -309,7 +312,11 @@ class Simulation:
         ------
         ValueError
             The other bearing has another number of rollers.
+        TypeError
+            ``other`` is no simulation.
         """
+        if not isinstance(other, Simulation):
+            raise TypeError(f"other = {other!r:.60}: expected a Simulation")
         if other._params.rollers.count != self._params.rollers.count:
             theirs, own = other._params.rollers.count, self._params.rollers.count
             raise ValueError(f"cannot continue a bearing of {theirs} rollers with one of {own}: both simulations need the same bearing")
@@ -489,7 +496,7 @@ class Simulation:
         """Work done since the start."""
         return Counters(*(int(self._counts[index]) for index in COUNT))
 
-    def advance(self, duration: float, inputs: Inputs | None = None, samples: int = 1) -> np.ndarray:
+    def advance(self, duration: float | str, inputs: Inputs | None = None, samples: int = 1) -> np.ndarray:
         """Advance by ``duration`` [s] while the inputs change linearly from their present values to ``inputs``.
 
         Temperatures take their new values at the start: they change slowly, and every oil property depends on that of the oil.  With a thermal
@@ -497,7 +504,7 @@ class Simulation:
 
         Parameters
         ----------
-        duration : length of the interval [s], positive.
+        duration : length of the interval [s], positive; or a text with a unit, such as ``"10 ms"``.
         inputs : conditions at its end; unchanged where absent.
         samples : how many samples to return, evenly spaced, the last one at the end.
 
@@ -510,11 +517,14 @@ class Simulation:
         IntegrationError
             With the reason; time and state stay as they were.
         ValueError
-            ``duration`` is not positive and finite, ``samples`` is below 1, or an input is not finite, except for a measured temperature
-            that is NaN.
+            ``duration`` is no positive finite time, ``samples`` is no whole number of at least 1, or an input is not finite, except for a measured
+            temperature that is NaN.
+        TypeError
+            ``inputs`` are no `Inputs`.
         """
-        if not 0.0 < duration < math.inf or samples < 1:
-            raise ValueError(f"advance takes a positive finite duration and at least one sample, got {duration!r} s and {samples!r}")
+        duration = positive_seconds("duration", duration)
+        if not isinstance(samples, numbers.Integral) or samples < 1:
+            raise ValueError(f"samples = {samples!r}: expected a whole number of at least 1")
         end = self.inputs if inputs is None else _checked(inputs)
         if self._thermal is not None and not self._thermal.held and duration > _LONGEST_CALL * self.scene.heat.interval:
             return self._advance_in_parts(float(duration), end, samples)
@@ -694,8 +704,23 @@ def start_sample(simulation: Simulation) -> np.ndarray:
     return np.array([simulation.sample])
 
 
+def positive_seconds(name: str, value: float | str) -> float:
+    """Return a time [s], a number or a text with a unit; raise `ValueError` with its name where it is no positive finite time."""
+    try:
+        seconds = value if type(value) is float else to_si(value, "s")
+    except ValueError as error:
+        raise ValueError(f"{name} = {value!r}: {error}") from None
+    if not 0.0 < seconds < math.inf:
+        raise ValueError(f"{name} = {value!r}: expected a positive time such as '0.5 s'")
+    return seconds
+
+
 def _checked(inputs: Inputs) -> Inputs:
     """Return inputs as plain numbers; raise `ValueError` where one is no finite number within its bounds, or NaN where it is not measured."""
+    if not isinstance(inputs, Inputs):
+        raise TypeError(
+            f"inputs = {inputs!r}: expected Inputs; Inputs.of makes them of numbers in SI or texts with units, simulation.inputs.at changes them"
+        )
     try:
         inputs = Inputs(*map(float, inputs))
     except (TypeError, ValueError) as error:

@@ -40,16 +40,17 @@ ROOMS = {
     "estimation": ("numpy scipy", "files scene numerics physics model levels messages monitoring"),
     "runtime": ("numpy", "files scene numerics model levels simulation messages recording stored_state inputs monitoring estimation vibration"),
     "view": ("PIL numpy rerun rerun_cli", "files scene messages recording"),
-    "sweep": ("numpy pandas pyarrow matplotlib distributed xarray scipy", "files scene numerics physics model levels simulation recording inputs"),
-    "fleet": ("numpy pyarrow", "files scene levels simulation messages recording inputs model estimation runtime sweep"),
+    "sweep": (
+        "numpy pandas pyarrow matplotlib distributed xarray scipy",
+        "files scene numerics physics model levels simulation recording inputs",
+    ),
     "studies": (
         "numpy numba pandas scipy matplotlib pydantic sksundae",
         "files scene numerics physics model levels simulation messages recording inputs monitoring estimation sweep",
     ),
     "cli": (
         "click numpy pydantic_core rich",
-        "extras files scene numerics model levels simulation messages recording stored_state inputs vibration estimation runtime view sweep fleet "
-        "studies",
+        "extras files scene numerics model levels simulation messages recording stored_state inputs vibration estimation runtime view sweep studies",
     ),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",

@@ -194,8 +194,8 @@ def test_a_data_set_of_many_machines_gives_what_a_file_for_each_gives(fleet):
 
 
 def test_all_logs_of_a_bearing_share_one_table_of_operating_points(fleet, monkeypatch):
-    from bearing_sim.fleet import replay
     from bearing_sim.levels.steady.table import empty_table
+    from bearing_sim.studies import fleet as replay
 
     built = []
 

@@ -38,8 +38,20 @@ def test_a_frame_is_indexed_by_time_and_has_a_column_and_a_unit_for_each_roller(
 
 
 def test_an_unknown_column_is_refused(block):
-    with pytest.raises(KeyError, match="no observable 'cage_slipp'; expected one of time"):
+    with pytest.raises(KeyError, match=r"no observable 'cage_slipp' \(did you mean 'cage_slip'\?\); expected one of time"):
         to_pandas(block, ["cage_slipp"])
+
+
+@pytest.mark.parametrize(("given", "found"), [(3, "int"), (np.zeros(3), "dtype float64"), (np.zeros(()), "shape")])
+def test_what_is_no_block_is_refused(given, found):
+    for convert in (to_pandas, to_xarray):
+        with pytest.raises(TypeError, match=f"expected a block of samples.*got .*{found}"):
+            convert(given)
+
+
+def test_a_name_alone_is_no_list_of_columns(block):
+    with pytest.raises(TypeError, match=r"columns = 'cage_slip': expected a list of names of observables, such as \['cage_slip'\]"):
+        to_pandas(block, "cage_slip")
 
 
 def test_a_table_without_axes_is_no_dataset_and_says_so():

@@ -1,7 +1,6 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The Python interface: settled states, sweeps, operating points and inputs with units, copies of simulations, and types."""
 
-import ast
 import copy
 import inspect
 import math
@@ -15,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from generate_names import STUB, stub
 from scipy.optimize import brentq
 
 import bearing_sim
@@ -26,6 +26,50 @@ from bearing_sim.sweep.grid import FieldError, axis, read_axis
 from bearing_sim.sweep.point import point_row
 
 ROOT = Path(__file__).resolve().parents[1]
+PUBLIC = sorted(
+    "FieldError Inputs IntegrationError Level OBSERVABLES PartialRecording Recording RecordingError Scene SceneError Settled Simulation Table "
+    "UncertaintyError load_scene run_sweep scene_fields settle to_pandas to_xarray".split()
+)
+# What a type checker accepts, and lines each of which it refuses with these words.
+ACCEPTED = """
+from bearing_sim import Inputs, Level, Recording, Scene, Settled, Simulation, Table, load_scene, run_sweep, settle, to_pandas
+
+scene: Scene = load_scene("deng2017_table1", ["level=steady"])
+scene = load_scene({"name": "x"}, {"operating": {"radial_load": 800.0}, "bearing.clearance": "40 um"})
+level: Level = scene.level
+result: Settled = settle(scene, "planar", shaft_speed=4000.0, radial_load="5 kN")
+slip: float = result.cage_slip
+largest: float = result.inner_load.max()
+block = Simulation(scene).advance("10 ms", Inputs.of(shaft_speed="3000 rpm", oil_temperature=350.0), samples=3)
+to_pandas(block, ["cage_slip", "inner_load"])
+table: Table = run_sweep(scene, {"radial_load": [100.0, "200 N"]}, level="steady")
+table = run_sweep(scene, [{"radial_load": 100.0, "bearing.clearance": "C3"}], {"level": "steady"})
+temperature: float = result.sample["oil_temperature"]
+for item in Recording("run.mcap"):
+    print(item)
+"""
+REFUSED = {
+    "result.cage_slp": 'has no attribute "cage_slp"',
+    "result.inner_load.mx()": 'has no attribute "mx"',
+    "scene.bearing.rollr": 'has no attribute "rollr"',
+    "scene.operating.speed": 'has no attribute "speed"',
+    'settle(scene, "plannar")': "plannar",
+    'scene.at_level("plannar")': "plannar",
+    'run_sweep(scene, {"radial_load": [1.0]}, level="plannar")': "plannar",
+    'settle(scene, start="skidding")': "skidding",
+    "settle(scene, shaft_speed=[1.0, 2.0])": "list[float]",
+    "settle(scene, speed=3.0)": '"speed"',
+    'load_scene("deng2017_table1", "level=steady")': 'incompatible type "str"',
+    'load_scene("deng2017_table1", [3])': 'incompatible type "int"',
+    "load_scene(3)": 'incompatible type "int"',
+    'Simulation("deng2017_table1")': 'incompatible type "str"',
+    'Simulation(scene).advance(0.1, {"radial_load": 3.0})': "incompatible type",
+    'to_pandas(block, "cage_slip")': 'incompatible type "str"',
+    'to_pandas(block, ["cage_slp"])': "List item 0 has incompatible type",
+    "run_sweep(scene, 3)": 'incompatible type "int"',
+    "table.to_panda()": 'has no attribute "to_panda"',
+    "import bearing_sim; bearing_sim.settl": 'has no attribute "settl"',
+}
 MOTOR = {
     "name": "motor",
     "bearing": "NU 210/C3",
@@ -305,15 +349,101 @@ def test_a_simulation_goes_to_another_process_and_comes_back(paper):
 
 
 def test_type_checkers_see_the_names_that_the_package_exports():
-    stub = ast.parse((ROOT / "bearing_sim/__init__.pyi").read_text())
-    imported = {alias.asname: node.module for node in stub.body for alias in node.names}
-    assert imported == {name: f"bearing_sim.{module}" for name, module in bearing_sim._EXPORTS.items()}
+    assert sorted(bearing_sim.__all__) == PUBLIC and all(hasattr(bearing_sim, name) for name in PUBLIC)
+    assert STUB.read_text() == stub(), "python test/generate_names.py writes it"
     packed = (ROOT / "setup.py").read_text()
-    assert (ROOT / "bearing_sim/py.typed").is_file() and '"py.typed"' in packed and '"__init__.pyi"' in packed
+    assert (ROOT / "bearing_sim/py.typed").is_file() and '"py.typed"' in packed and '"__init__.pyi"' in packed and '"model/names.pyi"' in packed
+
+
+@pytest.mark.long
+def test_a_type_checker_accepts_what_runs_and_refuses_each_mistake_in_its_line(tmp_path):
+    pytest.importorskip("mypy", reason="pip install 'bearing_sim[test]' brings mypy")
+    (tmp_path / "program.py").write_text("\n".join([ACCEPTED.strip(), *REFUSED]))
+    command = [sys.executable, "-m", "mypy", "--follow-imports=silent", "--cache-dir", str(tmp_path / "cache"), str(tmp_path / "program.py")]
+    found = subprocess.run(command, capture_output=True, text=True, timeout=400, cwd=tmp_path, env={**os.environ, "MYPYPATH": str(ROOT)})
+    errors = [line.partition("program.py:")[2].partition(": error: ") for line in found.stdout.splitlines() if ": error: " in line]
+    first = ACCEPTED.strip().count("\n") + 2
+    by_line = {int(number) - first: words for number, _, words in errors}
+    assert [words for place, words in by_line.items() if place < 0] == []
+    assert [text for place, (text, words) in enumerate(REFUSED.items()) if words not in by_line.get(place, "")] == [], found.stdout
+
+
+@pytest.mark.parametrize(
+    ("call", "kind", "words"),
+    [
+        (lambda scene: Simulation("deng2017_table1"), TypeError, "expected a Scene; load_scene reads one"),
+        (lambda scene: Simulation(scene, {"shaft_speed": 3.0}), TypeError, "expected Inputs; Inputs.of makes them"),
+        (lambda scene: Simulation(scene).reset("3000 rpm"), TypeError, "expected Inputs"),
+        (lambda scene: Simulation(scene).take_over(scene), TypeError, "expected a Simulation"),
+        (lambda scene: Simulation(scene).advance("ten"), ValueError, "duration = 'ten': expected a time such as '0.5 s'"),
+        (lambda scene: Simulation(scene).advance(True), ValueError, "duration = True: expected a time"),
+        (lambda scene: Simulation(scene).advance(-1), ValueError, "duration = -1: expected a positive time"),
+        (lambda scene: Simulation(scene).advance(0.01, samples=2.5), ValueError, "samples = 2.5: expected a whole number of at least 1"),
+        (lambda scene: load_scene(3), TypeError, "scene = 3: expected the name of a bundled scene"),
+        (lambda scene: load_scene(scene, "level=steady"), TypeError, r"expected a list of texts such as \['level=steady'\]"),
+        (lambda scene: load_scene(scene, [3]), TypeError, r"overrides = \[3\]: expected a list of texts"),
+        (lambda scene: load_scene(scene, {"operating": {"radial_lod": 3.0}}), SceneError, "radial_lod"),
+        (lambda scene: scene.at("radial_load=3"), TypeError, "expected a mapping such as"),
+        (lambda scene: settle("..."), SceneError, "no such file or bundled scene"),
+        (lambda scene: settle(scene, bands=True, samples=-1), ValueError, "samples = -1: expected a whole number"),
+        (lambda scene: run_sweep(scene, 3), FieldError, "3: expected a mapping of fields to values, or a list of points"),
+        (lambda scene: run_sweep(scene, []), FieldError, "at least one"),
+        (lambda scene: run_sweep(scene, {"radial_load": 3.0}), FieldError, r"operating.radial_load: 3.0; expected values such as \[3.0\]"),
+        (lambda scene: run_sweep(scene, [{"radial_load": 1.0}, {"shaft_speed": 1.0}]), FieldError, "point 1 is .* the same fields"),
+        (lambda scene: run_sweep(scene, [{"radial_load": "5 kg"}]), FieldError, "'5 kg' has the wrong dimension"),
+        (lambda scene: bearing_sim.scene_fields("bearing.cleerance"), LookupError, "did you mean 'bearing.clearance'"),
+    ],
+)
+def test_a_wrong_argument_is_named_with_what_was_expected(paper, call, kind, words):
+    with pytest.raises(kind, match=words):
+        call(paper)
+
+
+def test_overrides_as_a_mapping_are_those_as_texts_with_numbers_in_si(motor):
+    changes = {
+        "uncertainty": {"lubricant.temperature": ["60 degC", "80 degC"]},
+        "level": "steady",
+        "operating": {"radial_load": 3000.0, "shaft_speed": 400.0},
+        "bearing.roller.count": np.int64(15),
+    }
+    texts = [
+        "uncertainty.lubricant.temperature=[60 degC, 80 degC]",
+        "level=steady",
+        "operating.radial_load=3000",
+        "operating.shaft_speed=400 rad/s",
+        "bearing.roller.count=15",
+    ]
+    assert load_scene(motor, changes) == load_scene(motor, texts) != motor
+    assert load_scene(motor, {"operating.radial_load": "3 kN"}).operating.radial_load == 3000.0
+
+
+def test_a_duration_is_a_number_of_seconds_or_a_text_with_its_unit(paper):
+    given, written = Simulation(paper), Simulation(paper)
+    assert given.advance(0.01).tobytes() == written.advance("10 ms").tobytes() and written.time == 0.01
+
+
+def test_a_sweep_over_points_has_their_rows_in_order(paper):
+    points = [{"shaft_speed": "45000 rpm", "radial_load": 800.0}, {"shaft_speed": "15000 rpm", "radial_load": 400.0}]
+    table, grid = run_sweep(paper, points, workers=1), run_sweep(paper, {"shaft_speed": ["15000 rpm", "45000 rpm"], "radial_load": [400.0, 800.0]})
+    assert str(table.rows) == str([grid.rows[3], grid.rows[0]]), "as text, in which NaN equals NaN"
+    assert "points of deng2017_table1: 2 points (2 ok)" in repr(table) and list(table.to_pandas()["radial_load"]) == [800.0, 400.0]
+    pandas = pytest.importorskip("pandas", reason="pip install 'bearing_sim[tables]'")
+    assert str(run_sweep(paper, pandas.DataFrame(points), workers=1).rows) == str(table.rows)
+    with pytest.raises(ValueError, match="a table of points has no axes; use to_pandas"):
+        table.to_xarray()
+
+
+def test_lists_of_fields_and_observables_are_those_of_the_commands():
+    found = bearing_sim.scene_fields("bearing.roller")
+    assert {each.path for each in found} > {"bearing.roller.diameter", "bearing.roller.count"} and all(
+        each.path.startswith("bearing.roller") for each in found
+    )
+    assert len(bearing_sim.scene_fields()) > 200 and [each.kind for each in bearing_sim.scene_fields("operating.radial_load")] == ["N"]
+    assert {each.name: each.unit for each in bearing_sim.OBSERVABLES}["inner_load"] == "N"
 
 
 def test_every_parameter_of_the_interface_has_a_type():
-    public = [getattr(bearing_sim, name) for name in bearing_sim.__all__ if name not in ("SceneError", "IntegrationError", "Scene")]
+    public = [getattr(bearing_sim, name) for name in bearing_sim.__all__]
     written = [getattr(kind, name) for kind in (Simulation, Settled, Inputs) for name in vars(kind) if not name.startswith("_")]
     methods = [each for each in written if inspect.isroutine(each) and hasattr(each, "__code__")] + [Inputs.of]
     untyped = []

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""``bearing-sim fields``: the fields of a scene, with unit, range, default and meaning."""
+"""``bearing-sim fields`` and ``observables``: the fields of a scene, with unit, range, default and meaning, and what a sample holds."""
 
 import click
 
@@ -41,6 +41,23 @@ def fields(path, as_json):
         _print(each)
     if not path:
         click.echo("bearing-sim fields BLOCK shows the fields of a block and of those within it, such as: bearing-sim fields lubricant.supply")
+
+
+@click.command("observables")
+@click.argument("words", required=False, default="", metavar="[WORDS]")
+@json_option
+def observables(words, as_json):
+    """List the observables that a sample holds, those whose name or meaning contains WORDS, or all: unit and meaning."""
+    from bearing_sim.model.sample import OBSERVABLES
+
+    found = [each for each in OBSERVABLES if words.casefold() in f"{each.name} {each.meaning}".casefold()]
+    if not found:
+        raise UsageError(f"no observable has {words!r} in its name or meaning; bearing-sim observables lists all")
+    if as_json:
+        print_json({"observables": [each._asdict() for each in found]})
+        return
+    rows = [(each.name, each.unit or "1", f"{each.meaning}{'; of each roller' if each.per_roller else ''}") for each in found]
+    print_rows("observables", ("name", "unit", "meaning"), rows, words=("name", "unit", "meaning"), keys=1)
 
 
 def _bare(path: str) -> str:

@@ -54,11 +54,10 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
 
     bearing-sim replay-fleet scada/ --mapping scada.yaml --scene high_speed_shaft.yaml -o fleet.parquet
     """
-    from bearing_sim.fleet.bearings import bearings_of, read_bearings
-    from bearing_sim.fleet.logs import NoLogs, find_logs
-    from bearing_sim.fleet.replay import OK, PARTLY, replay_fleet
     from bearing_sim.inputs.csv_text import TableError
     from bearing_sim.scene.loader import SceneError
+    from bearing_sim.studies.fleet import OK, PARTLY, replay_fleet
+    from bearing_sim.studies.fleet_logs import NoLogs, bearings_of, find_logs, read_bearings
     from bearing_sim.sweep.table import require_same_study, study_digest, write_table
     from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
 
@@ -107,8 +106,8 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
 
 def _reading(mapping_name, sources, constants, joint, stamps):
     """Return how logs are read, from the options; raise `UsageError` if the mapping is invalid."""
-    from bearing_sim.fleet.logs import Reading, mapping_of
     from bearing_sim.scene.loader import SceneError, read_named
+    from bearing_sim.studies.fleet_logs import Reading, mapping_of
 
     overrides = tuple(f"{name}={_constant_field(name, value)}" for name, value in constants.items())
     of_recordings = {"sources": tuple(sources.items()), "joint": joint, "stamps": stamps, "constants": tuple(constants.items())}
@@ -146,8 +145,8 @@ def _respond(scene):
 
 
 def _report(table, points, files) -> dict:
-    from bearing_sim.fleet.replay import STATUSES
     from bearing_sim.model.validity import counted
+    from bearing_sim.studies.fleet import STATUSES
 
     statuses = Counter(table.values("status"))
     return {

@@ -76,6 +76,7 @@ _COMMANDS = {
     "view": Entry("view:view", "Show a recording in rerun."),
     "mission": Entry("logs:mission", "Write the bundled synthetic mission as an MCAP log."),
     "fields": Entry("fields:fields", "Show the fields of a scene: unit, range, default and meaning."),
+    "observables": Entry("fields:observables", "List what a sample holds: name, unit and meaning."),
     "scenes": Entry("bearings:scenes", "List the bundled scenes, bearings and oils."),
 }
 

@@ -172,7 +172,7 @@ def replay(
 
 def _require_one_log(log: Path, scene_name: str) -> None:
     """Raise `UsageError` if a path is a table, or a folder of many logs; the message names the command for it."""
-    from bearing_sim.fleet.logs import NoLogs, find_logs, is_text
+    from bearing_sim.studies.fleet_logs import NoLogs, find_logs, is_text
 
     if log.is_file() and is_text(log):
         raise UsageError(f"{log} is a table; convert it with: bearing-sim import-csv {log} MAPPING -o {log.with_suffix('.mcap')}")

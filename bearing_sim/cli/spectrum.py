@@ -65,10 +65,10 @@ def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamp
 
     Damage adds up by Palmgren and Miner. If a point has no result, no life is given. An interrupted command resumes.
     """
-    from bearing_sim.fleet.logs import is_text
     from bearing_sim.inputs.log import InputLogError
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.studies import spectrum as studied
+    from bearing_sim.studies.fleet_logs import is_text
     from bearing_sim.sweep.conditions import PointError, read_spectrum
     from bearing_sim.sweep.table import require_same_study, study_digest, write_table
     from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse

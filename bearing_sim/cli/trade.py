@@ -205,7 +205,7 @@ def _read(path, mapping_name, joint, stamps, channels):
             if names or constants:
                 raise UsageError("--mapping says what the columns are; give constants there, and leave out the options for topics")
             return input_log(read_table(path, load_mapping(mapping_name)[0]), path)
-        from bearing_sim.fleet.logs import is_text
+        from bearing_sim.studies.fleet_logs import is_text
 
         if path.is_file() and is_text(path):
             hint = f"propose one with: bearing-sim import-csv --guess {path} -o mapping.yaml"

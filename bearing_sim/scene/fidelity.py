@@ -2,9 +2,10 @@
 """Fidelity levels: what each can compute, and the choice of a level for a scene."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
-LEVELS = ("steady", "slip", "planar", "spatial")  # from the lowest to the highest fidelity
+Level = Literal["steady", "slip", "planar", "spatial"]
+LEVELS = get_args(Level)  # from the lowest to the highest fidelity
 NUMBERS = {"steady": 0, "slip": 1, "planar": 2, "spatial": 3}  # code of a level in a sample
 REDUCES_TO = {"spatial": "planar"}  # equal motion and loads, of straight rollers to round-off, unless the scene uses what only the higher level has
 

@@ -4,13 +4,15 @@
 import copy
 import dataclasses
 import functools
+import json
+import numbers
 import re
 import types
 import typing
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import yaml
 from pydantic import TypeAdapter, ValidationError
@@ -26,15 +28,16 @@ from bearing_sim.scene.designation import DesignationError, is_designation
 from bearing_sim.scene.diameters import ROUND_RACEWAY, diameters, forget_counterpart, gives_round_raceway, override_by_radius, with_radii
 from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
 from bearing_sim.scene.fidelity import choose
-from bearing_sim.scene.fields import laws_with, records_at
+from bearing_sim.scene.fields import FieldFacts, laws_with, records_at
+from bearing_sim.scene.fields import blocks as all_blocks
 from bearing_sim.scene.flanges import drop_absent_flanges
 from bearing_sim.scene.internal_dimensions import CAGE_RULES, bearing_tree, with_cage_of_kind
 from bearing_sim.scene.kept_front import KeptSetting, read_front
 from bearing_sim.scene.lubricant_names import keep_one_lubricant, with_named_lubricants
-from bearing_sim.scene.quantity import SPEED, to_si
+from bearing_sim.scene.quantity import SPEED, Quantity, to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.tree import at
-from bearing_sim.scene.uncertainty import declared_in, drop_ranges, override_range, read_ranges, value_at, written
+from bearing_sim.scene.uncertainty import declared_in, drop_ranges, flattened, nearest, override_range, quantities, read_ranges, value_at, written
 from bearing_sim.scene.wants import candidates, read_wants, reason_of, without_measurement
 
 _UNION_TAGS = frozenset(
@@ -135,20 +138,28 @@ def read_named(name: str | Path, folder: str, kind: str) -> tuple[str, Path | No
         raise SceneError(str(name), [InvalidField(kind, "", error.reason)]) from None
 
 
-def load_scene(scene: str | Path | Mapping | Scene, overrides: Iterable[str] = (), allow_outside: bool = False) -> Scene:
+def load_scene(
+    scene: str | Path | Mapping[str, Any] | Scene, overrides: list[str] | tuple[str, ...] | Mapping[str, Any] = (), allow_outside: bool = False
+) -> Scene:
     """Load a scene by bundled name or file path, or from nested mappings, or change any fields of a loaded one.
 
     Parameters
     ----------
     scene : the name of a bundled scene (see `scene_names`), the path of a YAML file, what such a file holds, or a scene.
-    overrides : texts such as ``"bearing.outer_raceway.low_radius=34.865mm"``, applied in order over the file.
+    overrides : texts such as ``"bearing.outer_raceway.low_radius=34.865mm"``, applied in order over the file; or a mapping of dotted paths or nested
+        blocks to values, in which a number is in SI.
     allow_outside : whether a file may name files of contour and crown outside of its own folder.
 
     Raises
     ------
     SceneError
         The file is absent, is not YAML, or has errors; all of them are listed.
+    TypeError
+        ``scene`` or ``overrides`` is none of these.
     """
+    if not isinstance(scene, (str, Path, Mapping, Scene)):
+        raise TypeError(f"scene = {scene!r}: expected the name of a bundled scene, the path of a file, what a file holds as a mapping, or a Scene")
+    overrides = override_texts(overrides)
     if isinstance(scene, Scene):
         return scene_from_mapping(_overridden(_as_mapping(scene), overrides), origin=scene.name)
     if isinstance(scene, Mapping):
@@ -156,6 +167,38 @@ def load_scene(scene: str | Path | Mapping | Scene, overrides: Iterable[str] = (
     text, folder = read_named(scene, "scenes", "scene")
     with allowing_outside(allow_outside):
         return scene_from_yaml(text, overrides, origin=str(scene), folder=folder)
+
+
+def scene_fields(path: str = "") -> tuple[FieldFacts, ...]:
+    """Return the fields of a scene with unit, default, range and meaning: the one at a dotted path and all below it; without a path all.
+
+    Raises
+    ------
+    LookupError
+        There is no such field.
+    """
+    plain = {fact: fact.path.replace("[]", "") for each in all_blocks(Scene) for fact in each.fields}
+    found = tuple(fact for fact, bare in plain.items() if not path or f"{bare}.".startswith(f"{path}."))
+    if not found:
+        raise LookupError(f"{path}: no field of a scene{nearest(path, plain.values())}")
+    return found
+
+
+def override_texts(overrides: Iterable[str] | Mapping[str, Any]) -> list[str]:
+    """Return overrides of a scene as texts; those of a mapping with a number as its SI value.  Raise `TypeError` where they are neither."""
+    if isinstance(overrides, Mapping):
+        known = quantities(Scene)
+        return [f"{path}={_override_text(known.get(path), value)}" for path, value in flattened(overrides).items()]
+    given = list(overrides) if isinstance(overrides, Iterable) and not isinstance(overrides, str) else [None]
+    if not all(isinstance(each, str) for each in given):
+        raise TypeError(f"overrides = {overrides!r}: expected a list of texts such as ['level=steady'], or a mapping such as {{'level': 'steady'}}")
+    return given
+
+
+def _override_text(declared: Quantity | None, value: object) -> str:
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        return str(value) if declared is None else declared.written(float(value))
+    return value if isinstance(value, str) else json.dumps(value)
 
 
 def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "scene", folder: Path | None = None) -> Scene:

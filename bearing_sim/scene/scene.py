@@ -7,6 +7,7 @@ One record per block of the YAML file.  Each quantity is declared once, with uni
 
 import math
 import re
+import types
 import typing
 from collections.abc import Container, Mapping
 from dataclasses import field, replace
@@ -19,7 +20,7 @@ from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.diameters import override_by_radius
 from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
 from bearing_sim.scene.estimation import Estimation, estimation_errors
-from bearing_sim.scene.fidelity import LEVELS, WANTS, refusals
+from bearing_sim.scene.fidelity import LEVELS, WANTS, Level, refusals
 from bearing_sim.scene.flanges import axial_errors
 from bearing_sim.scene.heat import Heat, NoHeat, given_errors, sink_errors
 from bearing_sim.scene.lubricant import Lubricant
@@ -367,7 +368,7 @@ class Scene:
 
     name: str  # name of the scene
     description: str = ""  # what it is, in a sentence
-    level: Literal["steady", "slip", "planar", "spatial"] = "slip"  # level of fidelity; a file may also say auto
+    level: Level = "slip"  # level of fidelity; a file may also say auto
     # With `level: auto` a file gets the lowest level that has these and all other effects of the scene; level_reason says why.  A mapping to largest
     # errors, such as {slip: 0.3 %, life: 5 %}, asks for the fastest setting whose errors `bearing-sim trade` has measured to be below them.
     wants: tuple[Literal[tuple(WANTS)], ...] = ()
@@ -413,8 +414,12 @@ class Scene:
         ------
         SceneError
             A field is unknown, a value is no such quantity or out of bounds, or the values contradict each other.
+        TypeError
+            ``fields`` is no mapping.
         """
         point = {"shaft_speed": shaft_speed, "radial_load": radial_load, "load_angle": load_angle, "oil_temperature": oil_temperature}
+        if not isinstance(fields, (Mapping, types.NoneType)):
+            raise TypeError(f"fields = {fields!r}: expected a mapping such as {{'bearing.clearance': '40 um'}}")
         given = {OPERATING_POINT[name]: value for name, value in point.items() if value is not None} | dict(fields or {})
         known, values, errors = quantities(type(self)), {}, []
         for asked, value in given.items():
@@ -439,7 +444,7 @@ class Scene:
                 errors.append(InvalidField(", ".join(given), "", messages(error)))
         raise SceneError(self.name, errors)
 
-    def at_level(self, level: str) -> "Scene":
+    def at_level(self, level: Level) -> "Scene":
         """Return the scene at another level of fidelity, with that level's default integration: settings belong to the scene's own level.
 
         Raises

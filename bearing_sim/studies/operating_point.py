@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -15,17 +15,22 @@ from bearing_sim.model.sample import OBSERVABLES, RING_TEMPERATURES
 from bearing_sim.model.validity import Exceedance, Grade, outside
 from bearing_sim.scene.display import force, hours, number, power
 from bearing_sim.scene.errors import did_you_mean
+from bearing_sim.scene.fidelity import Level
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import ranges_of, without_dimensions
-from bearing_sim.sweep.point import DURATION, RESULTS, positive_seconds, results_of, run_until_settled
+from bearing_sim.simulation import positive_seconds
+from bearing_sim.sweep.point import DURATION, RESULTS, results_of, run_until_settled
 from bearing_sim.sweep.settling import Outcome
 from bearing_sim.sweep.states import ROLLING, SKID, Others, other_states, skid_start, state_rows
 
 if TYPE_CHECKING:
     import pandas
 
+    from bearing_sim.model.names import SettledResults
     from bearing_sim.studies.uncertainty import Band
+else:
+    SettledResults = object
 
 SAMPLES, SEED = 64, 2017  # of bands
 NEARBY = "nearby"  # start at a neighbouring point
@@ -35,7 +40,7 @@ _CELSIUS = 273.15
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Settled:
+class Settled(SettledResults):
     """The settled state of a bearing at an operating point.
 
     Results are attributes, in SI but for lives, which are in hours: ``cage_slip``, ``rating_life``, ``inner_load_maximum``, ``shaft_power`` and
@@ -45,6 +50,7 @@ class Settled:
     Attributes
     ----------
     scene : at the operating point and the level that were computed.
+    outcome : how the run ended, with its ``slip`` and ``counters``; all that it has is also here.
     verdict : ``settled``; otherwise what the bearing did: ``drifting``, ``limit cycle``, ``wandering``, ``too short`` to tell, or
         ``no steady state`` at level steady.
     reason : the same in a sentence; empty where it has settled.
@@ -64,26 +70,6 @@ class Settled:
     def settled(self) -> bool:
         """Whether slip, temperature and life rest."""
         return self.outcome.settled
-
-    @property
-    def verdict(self) -> str:
-        """What the bearing did at the end, see the class."""
-        return self.outcome.verdict
-
-    @property
-    def reason(self) -> str:
-        """Why it has not settled, and what it was doing; empty if it has."""
-        return self.outcome.reason
-
-    @property
-    def settling_time(self) -> float:
-        """Since when slip has been as at the end [s]; NaN where it has not settled."""
-        return self.outcome.settling_time
-
-    @property
-    def window(self) -> np.ndarray:
-        """Samples of the last fifth of the run."""
-        return self.outcome.window
 
     @property
     def sample(self) -> np.void:
@@ -110,16 +96,20 @@ class Settled:
 
         return tuple(graded(self.scene, outside(self.scene, self.outcome.window), self.outcome.window[-1]))
 
-    def __getattr__(self, name: str) -> Any:
-        if name in _RESULTS:
-            return self.results[name]
-        if name in _OBSERVED:
-            mean = self.outcome.window[name].mean(axis=0)
-            return mean if _OBSERVED[name].per_roller else float(mean)
-        raise AttributeError(f"no result {name!r}{did_you_mean(name, [*_RESULTS, *_OBSERVED])}; to_pandas() lists the results")
+    if not TYPE_CHECKING:  # a checker knows the names from `SettledResults`
+
+        def __getattr__(self, name: str):
+            if name in Outcome._fields:
+                return getattr(self.outcome, name)
+            if name in _RESULTS:
+                return self.results[name]
+            if name in _OBSERVED:
+                mean = self.outcome.window[name].mean(axis=0)
+                return mean if _OBSERVED[name].per_roller else float(mean)
+            raise AttributeError(f"no result {name!r}{did_you_mean(name, [*_RESULTS, *_OBSERVED])}; to_pandas() lists the results")
 
     def __dir__(self) -> list[str]:
-        return sorted({*super().__dir__(), *_RESULTS, *_OBSERVED})
+        return sorted({*super().__dir__(), *Outcome._fields, *_RESULTS, *_OBSERVED})
 
     def __getstate__(self) -> dict:
         # Without what is computed on demand, whose mapping cannot be pickled.
@@ -170,13 +160,13 @@ class Settled:
 
 def settle(
     scene: Scene | Mapping | str | Path,
-    level: str | None = None,
+    level: Level | None = None,
     *,
     shaft_speed: float | str | None = None,
     radial_load: float | str | None = None,
     load_angle: float | str | None = None,
     oil_temperature: float | str | None = None,
-    start: Settled | str | None = None,
+    start: Settled | Literal["rolling", "skid"] | None = None,
     longest: float | str | None = None,
     bands: bool = False,
     samples: int = SAMPLES,
@@ -218,6 +208,8 @@ def settle(
     found = found.at(shaft_speed=shaft_speed, radial_load=radial_load, load_angle=load_angle, oil_temperature=oil_temperature)
     if level is not None:
         found = found.at_level(level)
+    if not isinstance(samples, int) or samples < 1:
+        raise ValueError(f"samples = {samples!r}: expected a whole number of at least 1")
     at_most = None if longest is None else positive_seconds("longest", longest)
     shortest, sample = DURATION, None
     if isinstance(start, Settled):

@@ -9,16 +9,18 @@ import types
 import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.scene.diameters import diameters
-from bearing_sim.scene.loader import SceneError, did_you_mean, load_scene, scene_to_yaml
+from bearing_sim.scene.fidelity import Level
+from bearing_sim.scene.loader import SceneError, did_you_mean, load_scene, override_texts, scene_to_yaml
 from bearing_sim.scene.quantity import Quantity, QuantityOrName, to_si, unit_registry
 from bearing_sim.scene.scene import OPERATING_POINT, Scene
-from bearing_sim.sweep.point import DURATION, OTHER_STATE, REFUSED, RESULTS, TEXTS, Column, empty_row, point_row, positive_seconds
+from bearing_sim.simulation import positive_seconds
+from bearing_sim.sweep.point import DURATION, OTHER_STATE, REFUSED, RESULTS, TEXTS, Column, empty_row, point_row
 from bearing_sim.sweep.table import Table
 from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
 
@@ -118,7 +120,8 @@ def _options(hint) -> list:
     return [hint]
 
 
-MOST_VALUES = 100_000
+MOST_VALUES, MOST_POINTS = 100_000, 1_000_000
+_RANGE = "15000 rpm:45000 rpm:4"
 _NUMBER_ALONE = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*")
 
 
@@ -157,13 +160,37 @@ def axis(field: str, values: Iterable[float | str] | str) -> Axis:
     if isinstance(values, str):
         return read_axis(f"{field}={values}")
     known = field_of(field)
-    given = [value.item() if hasattr(value, "item") else value for value in values]  # a number of NumPy as one of Python
-    if not given:
+    if not isinstance(values, Iterable):
+        raise FieldError(f"{field}: {values!r}; expected values such as [{values!r}], or a text such as {_RANGE!r}")
+    if not (given := list(values)):
         raise FieldError(f"{field}: no values; expected at least one")
     return Axis(known, tuple(dict.fromkeys(_as_value(known, value) for value in given)))
 
 
+def read_varied(varied: "Varied") -> tuple[list[Axis], list[tuple] | None]:
+    """Return the axes of what `run_sweep` varies, and the combinations of their values where these are given point by point."""
+    if hasattr(varied, "to_dict"):
+        varied = varied.to_dict("records")
+    if isinstance(varied, Mapping):
+        return [axis(field, values) for field, values in varied.items()], None
+    given = list(varied) if isinstance(varied, Iterable) and not isinstance(varied, str) else []
+    if not given:
+        raise FieldError(f"{varied!r}: expected a mapping of fields to values, or a list of points such as {{'radial_load': '1 kN'}}, at least one")
+    if all(isinstance(each, Axis) for each in given):
+        return given, None
+    if len(given) > MOST_POINTS:
+        raise FieldError(f"{len(given)} points; a sweep has at most {MOST_POINTS}")
+    names = given[0] if isinstance(given[0], Mapping) else {}
+    for number, point in enumerate(given):
+        if not isinstance(point, Mapping) or not point or point.keys() != names.keys():
+            raise FieldError(f"point {number} is {point!r}; expected a mapping of fields to values, the same fields {list(names)} for every point")
+    fields = [field_of(OPERATING_POINT.get(name, name)) for name in names]
+    points = [tuple(_as_value(field, point[name]) for field, name in zip(fields, names)) for point in given]
+    return [Axis(field, tuple(dict.fromkeys(values))) for field, values in zip(fields, zip(*points))], points
+
+
 def _as_value(field: Field, value: float | str) -> float | int | str:
+    value = value.item() if hasattr(value, "item") else value  # a number of NumPy as one of Python
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if isinstance(value, str):
         return _value(f"{field.path}={value}", field, value.strip())
@@ -237,9 +264,6 @@ def _value(text, field, part, written=False) -> float | int | str:
     raise FieldError(f"{text!r}: {field.path} takes {field.words()}, got {part!r}")
 
 
-MOST_POINTS = 1_000_000
-
-
 def point_count(axes: Sequence[Axis]) -> int:
     """Return the number of combinations of values; raise `FieldError` where there are more than `MOST_POINTS`."""
     count = math.prod(len(axis.values) for axis in axes)
@@ -248,19 +272,28 @@ def point_count(axes: Sequence[Axis]) -> int:
     return count
 
 
+class Frame(Protocol):
+    """A frame of pandas, whether or not its types are known."""
+
+    def to_dict(self, orient: Any) -> Any: ...
+
+
+Varied = Mapping[str, Iterable[float | str] | str] | Sequence[Axis] | Sequence[Mapping[str, Any]] | Frame
+
+
 def run_sweep(
     scene: Scene | Mapping | str | Path,
-    axes: Mapping[str, Iterable[float | str] | str] | Sequence[Axis],
-    overrides: Sequence[str] = (),
+    axes: "Varied",
+    overrides: list[str] | tuple[str, ...] | Mapping[str, Any] = (),
     *,
-    level: str | None = None,
+    level: Level | None = None,
     duration: float | str = DURATION,
     journal: Journal | str | Path | None = None,
     workers: int | None = None,
     dask: str | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Table:
-    """Run a scene at every combination of values, on all cores, until each point has settled.
+    """Run a scene at every combination of values, or at every point of a list, on all cores, until each point has settled.
 
     Workers do not import the script that calls this, so that it needs no ``if __name__ == "__main__"``.
 
@@ -268,7 +301,7 @@ def run_sweep(
     ----------
     scene, overrides : as `bearing_sim.load_scene` takes them.
     axes : the varied fields with their values, see `axis`, such as ``{"shaft_speed": "15000 rpm:45000 rpm:4", "bearing.clearance": ["C3",
-        "40 um"]}``; the first varies slowest.
+        "40 um"]}``; the first varies slowest.  Or points, each a mapping of the same fields to a value, or a row of a frame of pandas.
     level : of fidelity; the scene's own where absent.
     duration : of the shortest run of a point [s], see `bearing_sim.sweep.point.run_until_settled`.
     journal : of finished points, which are not computed again, or the path of its file; kept in memory where absent.
@@ -276,13 +309,13 @@ def run_sweep(
 
     Returns
     -------
-    one row per point: the varied fields, then `RESULTS`, `OTHER_STATE` and `TEXTS` of `bearing_sim.sweep.point`; see
+    one row per point, in the order given: the varied fields, then `RESULTS`, `OTHER_STATE` and `TEXTS` of `bearing_sim.sweep.point`; see
     `bearing_sim.sweep.table.Table.to_xarray`.
 
     Raises
     ------
     FieldError
-        A field or a value cannot be varied, or there are too many points.
+        A field or a value cannot be varied, points have not the same fields, or there are none or too many.
     SceneError
         No point has a valid scene; the errors are those of the first point.
     ClusterError
@@ -290,8 +323,9 @@ def run_sweep(
     JournalInUse
         Another process is writing the journal.
     """
-    varied = [axis(field, values) for field, values in axes.items()] if isinstance(axes, Mapping) else list(axes)
-    plan = plan_sweep(scene, [*overrides, *([f"level={level}"] if level else [])], varied, positive_seconds("duration", duration))
+    varied, points = read_varied(axes)
+    changed = [*override_texts(overrides), *([f"level={level}"] if level else [])]
+    plan = plan_sweep(scene, changed, varied, positive_seconds("duration", duration), points=points)
     if isinstance(journal, Journal):
         return plan.table(run_tasks(plan.tasks, journal, workers, dask, progress))
     with Journal(None if journal is None else Path(journal)) as kept:
@@ -308,6 +342,7 @@ class Plan(NamedTuple):
     combinations : of the values, one of each axis.
     scenes : the scene of each combination, or the error of an invalid one.
     longest : of the longest run of a point [s], see `bearing_sim.sweep.point.run_until_settled`; None for its default.
+    is_grid : whether the combinations are all that there are.
     """
 
     name: str
@@ -317,6 +352,7 @@ class Plan(NamedTuple):
     combinations: tuple[tuple, ...]
     scenes: tuple[Scene | SceneError, ...]
     longest: float | None = None
+    is_grid: bool = True
 
     @property
     def tasks(self) -> list[Task]:
@@ -336,11 +372,11 @@ class Plan(NamedTuple):
     def _about(self) -> dict:
         scene = next(scene for scene in self.scenes if isinstance(scene, Scene))
         return {
-            "kind": "sweep",
+            "kind": "sweep" if self.is_grid else "points",
             "scene": self.name,
             "overrides": list(self.overrides),
             "level": scene.level if all(axis.field.path != "level" for axis in self.axes) else "varied",
-            "axes": [{"field": axis.field.path, "unit": axis.field.unit, "values": axis.shown} for axis in self.axes],
+            "axes" if self.is_grid else "varied": [{"field": each.field.path, "unit": each.field.unit, "values": each.shown} for each in self.axes],
             "duration": self.duration,
             "version": package_version(),
             "commit": git_hash(),
@@ -354,15 +390,17 @@ def plan_sweep(
     axes: Sequence[Axis],
     duration: float = DURATION,
     longest: float | None = None,
+    points: Sequence[tuple] | None = None,
 ) -> Plan:
-    """Return the plan of a sweep; ``longest`` as of `Plan`, the other parameters and errors as for `run_sweep`."""
-    point_count(axes)
-    combinations = tuple(itertools.product(*(axis.values for axis in axes)))
+    """Return the plan of a sweep; ``longest`` as of `Plan`, ``points`` as of `read_varied`, the other parameters and errors as for `run_sweep`."""
+    if points is None:
+        point_count(axes)
+    combinations = tuple(itertools.product(*(axis.values for axis in axes)) if points is None else points)
     scenes = tuple(scene_at(scene, overrides, axes, combination) for combination in combinations)
     if not any(isinstance(each, Scene) for each in scenes):
         raise scenes[0]
     name = scene.name if isinstance(scene, Scene) else str(scene.get("name", "scene") if isinstance(scene, Mapping) else scene)
-    return Plan(name, tuple(overrides), tuple(axes), float(duration), combinations, scenes, longest)
+    return Plan(name, tuple(overrides), tuple(axes), float(duration), combinations, scenes, longest, points is None)
 
 
 def scene_at(scene: Scene | Mapping | str | Path, overrides: Sequence[str], axes: Sequence[Axis], combination: Sequence) -> Scene | SceneError:

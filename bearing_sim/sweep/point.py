@@ -11,7 +11,6 @@ from bearing_sim.model.losses import power_loss
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.model.validity import below_minimum_load, cell, outside
 from bearing_sim.scene.axial_load import results_without_rule
-from bearing_sim.scene.quantity import to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, mean_life, shortest_run
@@ -72,14 +71,6 @@ TEXTS = (
     Column("reason", "", "why the status is not ok"),
     Column("warnings", "", "laws used outside of their ranges, and the makers' minimum load if the load is below, each with its worst value"),
 )
-
-
-def positive_seconds(name: str, value: float | str) -> float:
-    """Return a time as a number of seconds; raise `ValueError` with its name where it is no positive finite time."""
-    seconds = to_si(value, "s")
-    if not 0.0 < seconds < math.inf:
-        raise ValueError(f"{name} = {value!r}: expected a positive time such as '0.5 s'")
-    return seconds
 
 
 def run_until_settled(scene: Scene, duration: float = DURATION, longest: float | None = None, start: np.void | None = None) -> Outcome:

@@ -50,11 +50,15 @@ class Table(NamedTuple):
     about: dict
 
     def __repr__(self) -> str:
-        axes = [f"{axis['field']}{f' [{unit}]' if (unit := axis.get('unit')) else ''} x {len(axis['values'])}" for axis in self.about.get("axes", ())]
+        axes = [f"{axis['field']}{f' [{unit}]' if (unit := axis.get('unit')) else ''} x {len(axis['values'])}" for axis in self._varied]
         counts = collections.Counter(row["status"] for row in self.rows if "status" in row)
         found = ", ".join(f"{count} {status}" for status, count in counts.items())
         title = f"{self.about.get('kind', 'table')} of {self.about.get('scene', 'a scene')}: {len(self.rows)} points{f' ({found})' if found else ''}"
         return "\n".join([title, *(f"  over {each}" for each in axes), f"  {len(self.columns)} columns, see to_pandas()"])
+
+    @property
+    def _varied(self) -> list[dict]:
+        return self.about.get("axes") or self.about.get("varied", [])
 
     def column(self, name: str) -> Column:
         """Return a column by name."""
@@ -107,7 +111,7 @@ class Table(NamedTuple):
 
     def _in_si(self, column: Column) -> tuple[str, str | None, str, list]:
         """Return short name, SI unit (None for words), meaning and values in SI of a column."""
-        values, varied = self.values(column.name), [axis["field"] for axis in self.about.get("axes", ())]
+        values, varied = self.values(column.name), [axis["field"] for axis in self._varied]
         last = column.name.rpartition(".")[2]
         name = last if [path.rpartition(".")[2] for path in varied].count(last) == 1 and column.name in varied else column.name
         if any(isinstance(value, str) for value in values):

@@ -1,10 +1,11 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Replay of many logs, one bearing each, on all cores or on a Dask cluster: a table with one row for each bearing.
+"""A fleet: replay of many logs, one bearing each, on all cores or on a Dask cluster: a table with one row for each bearing.
 
 A log that cannot be read or computed is a row that says why.  Results are kept in a journal by what they depend on: the contents of the log, how it
 is read, the scene and this program.  Nothing that is in it is computed again.
 """
 
+import csv
 import fcntl
 import math
 import os
@@ -14,14 +15,12 @@ from contextlib import contextmanager
 from dataclasses import replace as with_fields
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.estimation.response import ResponseModel, response_digest
 from bearing_sim.estimation.two_states import laws_of_table
 from bearing_sim.files.tally import PartlyUsedWarning
-from bearing_sim.fleet.logs import Log, Reading, read_log
 from bearing_sim.inputs.csv_text import TableError
 from bearing_sim.inputs.log import InputLogError
 from bearing_sim.inputs.profile import judge
@@ -35,6 +34,7 @@ from bearing_sim.runtime.replay import Replay, replay
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation
+from bearing_sim.studies.fleet_logs import Bearing, Log, read_log
 from bearing_sim.sweep.point import FAILED, OK, REFUSED, Column
 from bearing_sim.sweep.table import Table
 from bearing_sim.sweep.tasks import UNAVAILABLE, Journal, Task, program_hash, run_tasks, task
@@ -44,80 +44,31 @@ PARTLY = "partly used"
 
 STATUSES = (OK, PARTLY, FAILED, REFUSED, UNAVAILABLE)
 
-_SOURCES = ("estimation/*.py", "fleet/*.py", "inputs/*.py", "messages/*.py", "monitoring/*.py", "recording/*.py", "runtime/*.py", "sweep/tasks.py")
+_SOURCES = (
+    "studies/fleet.py",
+    "studies/fleet_logs.py",
+    "sweep/tasks.py",
+    "estimation/*.py",
+    "inputs/*.py",
+    "messages/*.py",
+    "monitoring/*.py",
+    "recording/*.py",
+    "runtime/*.py",
+)
 _TABLES_KEPT = 4  # by a worker
 
-# By name: unit, name in `bearing_sim.runtime.replay.Replay.band_statistics`, by what the unit is smaller than that there, meaning.
+# By the beginning of a column: name in `bearing_sim.runtime.replay.Replay.band_statistics`, and by what the column's unit is smaller than that there.
 _BANDS = {
-    "slip_mean": ("%", "cage_slip", 100.0, "cage slip while the shaft turns, mean over time"),
-    "slip_maximum": ("%", "largest_cage_slip", 100.0, "likewise, largest"),
-    "least_rating_life": ("h", "least_rating_life", 1.0, "shortest rating life at an instant"),
-    "least_running_clearance": ("um", "least_running_clearance", 1e6, "least running clearance at an instant"),
-    "remaining_life": ("h", "remaining_life", 1.0, "life that remains at the end"),
+    "slip_mean": ("cage_slip", 100.0),
+    "slip_maximum": ("largest_cage_slip", 100.0),
+    "least_rating_life": ("least_rating_life", 1.0),
+    "least_running_clearance": ("least_running_clearance", 1e6),
+    "remaining_life": ("remaining_life", 1.0),
 }
 
-NAMES = (
-    Column("bearing", "", "serial number where it is given, otherwise the name of the log"),
-    Column("log", "", "file or folder, and the cells that choose its rows"),
-    Column("scene", "", "what the bearing is"),
-    Column("level", "", "level of fidelity"),
-)
-TEXTS = (
-    Column("status", "", f"{OK}; {PARTLY}: of the log; {FAILED}: the run stopped early; {REFUSED}, {UNAVAILABLE}: no result"),
-    Column("reason", "", "why the status is not ok"),
-)
-RESULTS = (
-    Column("log_hours", "h", "for how long the log has messages of both speed and load"),
-    Column("simulated_hours", "h", "for how long the bearing was simulated: without gaps"),
-    Column("running_hours", "h", "for how long the shaft turned, at thresholds.slip_from_speed or faster"),
-    Column("gap_hours", "h", "for how long the log is silent"),
-    Column("unknown_hours", "h", "for how long inputs are unknown, because their messages were refused"),
-    Column("revolutions", "", "turns of the shaft"),
-    Column("largest_speed", "rpm", "largest shaft speed"),
-    Column("largest_load", "N", "largest radial load"),
-    Column("slip_mean", "%", "cage slip while the shaft turns, mean over time"),
-    Column("slip_median", "%", "likewise, median"),
-    Column("slip_p95", "%", "likewise, 95th percentile"),
-    Column("slip_p99", "%", "likewise, 99th percentile"),
-    Column("slip_maximum", "%", "likewise, largest"),
-    Column("above_slip_warning", "%", "share of the running time with more slip than thresholds.slip_warning of the scene"),
-    Column("above_slip_error", "%", "share of the running time with more slip than thresholds.slip_error of the scene"),
-    Column("below_minimum_load", "%", "share of the running time below the makers' minimum load"),
-    Column("damage", "%", "life used: fraction of the rating life"),
-    Column("life", "h", "life if this log were repeated"),
-    Column("least_rating_life", "h", "shortest rating life at an instant"),
-    Column("inputs_refused", "", "messages that were there and were not used"),
-    Column("failed_intervals", "", "intervals that could not be integrated"),
-    Column("samples", "", "operating points computed"),
-    *(
-        Column(f"{name}_{end}", unit, f"{meaning}, {quantile} % quantile; where the scene asks for bands")
-        for name, (unit, _, _, meaning) in _BANDS.items()
-        for end, quantile in (("low", 5), ("high", 95))
-    ),
-)
-NOTES = (
-    Column("life_and_damage", "", "as given; or at most, at least, since inputs were refused that were too large"),
-    Column("life_method", "", "life.method of the scene"),
-    Column("events", "", "number of events by kind"),
-    Column("warnings", "", "laws used outside of their ranges, each with its worst value"),
-)
-COLUMNS = (*NAMES, *TEXTS, *RESULTS, *NOTES)
-
-
-class Bearing(NamedTuple):
-    """One bearing of a fleet.
-
-    Attributes
-    ----------
-    name : serial number, or the name of its log.
-    log, reading : what it has been through, and how that is read.
-    scene : what it is; or why it is not known.
-    """
-
-    name: str
-    log: Log
-    reading: Reading
-    scene: Scene | SceneError
+with open(Path(__file__).with_name("fleet_columns.csv"), encoding="utf-8", newline="") as _file:
+    _TABLE = list(csv.DictReader(_file))
+COLUMNS = tuple(Column(each["name"], each["unit"], each["meaning"]) for each in _TABLE)
 
 
 def replay_fleet(
@@ -269,7 +220,7 @@ def _survey(bearing: Bearing) -> dict:
 def replay_bearing(
     bearing: Bearing, longest_gap: float | None, temperatures: tuple[float, float] | None, response: ResponseModel | None = None
 ) -> dict:
-    """Return the results of one bearing by the names of `TEXTS`, `RESULTS` and `NOTES`; those of a log that cannot be read have only the first.
+    """Return the results of one bearing by the names of `COLUMNS`; those of a log that cannot be read have only ``status`` and ``reason``.
 
     Parameters
     ----------
@@ -351,7 +302,7 @@ def _results(scene: Scene, result: Replay) -> dict:
 def _band_results(result: Replay) -> dict[str, float]:
     """Return the ends of the bands of a replay by the names of their columns; NaN without bands."""
     statistics, found = result.band_statistics(), {}
-    for name, (_, statistic, scale, _) in _BANDS.items():
+    for name, (statistic, scale) in _BANDS.items():
         low, high = statistics.get(statistic, (math.nan, math.nan))
         found |= {f"{name}_low": scale * low, f"{name}_high": scale * high}
     return found
@@ -392,8 +343,8 @@ def _complete(bearing: Bearing, row: dict) -> dict:
     scene, only = bearing.scene, "".join(f", {column} = {text}" for column, text in bearing.log.only)
     known = isinstance(scene, Scene)
     names = {"bearing": bearing.name, "log": f"{bearing.log.path}{only}", "scene": scene.name if known else scene.origin}
-    empty = {column.name: math.nan for column in RESULTS} | dict.fromkeys((column.name for column in NOTES), "")
-    return names | {"level": scene.level if known else ""} | empty | row
+    empty = {each["name"]: math.nan if each["kind"] == "number" else "" for each in _TABLE}
+    return empty | names | {"level": scene.level if known else ""} | row
 
 
 def _about(bearings: Sequence[Bearing]) -> dict:
