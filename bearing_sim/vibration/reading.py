@@ -21,6 +21,7 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 
 from bearing_sim.extras import what_is_missing
+from bearing_sim.files.labview_text import plain_lines
 from bearing_sim.files.limits import TABLE_LINE, VIBRATION_FILE, VIBRATION_PARTS, VIBRATION_SAMPLES, VIBRATION_TEXT, FileError, LimitError, printable
 from bearing_sim.files.reading import encoding_by_mark, open_regular
 from bearing_sim.files.tally import Tally
@@ -34,6 +35,7 @@ FORMATS = {
     ".txt": "text",
     ".tsv": "text",
     ".dat": "text",
+    ".lvm": "text",
     ".parquet": "parquet",
     ".mat": "matlab",
     ".npz": "numpy",
@@ -50,7 +52,7 @@ FORMATS = {
 """Formats by the suffix of a file; a folder is a bag."""
 
 _RATE_NAMES = re.compile(r"(?:^|[^a-z])(?:fs|sr|rate|sampling_?rate|sample_?rate|sampling_?frequency|samples_per_second)(?:_?hz)?$", re.IGNORECASE)
-_TIME_NAMES = re.compile(r"(?:^|[^a-z])(?:t|time|times|timestamp|seconds)(?:_?s)?(?:\s*[\[(].*)?$", re.IGNORECASE)
+_TIME_NAMES = re.compile(r"(?:^|[^a-z])(?:t|time|times|timestamp|seconds|x_value)(?:_?s)?(?:\s*[\[(].*)?$", re.IGNORECASE)
 _UNIT = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 _FIRST_LINES = 200
 _MOST_SHOWN = 12
@@ -58,6 +60,7 @@ _MOST_TOLD = 3
 _DEEPEST = 8  # levels of structures in a MAT or HDF5 file
 _MOST_CHANNELS = 2000
 _UNEVEN = 0.01  # of the spacing of times
+_ROUNDINGS = 1.5  # between times and those of an even rate, if they are only rounded
 _COMMENTS = ("#", "%", "//")
 _PIECE = 1 << 20  # [byte] that is unpacked at once
 _MAT_MATRIX, _MAT_COMPRESSED = 14, 15  # types of elements of a MAT file
@@ -156,9 +159,9 @@ def read_vibration(
         if len(speeds) != len(samples):
             raise VibrationError(f"{path}: {speed_channel} has {len(speeds)} values and {name} {len(samples)}; expected as many of each")
         speeds = speeds * _factor(speed_unit)
-    rate = rate if rate is not None else _rate(path, found, time_channel, len(samples))
+    rate, note = (rate, "") if rate is not None else _rate(path, found, time_channel, len(samples))
     unit = _UNIT.search(name)
-    return Vibration(samples, rate, unit[1] if unit else "", found.start, f"{path.name}, {printable(name)}", speeds, found.tally)
+    return Vibration(samples, rate, unit[1] if unit else "", found.start, f"{path.name}, {printable(name)}{note}", speeds, found.tally)
 
 
 def _factor(unit: str) -> float:
@@ -201,14 +204,15 @@ def _only_channel(path: Path, found: Channels, time_channel: str | None, speed_c
     raise VibrationError(f"{path}: which channel is the vibration? there are {_listed(names)}; choose one with --channel{told}")
 
 
-def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> float:
-    """Return the rate of the samples by the file."""
+def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> tuple[float, str]:
+    """Return the rate of the samples by the file, and what is to be said about it."""
+    note = ""
     if time_channel is None and found.rate is not None:
-        return found.rate
+        return found.rate, note
     if time_channel is None:
         rates = {name: value for name, value in found.numbers.items() if _RATE_NAMES.search(name) and value > 0.0}
         if len(set(rates.values())) == 1:
-            return next(iter(rates.values()))
+            return next(iter(rates.values())), note
         if rates:
             raise VibrationError(f"{path}: {', '.join(f'{printable(name)} = {value:g}' for name, value in rates.items())}; choose one with --rate")
     names = [time_channel] if time_channel else [name for name, array in found.arrays.items() if _TIME_NAMES.search(name) and len(array) == count]
@@ -216,18 +220,22 @@ def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> 
         raise VibrationError(f"{path}: the file does not say its sampling rate; give it with --rate, such as --rate 50kHz")
     times = _array(path, found, names[0], "--time-channel")
     steps = np.diff(times)
-    step = float(np.median(steps)) if len(steps) else math.nan
-    if len(times) != count or not step > 0.0:
+    changes = np.flatnonzero(steps) + 1
+    if len(times) != count or len(changes) < 2 or not steps.min() >= 0.0:
         raise VibrationError(f"{path}: {names[0]} is no column of increasing times; give the sampling rate with --rate")
-    mean = float(times[-1] - times[0]) / (count - 1)
-    if abs(mean / step - 1.0) > _UNEVEN:
-        worst = int(np.argmax(np.abs(steps - step)))
-        raise VibrationError(
-            f"{path}: {names[0]} has a gap: {times[worst]:g} is followed by {times[worst + 1]:g}; expected equal steps: cut the record there"
-        )
+    mean, usual = float(times[-1] - times[0]) / (count - 1), float(np.median(steps))
+    if abs(mean - usual) > _UNEVEN * usual:  # times with fewer digits than their steps need, or a gap
+        mean = float(times[changes[-1]] - times[changes[0]]) / float(changes[-1] - changes[0])
+        off = np.abs(times - times[changes[0]] - mean * (np.arange(count) - changes[0]))
+        if off.max() > _ROUNDINGS * float(np.median(steps[steps > 0.0])):
+            worst = int(np.argmax(np.abs(steps - mean)))
+            raise VibrationError(
+                f"{path}: {names[0]} has a gap: {times[worst]:g} is followed by {times[worst + 1]:g}; expected equal steps: cut the record there"
+            )
+        note = f"; {printable(names[0])} has rounded times, so the rate is the mean one"
     unit = _UNIT.search(names[0])
     seconds = {"ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}.get(unit[1] if unit else "", 1.0)
-    return 1.0 / (mean * seconds)
+    return 1.0 / (mean * seconds), note
 
 
 def _cannot_be_read(path: Path, form: str, error: Exception) -> FileError:
@@ -259,7 +267,7 @@ def _lines(path: Path) -> Iterator[str]:
 def _rows(path: Path, begin: int, width: int, decimal: str) -> Iterator[str]:
     """Yield the lines of numbers of a text from the line with the index ``begin`` on."""
     count, most = 0, VIBRATION_TEXT.value
-    for line in itertools.islice(_lines(path), begin, None):
+    for line in itertools.islice(plain_lines(_lines(path)), begin, None):
         if not line.strip() or line.lstrip().startswith(_COMMENTS):
             continue
         count += width
@@ -270,7 +278,7 @@ def _rows(path: Path, begin: int, width: int, decimal: str) -> Iterator[str]:
 
 def _text(path: Path) -> Channels:
     """Return the columns of a text: numbers between commas, semicolons, tabs or blanks, under headings or none."""
-    first_lines = list(itertools.islice(_lines(path), _FIRST_LINES))
+    first_lines = list(itertools.islice(plain_lines(_lines(path)), _FIRST_LINES))
     begin, delimiter, decimal = _first_row(path, first_lines)
     heading = first_lines[begin - 1] if begin else ""
     names = [cell.strip().strip('"').lstrip("#% ") for cell in (heading.split(delimiter) if delimiter else heading.split())]
@@ -316,7 +324,7 @@ def _first_row(path: Path, lines: list[str]) -> tuple[int, str | None, str]:
 
 def _first_fault(path: Path, begin: int, delimiter: str | None, decimal: str, width: int) -> str:
     """Return what is wrong with the first row that cannot be read."""
-    for number, line in enumerate(itertools.islice(_lines(path), begin, None), begin + 1):
+    for number, line in enumerate(itertools.islice(plain_lines(_lines(path)), begin, None), begin + 1):
         if not line.strip() or line.lstrip().startswith(_COMMENTS):
             continue
         cells = _cells(line, delimiter)
