@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Vibration records of any logger: CSV and other text, Parquet, MAT, NPZ and NPY, WAV, HDF5, and recordings (MCAP and other bags).
+"""Vibration records of any logger: text, Parquet, MAT, NPZ and NPY, WAV, HDF5, TDMS, universal files, and recordings (MCAP and other bags).
 
 A file is taken as channels: names with numbers.  Which of them is the vibration follows from its name where it is given, or where only one is
 long enough to be it; the rate from the file where it says one, or from its column of times.  What may mean two things is asked for.
@@ -31,11 +31,7 @@ from bearing_sim.scene.quantity import to_si
 from bearing_sim.vibration.signal import FEWEST_SAMPLES, Vibration, VibrationError
 
 FORMATS = {
-    ".csv": "text",
-    ".txt": "text",
-    ".tsv": "text",
-    ".dat": "text",
-    ".lvm": "text",
+    **dict.fromkeys((".csv", ".txt", ".tsv", ".dat", ".lvm"), "text"),
     ".parquet": "parquet",
     ".mat": "matlab",
     ".npz": "numpy",
@@ -44,10 +40,9 @@ FORMATS = {
     ".h5": "hdf5",
     ".hdf5": "hdf5",
     ".hdf": "hdf5",
-    ".mcap": "bag",
-    ".active": "bag",
-    ".db3": "bag",
-    ".bag": "bag",
+    ".tdms": "tdms",
+    **dict.fromkeys((".uff", ".unv", ".u58", ".uf"), "universal"),
+    **dict.fromkeys((".mcap", ".active", ".db3", ".bag", ".zstd", ".zst", ".lz4"), "bag"),
 }
 """Formats by the suffix of a file; a folder is a bag."""
 
@@ -661,6 +656,57 @@ def _wave(path: Path) -> Channels:
     return collector.channels._replace(rate=float(rate))
 
 
+def _tdms(path: Path) -> Channels:
+    """Return the channels of a file of LabVIEW and other programs of National Instruments."""
+    try:
+        import nptdms
+    except ModuleNotFoundError as error:
+        raise VibrationError(f"{path}: {what_is_missing(error)}") from None
+    collector, start, values = _Collector(path), 0.0, 0
+    with open_regular(path, VIBRATION_FILE) as stream:
+        try:
+            with nptdms.TdmsFile.open(stream) as file:
+                for channel in (each for group in file.groups() for each in group.channels()):
+                    values += len(channel)
+                    VIBRATION_SAMPLES.check(values, str(path))
+                    told = channel.properties
+                    name = f"{channel.group_name}/{channel.name}" + (f" [{told['unit_string']}]" if told.get("unit_string") else "")
+                    collector.add(name, channel[:] if len(channel) else np.zeros(0))
+                    if float(told.get("wf_increment", 0.0)) > 0.0:
+                        collector.numbers[f"{name}.rate"] = 1.0 / float(told["wf_increment"])
+                    if isinstance(told.get("wf_start_time"), np.datetime64):
+                        start = float(told["wf_start_time"].astype("datetime64[us]").astype(np.int64)) * 1e-6
+        except Exception as error:
+            raise _cannot_be_read(path, "TDMS", error) from None
+    return collector.channels._replace(start=start)
+
+
+def _universal(path: Path) -> Channels:
+    """Return the functions of time of a universal file: its data sets 58, as text or binary."""
+    try:
+        import pyuff
+    except ModuleNotFoundError as error:
+        raise VibrationError(f"{path}: {what_is_missing(error)}") from None
+    open_regular(path, VIBRATION_FILE).close()
+    collector = _Collector(path)
+    try:
+        file = pyuff.UFF(str(path))
+        kinds = list(file.get_set_types())
+        VIBRATION_PARTS.check(len(kinds), str(path))
+        for number in (number for number, kind in enumerate(kinds) if int(kind) == 58):
+            found = file.read_sets([number])
+            unit, title = str(found.get("ordinate_axis_units_lab", "")).strip(), str(found.get("id1", "")).strip()
+            name = f"{number + 1} {title}".replace(" NONE", "") + (f" [{unit}]" if unit not in ("", "NONE") else "")
+            collector.add(name, found["data"])
+            if int(found.get("abscissa_spacing", 0)) and float(found.get("abscissa_inc", 0.0)) > 0.0:
+                collector.numbers[f"{name}.rate"] = 1.0 / float(found["abscissa_inc"])
+            elif "x" in found:
+                collector.add(f"{name} time", np.real(found["x"]))
+    except Exception as error:
+        raise _cannot_be_read(path, "universal file", error) from None
+    return collector.channels
+
+
 _READERS: Mapping[str, Callable[[Path], Channels]] = {
     "text": _text,
     "parquet": _parquet,
@@ -668,6 +714,8 @@ _READERS: Mapping[str, Callable[[Path], Channels]] = {
     "hdf5": _hdf5,
     "numpy": _numpy,
     "wave": _wave,
+    "tdms": _tdms,
+    "universal": _universal,
 }
 
 

@@ -1,0 +1,147 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Claims about the files that people bring: how loggers write numbers, times, units and names is read as it is meant, or asked for in one line."""
+
+import numpy as np
+import pytest
+
+from bearing_sim.inputs.csv_guess import guess
+from bearing_sim.inputs.csv_import import TableError, mapping_from_yaml, read_table
+from bearing_sim.messages.definitions import decoder, ros2_name
+from bearing_sim.vibration.reading import read_vibration
+
+RPM = np.pi / 30.0
+LABVIEW = (
+    "LabVIEW Measurement\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\tOne\nDate\t2026/05/04\nTime\t10:00:00\n***End_of_Header***\n\n"
+    "Channels\t2\nSamples\t40\t40\nDate\t2026/05/04\t2026/05/04\nTime\t10:00:00.5\t10:00:00.5\nY_Unit_Label\trpm\tkN\nX_Dimension\tTime\tTime\n"
+    "X0\t0.0\t0.0\nDelta_X\t0.01\t0.01\n***End_of_Header***\t\t\nX_Value\tspeed\tload\tComment\n"
+)
+
+
+def table(folder, heading, row, count=60, encoding="utf-8"):
+    path = folder / "table.csv"
+    path.write_bytes("\n".join([heading, *(row(k) for k in range(count)), ""]).encode(encoding))
+    return path
+
+
+def imported(path):
+    found = guess(path)
+    assert not found.questions, found.questions
+    return found, read_table(path, mapping_from_yaml(found.text))
+
+
+@pytest.mark.parametrize("space", ["\N{NO-BREAK SPACE}", "\N{NARROW NO-BREAK SPACE}", "\N{THIN SPACE}", "\N{RIGHT SINGLE QUOTATION MARK}", " ", "."])
+def test_separators_of_thousands_are_those_of_the_column(tmp_path, space):
+    path = table(tmp_path, "time [s];speed [rpm];load [N]", lambda k: f"{k};1{space}48{k % 10},5;5{space}0{k:02d},0")
+    found, read = imported(path)
+    assert found.tree["thousands"] and read.values["shaft_speed"][3] == pytest.approx(1483.5 * RPM) and read.values["radial_load"][7] == 5007.0
+
+
+def test_numbers_grouped_as_in_india_are_read(tmp_path):
+    _, read = imported(table(tmp_path, "time [s];speed [rpm];load [N]", lambda k: f"{k};1480.5;1,05,1{k:02d}.0"))
+    assert read.values["radial_load"][5] == 105105.0
+
+
+@pytest.mark.parametrize(
+    "heading, cell", [("speed", "98.3 %"), ("speed [rpm]", "98.3 %"), ("Drehzahl in % von n_N", "98.3"), ("speed_percent", "98.3")]
+)
+def test_per_cent_of_a_speed_asks_for_the_speed_at_100_per_cent(tmp_path, heading, cell):
+    path = table(tmp_path, f"time [s],{heading},load [kN]", lambda k: f"{k},{cell},5.0")
+    assert "give the speed at 100 %: --unit shaft_speed='% of 1500 rpm'" in guess(path).questions["shaft_speed"]
+    found = guess(path, units={"shaft_speed": "% of 1500 rpm"})
+    assert read_table(path, mapping_from_yaml(found.text)).values["shaft_speed"][0] == pytest.approx(0.983 * 1500 * RPM)
+
+
+def test_a_mapping_in_rpm_is_refused_where_the_cells_are_per_cent(tmp_path):
+    path = table(tmp_path, "t,n,f", lambda k: f"{k},98.3 %,5.0")
+    columns = "shaft_speed: {column: n, unit: rpm}\nradial_load: {law: sum, columns: [{column: f, unit: N}]}\n"
+    with pytest.raises(TableError, match="n: the cells are percentages .%., not rpm"):
+        read_table(path, mapping_from_yaml(f"name: rig\ntime: {{column: t, unit: s}}\n{columns}"))
+
+
+def test_units_behind_the_numbers_are_those_of_the_column(tmp_path):
+    _, read = imported(table(tmp_path, "time [s],speed,load", lambda k: f"{k},1480 rpm,5.0 kN"))
+    assert read.values["shaft_speed"][0] == pytest.approx(1480 * RPM) and read.values["radial_load"][0] == 5000.0
+
+
+@pytest.mark.parametrize("rate, digits", [(10.0, 0), (25.0, 1), (300.0, 2)])
+def test_rounded_times_give_an_even_rate_that_is_said_and_no_gap(tmp_path, rate, digits):
+    _, read = imported(table(tmp_path, "time [s],speed [rpm],load [kN]", lambda k: f"{k / rate:.{digits}f},{1480 + k % 7},5.0", 900))
+    assert read.tally.is_whole and not read.gaps and any("times are rounded" in note for note in read.notes)
+    assert np.diff(read.stamps["shaft_speed"]) * 1e-9 == pytest.approx(np.full(899, 1.0 / rate), rel=0.03)
+
+
+def test_a_gap_between_rounded_times_stays_one_and_rows_of_two_machines_are_not_taken_for_one(tmp_path):
+    _, read = imported(table(tmp_path, "time [s],speed [rpm],load [kN]", lambda k: f"{k // 10 + 50 * (k >= 300)},{1480 + k % 7},5.0", 600))
+    assert [line for _, line, _ in read.gaps] == [302, 302] and read.tally.is_whole
+    path = table(tmp_path, "time [s],machine,speed [rpm],load [kN]", lambda k: f"{k // 2},{'AB'[k % 2]},1480,5.0")
+    _, read = imported(path)
+    assert read.tally.refused["time.repeated"] == 30
+
+
+def test_days_of_a_spreadsheet_are_dates_and_its_other_system_is_named(tmp_path):
+    found, read = imported(table(tmp_path, "time,speed [rpm],load [kN]", lambda k: f"{45234.5 + k / 86400:.8f},1480,5.0"))
+    assert "1904-01-01" in found.reasons["time"] and read.stamps["shaft_speed"][0] == 1_699_099_200_000_000_000  # 2023-11-04 12:00 UTC
+
+
+def test_names_and_units_come_from_lines_above_the_numbers(tmp_path):
+    path = table(tmp_path, "time;speed;load\ns;rpm;kN\nSmp;Avg;Avg", lambda k: f"{k};1480;5.0")
+    _, read = imported(path)
+    assert read.tally.used == read.tally.there == 60 and read.values["radial_load"][0] == 5000.0
+
+
+@pytest.mark.parametrize("times", ["One", "No"])
+def test_labview_text_keeps_its_names_units_and_start_with_and_without_times(tmp_path, times):
+    path = tmp_path / "rig.lvm"
+    rows = "".join(f"{k * 0.01 if times == 'One' else ''}\t{1480 + k % 7}\t5.0\n" for k in range(40))
+    path.write_text(LABVIEW.replace("X_Columns\tOne", f"X_Columns\t{times}") + rows)
+    found, read = imported(path)
+    assert found.tree["shaft_speed"]["column"] == "speed [rpm]" and read.tally.used == 40 and read.spacing == pytest.approx(0.01)
+    assert read.stamps["shaft_speed"][0] == 1_777_888_800_500_000_000  # 2026-05-04 10:00:00.5 UTC
+
+
+def test_a_second_segment_of_labview_text_follows_the_first_by_its_own_start(tmp_path):
+    path = tmp_path / "rig.lvm"
+    rows = "".join(f"{k * 0.01:.2f}\t1480\t5.0\n" for k in range(40))
+    again = "\nChannels\t2\nDate\t2026/05/04\t2026/05/04\nTime\t10:00:10.5\t10:00:10.5\n***End_of_Header***\nX_Value\tspeed\tload\tComment\n"
+    path.write_text(LABVIEW + rows + again + rows)
+    _, read = imported(path)
+    assert read.tally.used == 80 and len(read.gaps) == 2 and read.stamps["shaft_speed"][40] - read.stamps["shaft_speed"][0] == 10_000_000_000
+
+
+@pytest.mark.parametrize("digits, offset", [(5, 0.0), (3, 0.0), (4, 10.0)])
+def test_the_rate_of_a_vibration_record_survives_times_that_are_rounded(tmp_path, digits, offset):
+    path = tmp_path / "record.csv"
+    path.write_text("time [s],a\n" + "".join(f"{offset + k / 51200:.{digits}f},{k % 13}\n" for k in range(20000)))
+    assert read_vibration(path).rate == pytest.approx(51200.0, rel=2e-3)
+
+
+def test_a_vibration_record_in_labview_text_is_read_with_name_unit_and_rate(tmp_path):
+    path = tmp_path / "record.lvm"
+    path.write_text(LABVIEW.replace("rpm\tkN", "g\tg").replace("X_Columns\tOne", "X_Columns\tNo") + "".join(f"\t{k % 13}\t0\n" for k in range(2000)))
+    found = read_vibration(path, channel="speed [g]")
+    assert found.rate == pytest.approx(100.0) and found.unit == "g" and found.samples[14] == 1.0
+
+
+def test_tdms_and_universal_files_have_their_rate_and_unit(tmp_path):
+    nptdms, pyuff = pytest.importorskip("nptdms"), pytest.importorskip("pyuff")
+    samples = np.sin(np.arange(5000.0))
+    with nptdms.TdmsWriter(str(tmp_path / "a.tdms")) as writer:
+        writer.write_segment([nptdms.ChannelObject("rig", "x", samples, properties={"wf_increment": 1 / 51200, "unit_string": "g"})])
+    series = {"type": 58, "func_type": 1, "data": samples, "x": np.arange(5000) / 51200, "id1": "acc", "ordinate_axis_units_lab": "g"}
+    pyuff.UFF(str(tmp_path / "a.uff")).write_sets(pyuff.prepare_58(**{k: v for k, v in series.items() if k != "type"}, abscissa_inc=1 / 51200))
+    for name in ("a.tdms", "a.uff"):
+        found = read_vibration(tmp_path / name)
+        assert found.rate == pytest.approx(51200.0, rel=1e-4) and found.unit == "g" and found.samples == pytest.approx(samples, abs=1e-4)
+
+
+@pytest.mark.parametrize("name", ["std_msgs::msg::dds_::Float64_", "std_msgs::msg::Float64", "std_msgs/Float64", "std_msgs/msg/Float64"])
+def test_names_of_types_are_those_of_ros_2_however_a_recorder_writes_them(name):
+    assert ros2_name(name) == "std_msgs/msg/Float64"
+
+
+def test_a_known_type_whose_definition_names_an_unknown_one_is_read_by_that_of_ros_2_and_a_strange_one_is_not():
+    notes = []
+    assert decoder("std_msgs/msg/Float64", "ros2msg", b"this is none", notes.append)(b"\0\1\0\0" + np.array([2.5]).tobytes()).data == 2.5
+    assert "that of ROS 2 Jazzy is used" in notes[0]
+    with pytest.raises(ValueError, match="drive_msgs/this is not defined"):
+        decoder("drive_msgs/msg/State", "ros2msg", b"this is none")
