@@ -127,8 +127,10 @@ def test_tdms_and_universal_files_have_their_rate_and_unit(tmp_path):
     samples = np.sin(np.arange(5000.0))
     with nptdms.TdmsWriter(str(tmp_path / "a.tdms")) as writer:
         writer.write_segment([nptdms.ChannelObject("rig", "x", samples, properties={"wf_increment": 1 / 51200, "unit_string": "g"})])
-    series = {"type": 58, "func_type": 1, "data": samples, "x": np.arange(5000) / 51200, "id1": "acc", "ordinate_axis_units_lab": "g"}
-    pyuff.UFF(str(tmp_path / "a.uff")).write_sets(pyuff.prepare_58(**{k: v for k, v in series.items() if k != "type"}, abscissa_inc=1 / 51200))
+    names = dict.fromkeys(("rsp_ent_name", "ref_ent_name", "id2", "id3", "id4", "id5"), "NONE") | {"id1": "acc", "ordinate_axis_units_lab": "g"}
+    numbers = dict.fromkeys(("rsp_node", "rsp_dir", "ref_node", "ref_dir", "func_type", "binary", "abscissa_spacing", "orddenom_spec_data_type"), 1)
+    times = {"x": np.arange(5000) / 51200, "abscissa_inc": 1 / 51200, "abscissa_min": 0.0}
+    pyuff.UFF(str(tmp_path / "a.uff")).write_sets({"type": 58, "data": samples, **names, **numbers, **times})
     for name in ("a.tdms", "a.uff"):
         found = read_vibration(tmp_path / name)
         assert found.rate == pytest.approx(51200.0, rel=1e-4) and found.unit == "g" and found.samples == pytest.approx(samples, abs=1e-4)

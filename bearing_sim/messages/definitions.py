@@ -136,7 +136,7 @@ def decoder(name: str, encoding: str, definition: bytes, note: Callable[[str], N
 
 
 def ros2_name(name: str) -> str:
-    """Return the name of a type as ROS 2 writes it: of ``pkg::msg::dds_::Type_`` (DDS) and ``pkg/Type`` it is ``pkg/msg/Type``."""
+    """Return the name of a type as ROS 2 writes it: of ``std_msgs::msg::dds_::Bool_`` (DDS) and ``std_msgs/Bool`` it is ``std_msgs/msg/Bool``."""
     if found := re.fullmatch(r"(\w+)::(\w+)::(?:dds_::)?(\w+?)_?", name):
         return "/".join(found.groups())
     return re.sub(r"^(\w+)/(\w+)$", r"\1/msg/\2", name)
