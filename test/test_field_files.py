@@ -1,11 +1,18 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about the files that people bring: how loggers write numbers, times, units and names is read as it is meant, or asked for in one line."""
 
+import bz2
+import gzip
+import lzma
+
 import numpy as np
 import pytest
+import zstandard
 
 from bearing_sim.inputs.csv_guess import guess
 from bearing_sim.inputs.csv_import import TableError, mapping_from_yaml, read_table
+from bearing_sim.inputs.log import InputLogError, read_input_log
+from bearing_sim.inputs.mission import write_mission
 from bearing_sim.messages.definitions import decoder, ros2_name
 from bearing_sim.vibration.reading import read_vibration
 
@@ -147,3 +154,31 @@ def test_a_known_type_whose_definition_names_an_unknown_one_is_read_by_that_of_r
     assert "that of ROS 2 Jazzy is used" in notes[0]
     with pytest.raises(ValueError, match="drive_msgs/this is not defined"):
         decoder("drive_msgs/msg/State", "ros2msg", b"this is none")
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    path = tmp_path_factory.mktemp("log") / "log.mcap"
+    write_mission(path, 1_700_000_000_000_000_000, 2.0, 20.0)
+    return path
+
+
+@pytest.mark.parametrize(("pack", "command"), [(gzip.compress, "gunzip -k"), (bz2.compress, "bunzip2 -k"), (lzma.compress, "unxz -k")])
+def test_a_recording_compressed_otherwise_is_refused_with_the_command_that_unpacks_it(log, tmp_path, pack, command):
+    path = tmp_path / "packed.mcap"
+    path.write_bytes(pack(log.read_bytes()))
+    with pytest.raises(InputLogError, match=f"unpack it first, for example by: {command} .*packed.mcap"):
+        read_input_log(path)
+
+
+@pytest.mark.parametrize("name", ["log.mcap.zstd", "log.mcap.zst", "log.mcap"])
+def test_a_recording_compressed_by_zstd_is_read_whatever_its_name(log, tmp_path, name):
+    path = tmp_path / name
+    path.write_bytes(zstandard.compress(log.read_bytes()))
+    found = read_input_log(path)
+    assert found.series["shaft_speed"].values == read_input_log(log).series["shaft_speed"].values and "compressed by zstd" in found.lost.notes[0]
+
+
+def test_a_joint_of_another_name_is_refused_with_the_option_that_chooses_it(log):
+    with pytest.raises(InputLogError, match="no joint 'spindle' in the message; it has 'shaft'; --joint NAME chooses one"):
+        read_input_log(log, joint="spindle")
