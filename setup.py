@@ -26,7 +26,8 @@ optional = {
     "ros": ros_wheels,
     "tables": ["pandas>=2.2", "pyarrow>=18", "xarray>=2024.6"],
     "terminal": ["rich>=13"],
-    "vibration": ["h5py>=3.11"],
+    "tdms": ["npTDMS>=1.10"],  # under the LGPL, so in no other extra but full
+    "vibration": ["h5py>=3.11", "pyuff>=2.5"],
     "view": ["pillow>=10", "rerun-sdk>=0.39,<0.42"],
 }
 full = [requirement for requirements in optional.values() for requirement in requirements]

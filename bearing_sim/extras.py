@@ -11,7 +11,8 @@ EXTRAS = {
     "tables": ("pandas", "xarray", "pyarrow"),
     "plot": ("matplotlib",),
     "terminal": ("rich",),
-    "vibration": ("h5py",),
+    "vibration": ("h5py", "pyuff"),
+    "tdms": ("nptdms",),
     "dask": ("dask", "distributed"),
     "ros": ("rclpy", "rcl_interfaces", "rosgraph_msgs", "std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "diagnostic_msgs"),
 }

@@ -35,7 +35,7 @@ ROOMS = {
     "recording": ("lz4 mcap numpy pyarrow rosbags yaml zstandard", "files scene model messages"),
     "stored_state": ("numpy pyarrow", "files scene model messages recording"),
     "inputs": ("numpy pyarrow pydantic yaml", "extras files scene simulation messages recording"),
-    "vibration": ("h5py matplotlib numpy pyarrow scipy", "extras files scene messages recording"),
+    "vibration": ("h5py matplotlib nptdms numpy pyarrow pyuff scipy", "extras files scene messages recording"),
     "monitoring": ("numpy scipy", "scene physics model messages"),
     "estimation": ("numpy scipy", "files scene numerics physics model levels messages monitoring"),
     "runtime": ("numpy", "files scene numerics model levels simulation messages recording stored_state inputs monitoring estimation vibration"),

@@ -31,7 +31,7 @@ KEYS = {
     "rosbags": "python3-rosbags-pip",
     "zstandard": "mcap-ros2-support",
 }
-DISTRIBUTIONS = {"PIL": "pillow", "rerun": "rerun-sdk", "rclpy": "ros-jazzy-rclpy"} | {
+DISTRIBUTIONS = {"PIL": "pillow", "nptdms": "npTDMS", "rerun": "rerun-sdk", "rclpy": "ros-jazzy-rclpy"} | {
     name: f"ros-jazzy-{name.replace('_', '-')}" for name in ("std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "diagnostic_msgs")
 }
 STANDARD_ROS = {"rclpy", "rcl_interfaces", "launch", "launch_ros"}

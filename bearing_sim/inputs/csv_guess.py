@@ -16,6 +16,7 @@ from typing import NamedTuple
 import yaml
 from pydantic import TypeAdapter
 
+from bearing_sim.files.labview_text import start_of
 from bearing_sim.inputs.csv_import import TimeColumn, time_reader
 from bearing_sim.inputs.csv_text import (
     DELIMITERS,
@@ -80,7 +81,7 @@ ROLES = (
     ),
 )
 _MAY_BE_RELATIVE = ("shaft_speed", "radial_load", "cage_speed", "power", "torque")  # columns in per cent, of a value that is asked for
-_TIME_WORDS = re.compile(r"time|zeit|date|datum|stamp|uhr|utc|heure|fecha|hora|^t$|^t[ _\[(/]|^ts$", re.IGNORECASE)
+_TIME_WORDS = re.compile(r"time|zeit|date|datum|stamp|uhr|utc|heure|fecha|hora|^t$|^t[ _\[(/]|^ts$|^x_value", re.IGNORECASE)
 _CLOCK_WORDS = re.compile(r"^(time|zeit|uhrzeit|clock|hora|heure)", re.IGNORECASE)
 _SUFFIX = re.compile(r"(.+?)[ _.]+(?:in[ _]+)?([A-Za-z°%µ/0-9^-]+)$")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
@@ -107,6 +108,8 @@ _EPOCHS = ((1e8, 4e9, "s"), (1e11, 4e12, "ms"), (1e14, 4e15, "us"), (1e17, 4e18,
 """Numbers that count from 1970, 1973 to 2096, by unit."""
 
 _SPREADSHEET_DAYS = (30_000.0, 60_000.0)  # of dates from 1982 to 2064, counted from 1899-12-30
+_SPREADSHEET_STEP = 0.01  # between rows: 14 minutes; that seconds of the same size stand so close is an assumption against them
+_DAYS = ("day", "days", "d")
 _CELLS_LOOKED_AT = 500
 _LONGEST_LIST = 10_000  # characters of headings
 _LONGEST_LABEL, _LONGEST_HEADING = 100, 300  # characters
@@ -194,7 +197,7 @@ def guess(
         found.tree["encoding"], found.reasons["encoding"] = encoding, "the file is not UTF-8"
     if only:
         found.tree["only"], found.reasons["only"] = dict(only), "given"
-    used = _guess_time(found, _first_cells(lines, layout), columns.pop("time", None), units.pop("time", None), time_format)
+    used = _guess_time(found, lines, columns.pop("time", None), units.pop("time", None), time_format)
     named: dict[str, list[str]] = {}
     for heading in layout.names:
         if heading and heading not in used and (role := _role_of(heading, layout, columns)) is not None:
@@ -267,8 +270,10 @@ def _layout(path: Path, lines: Sequence[str], encoding: str, delimiter: str | No
 
 
 def _is_followed_by_data(lines: Sequence[str], delimiter: str, width: int) -> bool:
-    """Return whether one of the next two lines that are no comments has numbers and about as many cells."""
-    following = [cells_of(line, delimiter) for line in lines[:50] if line.strip() and not is_comment(line)][:2]
+    """Return whether one of the next two lines that are no comments, three if units come first, has numbers and about as many cells."""
+    following = [cells_of(line, delimiter) for line in lines[:50] if line.strip() and not is_comment(line)]
+    units = [_is_a_unit(spelled(cell.strip("[]() "))) for cell in (following or [[]])[0] if cell]
+    following = following[: 3 if 2 * sum(units) > len(units) else 2]
     return any(abs(len(cells) - width) <= 1 and any(re.match(r"[-+]?[.,]?\d", cell) for cell in cells) for cells in following)
 
 
@@ -289,7 +294,7 @@ def _first_cells(lines: Sequence[str], layout: Layout) -> Cells:
     found: dict[str, list[str]] = {name: [] for name in named}
     for _, name, text in cells_in(lines, layout, named):
         found[name].append(text.strip())
-    return {name: [cell for cell in cells[bool(layout.units) :] if cell][:_CELLS_LOOKED_AT] for name, cells in found.items()}
+    return {name: [cell for cell in cells[layout.words :] if cell][:_CELLS_LOOKED_AT] for name, cells in found.items()}
 
 
 def _number(text: str, marks: Marks) -> float:
@@ -299,9 +304,10 @@ def _number(text: str, marks: Marks) -> float:
         return float("nan")
 
 
-def _guess_time(found: Guess, cells: Cells, given: str | None, unit: str | None, format_: str | None) -> set[str]:
+def _guess_time(found: Guess, lines: Sequence[str], given: str | None, unit: str | None, format_: str | None) -> set[str]:
     """Enter the time into a guess; return the headings of its columns."""
     layout = found.layout
+    cells = _first_cells(lines, layout)
     likely = [given] if given else [name for name in layout.names if name and _TIME_WORDS.search(name) and _is_time(cells, layout, name)]
     if not likely:
         likely = [name for name in layout.names[:1] if name and _is_time(cells, layout, name)]
@@ -316,7 +322,7 @@ def _guess_time(found: Guess, cells: Cells, given: str | None, unit: str | None,
         values = [f"{date} {clock}" for date, clock in zip(values, cells[pair[1]])]
     tree = {"column": heading} | ({"time_of_day": pair[1]} if pair else {})
     reason = f"of {', '.join(likely)} the first" if others else "by its heading" if _TIME_WORDS.search(heading) else "the first column rises"
-    how, why, question = _time_of(values, layout, heading, unit, format_)
+    how, why, question = _time_of(values, layout, lines, heading, unit, format_)
     if question:
         found.questions["time"] = question
         return set(likely)
@@ -349,7 +355,9 @@ def _date_and_clock(cells: Cells, likely: Sequence[str]) -> tuple[str, str] | No
     return (dates[0], clocks[0]) if dates and clocks else None
 
 
-def _time_of(values: Sequence[str], layout: Layout, heading: str, unit: str | None, format_: str | None) -> tuple[dict, str, str]:
+def _time_of(
+    values: Sequence[str], layout: Layout, lines: Sequence[str], heading: str, unit: str | None, format_: str | None
+) -> tuple[dict, str, str]:
     """Return the fields of the time, why, and a question if it may mean several things."""
     if format_ is not None:
         return {"format": format_}, "its format was given", ""
@@ -357,7 +365,7 @@ def _time_of(values: Sequence[str], layout: Layout, heading: str, unit: str | No
         return {}, "", f"the column {heading!r} is empty; name another: --column time=HEADING"
     numbers = [_number(value, layout.marks) for value in values]
     if all(number == number for number in numbers):
-        return _time_of_numbers(numbers, layout, heading, unit)
+        return _time_of_numbers(numbers, layout, lines, heading, unit)
     if all(_is_iso(value) for value in values):
         return {"format": "iso"}, f"ISO 8601, as in {values[0]}", ""
     for date, format_, other in _DATES:
@@ -393,21 +401,32 @@ def _day_or_month(values: Sequence[str], day_first: str, month_first: str) -> tu
     return [], f"{values[0]!r} has the day or the month first; say which: --time-format '{day_first}' or --time-format '{month_first}'"
 
 
-def _time_of_numbers(numbers: Sequence[float], layout: Layout, heading: str, unit: str | None) -> tuple[dict, str, str]:
+def _time_of_numbers(numbers: Sequence[float], layout: Layout, lines: Sequence[str], heading: str, unit: str | None) -> tuple[dict, str, str]:
     headed = spelled(_heading_unit(heading, layout)[1])
     unit = unit or (headed if is_unit_of(headed, "s") else None)
     since_1970 = next((each for low, high, each in _EPOCHS if all(low < abs(number) < high for number in numbers)), None)
     if unit is None and since_1970 is not None:
         return {"unit": since_1970}, f"numbers of this size count {since_1970} from 1970 ({_date(numbers[0], since_1970)})", ""
-    if unit is None and all(_SPREADSHEET_DAYS[0] < number < _SPREADSHEET_DAYS[1] for number in numbers):
-        question = f"numbers such as {numbers[0]:g} may be the days of a spreadsheet, or seconds; say which: --unit time=day or --unit time=s"
-        return {}, "", question
+    may_be_days = all(_SPREADSHEET_DAYS[0] < number < _SPREADSHEET_DAYS[1] for number in numbers)
+    if unit is None and may_be_days:
+        steps = [later - earlier for earlier, later in zip(numbers, numbers[1:]) if later > earlier]
+        if not steps or max(steps) > _SPREADSHEET_STEP:
+            days = f"days of a spreadsheet ({_spreadsheet_date(numbers[0])}), or seconds"
+            return {}, "", f"numbers such as {numbers[0]:g} may be {days}; say which: --unit time=day or --unit time=s"
+        unit = "day"
     if unit is None:
         return {}, "", f"{heading!r} has numbers without a unit, such as {numbers[0]:g}; say which: --unit time=s, ms, min or h"
-    if unit == "day" and _SPREADSHEET_DAYS[0] < numbers[0] < _SPREADSHEET_DAYS[1]:
-        return {"unit": "day", "epoch": "1899-12-30"}, "days of a spreadsheet", ""
+    if unit in _DAYS and may_be_days:
+        other = "in its system of 1904 (old files of Macs) the epoch is 1904-01-01"
+        return {"unit": "day", "epoch": "1899-12-30"}, f"days of a spreadsheet, {numbers[0]:g} is {_spreadsheet_date(numbers[0])}; {other}", ""
     why = f"{unit}, {'by its heading' if headed == unit else 'as given'}"
+    if begins := start_of(lines):
+        return {"unit": unit, "epoch": begins}, f"{why}; LabVIEW's header has the epoch", ""
     return {"unit": unit}, why if since_1970 else f"{why}; the date of 0 is not known, so 1970-01-01 stands for it (epoch)", ""
+
+
+def _spreadsheet_date(number: float) -> str:
+    return f"{datetime.datetime(1899, 12, 30) + datetime.timedelta(days=number):%Y-%m-%d %H:%M}"
 
 
 def _date(number: float, unit: str) -> str:
@@ -442,11 +461,13 @@ def _ask_for_rows(found: Guess, path: Path, lines: Sequence[str]) -> None:
 
 
 def _heading_unit(heading: str, layout: Layout) -> tuple[str, str]:
-    """Return the name and the unit in a heading, or in the second line of the header, or behind an underscore."""
+    """Return the name and the unit in a heading, in the second line of the header, in all cells, or behind an underscore."""
     name, unit = unit_in(heading)
-    place = layout.names.index(heading)
+    place, in_cells = layout.names.index(heading), layout.cell_units.get(heading, "")
     if not unit and place < len(layout.units):
         unit = layout.units[place].strip("[]() ")
+    if is_relative(in_cells) or not unit:
+        unit = "%" if is_relative(heading) and not unit else in_cells
     if not unit and len(heading) <= _LONGEST_HEADING and (found := _SUFFIX.fullmatch(heading)):
         name, unit = found[1], found[2]
     return name, unit

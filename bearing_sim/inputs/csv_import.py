@@ -10,6 +10,7 @@ smoothed.
 
 import datetime
 import heapq
+import itertools
 import math
 import re
 import zoneinfo
@@ -62,6 +63,9 @@ _LIMITS = InputLimits()  # of a scene that says nothing; those of speed and load
 _ERROR_CODES_FROM, _ERROR_CODE = -999.0, re.compile(r"-(9{3,}(\.9+)?|32768)")
 _STUCK_ROWS, _STUCK_SPELLS = 100, 20.0  # a signal sticks if it repeats one value in so many rows, and so many times as long as usually
 _LINES_KEPT = 5  # of each kind of error; all are counted
+_ROWS_LOOKED_AT = 2000  # for times that are rounded
+_ROUNDED = 0.2  # Assumption: of the rows repeat the time of the one before if times are rounded; of fewer, each is a fault
+_LIKE_A_NUMBER = re.compile(r"\s*([-+.,\N{MINUS SIGN}]?\d|$)")
 _USUAL_SPACINGS = 3.0  # median spacings above which there is a gap, if the mapping does not set longest_step
 
 _LONGEST_FORMAT = 100  # characters
@@ -120,12 +124,23 @@ def _column(si_unit: str, meaning: str) -> type:
                 return self.scale, self.offset or 0.0
             return unit_line(self.unit or unit_in(self.column)[1], si_unit)
 
-        def contradiction(self) -> str:
-            """Return in words that the heading has another unit than the mapping; empty if it has not."""
-            own = spelled(unit_in(self.column)[1])
-            if self.unit is None or not is_unit_of(own, si_unit) or unit_line(own, si_unit) == self.line():
+        def contradiction(self, in_cells: str = "") -> str:
+            """Return in words that heading or cells have another unit than the mapping; empty if they have not.
+
+            Raises
+            ------
+            TableError
+                The cells are percentages, and the mapping does not say of what.
+            """
+            given = self.unit or unit_in(self.column)[1]
+            if self.scale is None and is_relative(in_cells) and not is_relative(given):
+                raise TableError(
+                    f"{self.column}: the cells are percentages ({in_cells}), not {given}; unit: expected {percentage_question(in_cells, si_unit)}"
+                )
+            own = spelled(in_cells or unit_in(self.column)[1])
+            if not given or not is_unit_of(own, si_unit) or unit_line(own, si_unit) == self.line() or not (self.unit or in_cells):
                 return ""
-            return f"the heading {self.column!r} says {own}, the mapping {self.unit}; the mapping is followed"
+            return f"{'a cell of' if in_cells else 'the heading'} {self.column!r} says {own}, the mapping {given}; the mapping is followed"
 
     return Column
 
@@ -466,13 +481,25 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
     """
     table, path, times = Table(), Path(path), []
     layout, rows = _rows_of(path, mapping)
+    rows = iter(rows)
+    first = list(itertools.islice(rows, _ROWS_LOOKED_AT))
     row_reader = _RowReader(mapping, layout, table)
-    for line, cells in rows:
+    row_reader.has_rounded_times = row_reader.repeat_their_times(first)
+    lines = array("q")
+    for line, cells in itertools.chain(first, rows):
         if cells and row_reader.take(line, cells):  # an empty line is no row
             times.append(row_reader.newest)
+            lines.append(line)
             table.tally.used += table.faulty_line != line
+    if row_reader.has_rounded_times and len(set(times)) > 2:
+        times = _spread(np.array(times)).tolist()
+        stamps = dict(zip(lines, times))
+        table.stamps = {channel: array("q", map(stamps.__getitem__, own)) for channel, own in table.lines.items()}
+        table.notes.append(
+            f"times are rounded, several rows have the same; a row every {(times[-1] - times[0]) * 1e-9 / (len(times) - 1):.4g} s by their mean"
+        )
     refused = table.tally.refused
-    table.notes = [*layout.found, *filter(None, (one.contradiction() for _, one in mapping.columns()))]
+    table.notes += [*layout.found, *filter(None, (one.contradiction(layout.cell_units.get(one.column, "")) for _, one in mapping.columns()))]
     if layout.comments:
         table.notes.append(f"{layout.comments} line{'s' * (layout.comments > 1)} before the header or of comments left out")
     missing = [channel for channel in ("shaft_speed", "radial_load") if not table.stamps.get(channel)]
@@ -485,6 +512,32 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
     _find_gaps(table, mapping, np.diff(times) * 1e-9)
     table.notes += filter(None, (_stuck(table, channel) for channel in table.values))
     return table
+
+
+def _spread(times: np.ndarray) -> np.ndarray:
+    """Return times for rows whose own are rounded, so that several have the same [ns, shape (n,)]: evenly between those at which they change.
+
+    Rows are even where that stays within the step to which times are rounded.  A step of twice that is a gap.
+    """
+    begins = np.flatnonzero(np.diff(times)) + 1  # rows with a new time
+    steps, counts = np.diff(times[begins]), np.diff(begins)
+    resolution = np.median(steps)
+    whole = steps < 1.5 * resolution
+    spacing = steps[whole].sum() / max(counts[whole].sum(), 1)
+    found = np.empty(len(times))
+    for rows in np.split(np.arange(len(times)), np.flatnonzero(np.diff(times) > 1.5 * resolution) + 1):
+        known = begins[(begins > rows[0]) & (begins <= rows[-1])]
+        if len(known) < 2:
+            found[rows] = times[rows[-1]] + (rows - (known[0] if len(known) else rows[0])) * spacing
+            continue
+        even = np.interp(rows, known[[0, -1]], times[known[[0, -1]]])
+        if np.abs(even - times[rows])[(rows >= known[0]) & (rows <= known[-1])].max() > resolution:
+            even = np.interp(rows, known, times[known])
+        even += np.minimum(rows - known[0], 0) * spacing + np.maximum(rows - known[-1], 0) * spacing
+        found[rows] = even
+    order = np.arange(len(times))
+    rising = np.maximum.accumulate(np.rint(found).astype(np.int64) - order) + order
+    return rising + max(0, -int(rising[0]))
 
 
 def _stuck(table: Table, channel: str) -> str:
@@ -557,6 +610,8 @@ def layout_of(path: Path, mapping: Mapping) -> Layout:
     find_header(path, lines, mapping.column_names(), delimiter, layout)
     numbers = [one.column for _, one in mapping.columns()] + [mapping.time.column] * (mapping.time.format is None)
     try:
+        for _, one in mapping.columns():
+            one.contradiction(layout.cell_units.get(one.column, ""))
         layout.marks = number_marks(cells_in(lines, layout, numbers), layout.delimiter, mapping.decimal, mapping.thousands)
     except TableError as error:
         raise TableError(f"{path}, {error}") from None
@@ -575,6 +630,7 @@ class _RowReader:
         self._marks = layout.marks
         self._only = [(columns[name], text) for name, text in mapping.only.items()]
         self._time = time_reader(mapping.time, self._marks)
+        self._units = {columns[name]: unit for name, unit in layout.cell_units.items()}
         self._time_columns = [columns[name] for name in (mapping.time.column, mapping.time.time_of_day) if name]
         self._load_columns = [(columns[one.column], one.column, *one.line()) for one in mapping.load_columns()]
         self._load = _load_law(mapping)
@@ -582,6 +638,7 @@ class _RowReader:
         optional = {channel: getattr(mapping, name) for channel, name in (*zip(topics.TEMPERATURES, topics.TEMPERATURES), *_RESULTS.items())}
         self._optional = {channel: self._value_reader(one, columns) for channel, one in optional.items() if one}
         self.newest: int | None = None
+        self.has_rounded_times = False
 
     def _value_reader(self, one, columns: dict[str, int]) -> Callable[[list[str]], float]:
         """Return the function that reads a channel's value from the cells of a row."""
@@ -590,9 +647,19 @@ class _RowReader:
         place = (columns[one.column], one.column, *one.line())
         return lambda cells: self._cell(cells, *place)
 
+    def repeat_their_times(self, rows: Iterable[tuple[int, list[str]]]) -> bool:
+        """Return whether so many rows repeat the time of the row before that times are rounded, and it is not another machine's row."""
+        own = [cells for _, cells in rows if len(cells) == self._width and self._is_wanted(cells)]
+        pairs = [pair for pair in itertools.pairwise(own) if all(pair[0][column] == pair[1][column] for column in self._time_columns)]
+        others = sum(any(one != two and not _LIKE_A_NUMBER.match(one) for one, two in zip(*pair)) for pair in pairs)
+        return len(pairs) > _ROUNDED * len(own) and 2 * others <= len(pairs)
+
+    def _is_wanted(self, cells: list[str]) -> bool:
+        return all(cells[column].strip() == text for column, text in self._only)
+
     def take(self, line: int, cells: list[str]) -> bool:
         """Add one row; return whether its time is good."""
-        if len(cells) == self._width and any(cells[column].strip() != text for column, text in self._only):
+        if len(cells) == self._width and not self._is_wanted(cells):
             self._table.left_out += 1
             return False
         self._table.tally.there += 1
@@ -612,7 +679,7 @@ class _RowReader:
         if len(cells) != self._width:
             refuse("time.cells", line, f"{len(cells)} cells, expected {self._width}")
             return None
-        text = " ".join(cells[column].strip() for column in self._time_columns).strip()
+        text = " ".join(cells[column].strip().removesuffix(self._units.get(column, "")).rstrip() for column in self._time_columns).strip()
         try:
             time_ns = self._time(text, self.newest)
         except _TimeOutOfRange:
@@ -621,7 +688,7 @@ class _RowReader:
         except (ValueError, ArithmeticError):
             refuse("time.unreadable" if text else "time.empty_cell", line, f"{text[:_SHOWN]!r} is not a time" if text else "the time is empty")
             return None
-        if self.newest is not None and time_ns <= self.newest:
+        if self.newest is not None and time_ns <= self.newest and not (self.has_rounded_times and time_ns == self.newest):
             back = (self.newest - time_ns) * 1e-9
             if back:
                 refuse("time.backwards", line, f"{text[:_SHOWN]} lies {back:.6g} s before the last row used")
@@ -657,7 +724,7 @@ class _RowReader:
         if not text:
             raise _BadCell("empty_cell", f"{name} is empty")
         try:
-            number = float(self._marks.plain(text))
+            number = float(self._marks.plain(text.removesuffix(self._units.get(column, "")).rstrip()))
         except ValueError:
             raise _BadCell("not_a_number", f"{name} = {text[:_SHOWN]!r} is not a number") from None
         if not math.isfinite(number):

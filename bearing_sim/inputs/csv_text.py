@@ -8,6 +8,7 @@ otherwise asked for; what was found is kept as text, so that nobody has to guess
 import codecs
 import csv
 import io
+import itertools
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -17,6 +18,7 @@ from functools import cache
 from pathlib import Path
 from typing import BinaryIO, NamedTuple, TextIO
 
+from bearing_sim.files.labview_text import plain_lines
 from bearing_sim.files.limits import TABLE_COLUMNS, TABLE_FILE, TABLE_LINE, TABLE_ROWS, FileError, Limit, LimitError
 from bearing_sim.files.reading import open_regular
 from bearing_sim.scene.errors import did_you_mean, shortened
@@ -34,6 +36,7 @@ _SHOWN = 1000  # characters of a header in a message
 _MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
 _BINARY = {
     b"PK\x03\x04": "a workbook of a spreadsheet or another archive; save the sheet as CSV",
+    b"\xd0\xcf\x11\xe0": "a workbook of an old spreadsheet; save the sheet as CSV",
     b"PAR1": "Parquet; write its mapping by hand, since there is no text to guess it from",
 }
 _SPACES = " \N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{THIN SPACE}\N{FIGURE SPACE}"
@@ -41,6 +44,7 @@ _SEPARATORS = {"": "", ".": ".", ",": ",", "apostrophe": "'\N{RIGHT SINGLE QUOTA
 """The characters of each separator of thousands, by its name in a mapping."""
 _MINUS = "\N{MINUS SIGN}"
 _UNIT_LIKE = re.compile(r"(?=.*[^\W\d_]|.*[%°-])(?:\D*|[^\d:]*\d[^\d:]*)")
+_WITH_UNIT = re.compile(r"[-+\N{MINUS SIGN}]?\d[\d.,' ]*\s?([^\W\d_]{1,5}(?:/[^\W\d_]{1,3})?|[%\N{PER MILLE SIGN}]|[°][CF])")
 _HEADED = (re.compile(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*"), re.compile(r"(.+?)\s*/\s*([^/\s]+(?:/[^/\s]+)?)"))
 _SPELLED = {
     **dict.fromkeys(("°C", "℃", "C", "deg C", "Grad C", "Celsius", "deg_C", "degc", "DegC", "grdC"), "degC"),
@@ -59,6 +63,7 @@ _SPELLED = {
 
 _PER_CENT, _PER_MILLE = r"%|per ?cent|pct|prozent", r"\N{PER MILLE SIGN}|per ?mille?|promille|permil"
 _RELATIVE = re.compile(rf"(?:({_PER_CENT})|({_PER_MILLE}))\s*(?:(?:of|von)\s+)?(.*)", re.IGNORECASE)
+_OF_SOMETHING = re.compile(rf".*(?:{_PER_CENT}|{_PER_MILLE})\s+(?:of|von)\b.*", re.IGNORECASE)
 _ENDS_RELATIVE = re.compile(rf"(?:{_PER_CENT}|{_PER_MILLE})\W*", re.IGNORECASE)
 AT_FULL_SCALE = {"rad/s": "1500 rpm", "N": "5 kN", "m/s^2": "9.81 m/s^2", "W": "2 MW", "N*m": "50 N*m", "m": "100 um"}
 """By SI unit, an example of a quantity of which something may be a percentage; a temperature is none."""
@@ -109,7 +114,8 @@ _READINGS = tuple(Marks(decimal, thousands) for thousands in _SEPARATORS for dec
 def _grouped(marks: Marks) -> re.Pattern:
     """Return the pattern of a number that is written in one way, whether it has separators or not."""
     separators, decimal = re.escape(_SEPARATORS[marks.thousands]), re.escape(marks.decimal)
-    whole = rf"(?:[1-9]\d{{0,2}}(?:[{separators}]\d{{3}})+|\d+)" if separators else r"\d+"
+    # by thousands, or as in India: 12,34,567
+    whole = rf"(?:[1-9]\d{{0,2}}(?:[{separators}]\d{{3}})+|[1-9]\d?(?:[{separators}]\d{{2}})+[{separators}]\d{{3}}|\d+)" if separators else r"\d+"
     return re.compile(rf"[-+{_MINUS}]?(?:{whole}(?:{decimal}\d*)?|{decimal}\d+)(?:[eE][-+]?\d+)?")
 
 
@@ -126,6 +132,8 @@ class Layout:
     header_line : line number of the header.
     is_comment : whether the header is in a comment line.
     units : second line of the header, with units and no numbers; empty if there is none.
+    words : how many lines below the header have words and no numbers: units, and perhaps how values were sampled.
+    cell_units : by heading, the unit that stands behind every number of the column, as it is written.
     comments : number of lines left out because they are comments, or stand before the header.
     found : what was found in the file and not given, in words.
     """
@@ -137,6 +145,8 @@ class Layout:
     header_line: int = 1
     is_comment: bool = False
     units: tuple[str, ...] = ()
+    words: int = 0
+    cell_units: dict[str, str] = field(default_factory=dict)
     comments: int = 0
     found: list[str] = field(default_factory=list)
 
@@ -217,19 +227,24 @@ def opened_text(path: Path, encoding: str, errors: str = "strict") -> Iterator[T
 
 
 def lines_of(stream: TextIO, path: Path) -> Iterator[str]:
-    """Yield the lines of a text with their ends.
+    """Return the lines of a text with their ends, those of a LabVIEW measurement file as a plain table.
 
     Raises
     ------
     TableError
         A line is longer than the limit.
     """
-    number, longest = 0, TABLE_LINE.value
-    while line := stream.readline(longest + 1):
-        number += 1
-        if len(line) > longest:
-            raise TableError(f"{path}, line {number}: {TABLE_LINE.refusal()}")
-        yield line
+    longest = TABLE_LINE.value
+
+    def within_limit() -> Iterator[str]:
+        number = 0
+        while line := stream.readline(longest + 1):
+            number += 1
+            if len(line) > longest:
+                raise TableError(f"{path}, line {number}: {TABLE_LINE.refusal()}")
+            yield line
+
+    return plain_lines(within_limit())
 
 
 def first_lines(path: Path, encoding: str) -> list[str]:
@@ -292,7 +307,7 @@ def find_header(path: Path, lines: Sequence[str], wanted: Sequence[tuple[str, st
             known = len(names.intersection(cells))
             if known == len(names):
                 _enter_header(path, wanted, layout, candidate, cells, number, commented, delimiter is None)
-                layout.units = _second_line(lines[number:], layout)
+                layout.units = lines_below(lines[number:], layout)
                 return
             likeness = (known, not commented, min(len(cells), 2))
             if likeness > most:
@@ -325,25 +340,34 @@ def _enter_header(path, wanted, layout, delimiter, cells, number, commented, was
         layout.found.append(f"header in line {number}" + ", a comment" * commented)
 
 
-def _second_line(lines: Sequence[str], layout: Layout) -> tuple[str, ...]:
-    """Return the units below the header: cells that are words with at most one digit, as in 1/min; empty if the line holds data."""
-    line = next((each for each in lines if each.strip() and not is_comment(each)), "")
-    cells = cells_of(line, layout.delimiter)
-    filled = [cell for cell in cells if cell]
-    if len(filled) < 2 or not all(_UNIT_LIKE.fullmatch(cell) for cell in filled):
-        return ()
-    layout.found.append(f"second line of the header: {_shown(cells)}")
-    return tuple(cells)
+def lines_below(lines: Sequence[str], layout: Layout) -> tuple[str, ...]:
+    """Return the units below the header: cells that are words with at most one digit, as in 1/min; empty if the line holds data.
+
+    One more such line, as loggers write it (``Smp``, ``Avg``), is counted in the layout; so are units that stand in the cells themselves.
+    """
+    below = [cells_of(each, layout.delimiter) for each in itertools.islice((each for each in lines if each.strip() and not is_comment(each)), 2)]
+    words = list(itertools.takewhile(lambda cells: sum(map(bool, cells)) >= 2 and all(_UNIT_LIKE.fullmatch(cell) for cell in cells if cell), below))
+    layout.words = len(words)
+    layout.found += [f"second line of the header: {_shown(words[0])}"] if words else []
+    layout.found += [f"third line of the header: {_shown(words[1])}; it is not used"] if words[1:] else []
+    texts: dict[str, list[str]] = {}
+    for _, name, text in cells_in(lines, layout, [name for name in dict.fromkeys(layout.names) if name], 0):
+        texts.setdefault(name, []).append(text)
+    for name, column in texts.items():
+        behind = {found[1] if (found := _WITH_UNIT.fullmatch(text)) else "" for text in column[layout.words :] if text}
+        if len(behind) == 1 and any(behind):
+            layout.cell_units[name] = behind.pop()
+    return tuple(words[0]) if words else ()
 
 
-def cells_in(lines: Sequence[str], layout: Layout, columns: Sequence[str]) -> Iterator[tuple[int, str, str]]:
-    """Yield (line number, heading, text) of the cells of some columns in the first lines of a file."""
-    places = [(layout.names.index(name), name) for name in columns]
-    for number, line in enumerate(lines[layout.header_line :], layout.header_line + 1):
+def cells_in(lines: Sequence[str], layout: Layout, columns: Sequence[str], begin: int | None = None) -> Iterator[tuple[int, str, str]]:
+    """Yield (line number, heading, text without its unit) of the cells of some columns in the first lines of a file, from a line on."""
+    places = [(layout.names.index(name), name, layout.cell_units.get(name, "")) for name in columns]
+    for number, line in enumerate(lines[layout.header_line if begin is None else begin :], layout.header_line + 1):
         if is_comment(line):
             continue
         cells = cells_of(line, layout.delimiter)
-        yield from ((number, name, cells[place]) for place, name in places if place < len(cells))
+        yield from ((number, name, cells[place].removesuffix(unit).rstrip()) for place, name, unit in places if place < len(cells))
 
 
 def number_marks(cells: Iterable[tuple[int, str, str]], delimiter: str = "", decimal: str | None = None, thousands: str | None = None) -> Marks:
@@ -408,7 +432,7 @@ def records(path: Path, layout: Layout) -> Iterator[tuple[int, list[str]]]:
     with opened_text(path, layout.encoding) as stream:
         lines.stream = enumerate(lines_of(stream, path), 1)
         rows = csv.reader(lines, delimiter=layout.delimiter, strict=True)
-        skipped_units = not layout.units
+        skipped = 0
         while True:
             lines.at_start = True
             try:
@@ -421,8 +445,8 @@ def records(path: Path, layout: Layout) -> Iterator[tuple[int, list[str]]]:
                 raise TableError(f"{path}, line {lines.number}: {error}") from None
             except UnicodeDecodeError as error:
                 raise TableError(f"{path}: not readable as {layout.encoding} text ({error.reason}); say which encoding it has") from None
-            if not skipped_units and cells:
-                skipped_units = True
+            if skipped < layout.words and cells:
+                skipped += 1
                 continue
             while len(cells) > width and not cells[-1].strip():
                 cells.pop()
@@ -492,7 +516,7 @@ def spelled(unit: str) -> str:
 def is_relative(text: str) -> bool:
     """Return whether a unit is per cent or per mille of something, named or not, or a heading ends in one."""
     last = re.split(r"[\s_.(\[]", text.strip().rstrip(")] "))[-1]
-    return _RELATIVE.match(text.strip()) is not None or _ENDS_RELATIVE.fullmatch(last) is not None
+    return _RELATIVE.match(text.strip()) is not None or _OF_SOMETHING.fullmatch(text) is not None or _ENDS_RELATIVE.fullmatch(last) is not None
 
 
 def percentage_question(unit: str, si_unit: str) -> str:

@@ -372,6 +372,7 @@ def _check_found(path: Path, wanted: _Wanted, required: tuple[str, ...], named: 
     empty = [series.topic for channel, series in found.items() if channel in required and not series.stamps]
     if empty:
         first = [error.reason for series in found.values() for error in series.errors[:1]]
+        first = [f"{reason}; --joint NAME chooses one" if "no joint" in reason else reason for reason in first]
         raise InputLogError(f"{path}: no usable message on {', '.join(empty)}{' (' + first[0] + ')' if first else ''}")
 
 

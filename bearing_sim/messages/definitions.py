@@ -113,26 +113,15 @@ def decoder(name: str, encoding: str, definition: bytes, note: Callable[[str], N
     DefinitionError
         The definition cannot be parsed and the type is none of ROS 2 Jazzy, or it contains an unknown type or itself, or exceeds a limit.
     """
-    if len(definition) > DEFINITION.value:
-        raise DefinitionError(f"the definition of {name[:80]} has {DEFINITION.refusal(len(definition))}")
-    try:
-        text = definition.decode()
-    except UnicodeDecodeError:
-        raise DefinitionError(f"the definition of {name[:80]} is no UTF-8 text") from None
-    types, faults = {}, {}
-    if encoding == "ros2idl":
-        types, faults = _from_idl(name, text)
-    elif encoding in ("ros2msg", "ros1msg") or not text:
-        try:
-            types = _from_msg(name, text)
-        except DefinitionError as error:
-            if encoding == "ros1msg":  # whose types differ from those of ROS 2, such as the header
-                raise
-            faults[_short(name)] = str(error)
-    else:
-        faults[_short(name)] = f"the definition of {name[:80]} is written in {encoding[:40]!r}; expected ros2msg, ros2idl or ros1msg"
     is_ros1, items = encoding == "ros1msg", MESSAGE_ITEMS.value
-    read = _Readers(types, is_ros1, faults, note).message(_short(name))
+    try:
+        read = _Readers(*_parsed(name, encoding, definition), is_ros1, note).message(_short(name))
+    except DefinitionError as error:
+        if is_ros1 or _standard(_short(name)) is None:  # the types of ROS 1 differ from those of ROS 2, such as the header
+            raise
+        why = str(error).removeprefix(f"the definition of {name[:80]}").lstrip(": ")
+        note(f"the definition of {name[:80]} cannot be used ({why}); that of ROS 2 Jazzy is used")
+        read = _Readers({}, {}, False, note).message(_short(name))
 
     def decode(data: bytes) -> object:
         data = bytes(data)
@@ -144,6 +133,35 @@ def decoder(name: str, encoding: str, definition: bytes, note: Callable[[str], N
         return read(_Cursor(data, ENCAPSULATION, order, ENCAPSULATION, items))
 
     return decode
+
+
+def ros2_name(name: str) -> str:
+    """Return the name of a type as ROS 2 writes it: of ``std_msgs::msg::dds_::Bool_`` (DDS) and ``std_msgs/Bool`` it is ``std_msgs/msg/Bool``."""
+    if found := re.fullmatch(r"(\w+)::(\w+)::(?:dds_::)?(\w+?)_?", name):
+        return "/".join(found.groups())
+    return re.sub(r"^(\w+)/(\w+)$", r"\1/msg/\2", name)
+
+
+def _standard(name: str):
+    """Return the fields of a standard message of ROS 2 Jazzy, as the rosbags library describes them; None for another type."""
+    package, _, short = name.partition("/")
+    found = typestore().fielddefs.get(f"{package}/msg/{short}")
+    return None if found is None else found[1]
+
+
+def _parsed(name: str, encoding: str, definition: bytes) -> tuple[dict[str, list[tuple[str, FieldType]]], dict[str, str]]:
+    """Return the fields of all types that a definition has, and why that of a type cannot be parsed, by the names of types."""
+    if len(definition) > DEFINITION.value:
+        raise DefinitionError(f"the definition of {name[:80]} has {DEFINITION.refusal(len(definition))}")
+    try:
+        text = definition.decode()
+    except UnicodeDecodeError:
+        raise DefinitionError(f"the definition of {name[:80]} is no UTF-8 text") from None
+    if encoding == "ros2idl":
+        return _from_idl(name, text)
+    if encoding in ("ros2msg", "ros1msg") or not text:
+        return _from_msg(name, text), {}
+    raise DefinitionError(f"the definition of {name[:80]} is written in {encoding[:40]!r}; expected ros2msg, ros2idl or ros1msg")
 
 
 def _short(name: str) -> str:
@@ -240,12 +258,12 @@ class _Readers:
     Parameters
     ----------
     types : fields by the name of the type; types that are not there are those of ROS 2 Jazzy.
-    is_ros1 : whether messages are serialised as in ROS 1.
     faults : why the definition of a type cannot be parsed, by the name of the type.
+    is_ros1 : whether messages are serialised as in ROS 1.
     note : called with a text where that of ROS 2 is used instead.
     """
 
-    def __init__(self, types: Mapping[str, list[tuple[str, FieldType]]], is_ros1: bool, faults: Mapping[str, str], note: Callable[[str], None]):
+    def __init__(self, types: Mapping[str, list[tuple[str, FieldType]]], faults: Mapping[str, str], is_ros1: bool, note: Callable[[str], None]):
         self._types, self._is_ros1, self._faults, self._note = types, is_ros1, faults, note
         self._made: dict[str, _Read] = {}
         self._levels: dict[str, int] = {}  # of messages within messages, by type
@@ -287,14 +305,12 @@ class _Readers:
             return self._types[name]
         if name in _ROS1:
             return [(field, FieldType(number)) for field, number in _ROS1[name]]
-        package, _, short = name.partition("/")
-        standard = typestore().fielddefs.get(f"{package}/msg/{short}")
-        fault = self._faults.get(name)
+        standard, fault = _standard(name), self._faults.get(name)
         if standard is None:
             raise DefinitionError(fault or f"{name[:80] or 'the type'} is not defined in the recording, nor a standard message of ROS 2")
         if fault:
             self._note(f"{fault}; that of ROS 2 Jazzy is used")
-        return _converted(standard[1])
+        return _converted(standard)
 
     def _field(self, kind: FieldType) -> _Read:
         if kind.name in NUMBERS:

@@ -14,17 +14,19 @@ from mcap.records import Channel, Schema
 from bearing_sim.files.limits import RECORDING_EXPANSION, RECORDING_RECORD, FileError, printable
 from bearing_sim.files.reading import open_regular
 from bearing_sim.files.tally import Tally
-from bearing_sim.messages.definitions import DefinitionError, decoder
+from bearing_sim.messages.definitions import DefinitionError, decoder, ros2_name
 from bearing_sim.recording.bag import FREE_EXPANSION, LATEST, RecordingError, by_number, folder_metadata, listed_files, mcap_files, require_listed
+from bearing_sim.recording.foreign_formats import EndsEarly, ForeignTopic, Item, ros1_items, sqlite_items
 from bearing_sim.recording.mcap_format import Message, own_topic
 from bearing_sim.recording.mcap_reader import McapReader
-from bearing_sim.recording.ros1_bag import Connection, Ros1Bag
-from bearing_sim.recording.sqlite_bag import SqliteBag
 
 _PIECE = 1 << 20  # [byte] that is unpacked at once
 _PACKED = {b"\x28\xb5\x2f\xfd": "zstd", b"\x04\x22\x4d\x18": "lz4"}
 """By its first bytes, how a file or a message is compressed; a message in CDR begins with a zero, an MCAP file and a database with others."""
+_UNPACKED_BY = {b"\x1f\x8b": "gunzip -k", b"BZh": "bunzip2 -k", b"\xfd7zXZ": "unxz -k", b"PK\x03\x04": "unzip", b"7z\xbc\xaf": "7z x"}
+"""Commands that unpack what is not unpacked here, by first bytes."""
 _SUFFIXES = (".zstd", ".zst", ".lz4")  # of files that are compressed as a whole
+_UNKNOWN = {".db3": "row that is no message", ".bag": "no such connection in the file", "": "no such channel in the file"}
 
 
 class BagTopic(NamedTuple):
@@ -74,28 +76,42 @@ class BagReader:
     def __iter__(self) -> Iterator[BagTopic | tuple[BagTopic, int, bytes]]:
         self.tally = Tally()
         for file in self._files:
-            kind = _plain_name(file)
-            read = self._sqlite if kind.endswith(".db3") else self._ros1 if kind.endswith(".bag") else self._mcap
-            unpack, used, late = _Unpacking(file, self.tally.notes), 0, 0
+            suffix = Path(_plain_name(file)).suffix
+            used, late, unknown, left = 0, 0, 0, _most_unpacked(file)
+            kinds: dict[tuple[str, str, bytes], _Type] = {}  # thousands of types may be the same: each is parsed once
+            found: dict[int, BagTopic] = {}
             with self._unpacked(file) as plain:
-                for item in read(file, plain):
-                    if isinstance(item, BagTopic):
-                        yield item
-                    elif 0 <= item[1] < LATEST:
-                        if item[2][:4] in _PACKED and not kind.endswith(".bag"):
-                            item = *item[:2], unpack(item[2])
-                        used += 1
-                        yield item
-                    else:
-                        late += 1
+                items = sqlite_items(plain) if suffix == ".db3" else ros1_items(plain) if suffix == ".bag" else self._mcap_items(file, plain)
+                try:
+                    for item in items:
+                        if isinstance(item, ForeignTopic):
+                            kind = item.ros_type, item.encoding, item.definition
+                            kinds.setdefault(kind, _Type(*kind, self.tally.notes))
+                            found[item.number] = kinds[kind].topic(item)
+                            yield found[item.number]
+                        elif item[0] not in found:
+                            unknown += 1
+                        elif not 0 <= item[1] < LATEST:
+                            late += 1
+                        else:
+                            number, time, data = item
+                            if suffix != ".bag" and (how := _PACKED.get(data[:4])):
+                                data = _unpacked_message(file, data, how, left)
+                                left -= len(data)
+                                self._note(f"{printable(file.name)}: its messages are compressed by {how}")
+                            used += 1
+                            yield found[number], time, data
+                except EndsEarly as error:
+                    self._note_end(file, str(error))
             self.tally.use(used)
-            if late:
-                self.tally.refuse("time before 1970 or after 2116", late)
+            for count, reason in ((unknown, _UNKNOWN.get(suffix, _UNKNOWN[""])), (late, "time before 1970 or after 2116")):
+                if count:
+                    self.tally.refuse(reason, count)
 
     def _foreign_files(self) -> list[Path]:
         """Return the files of a recording that is no MCAP, or compressed; none of one that is plain MCAP or that does not exist."""
         if self._path.is_file():
-            return [self._path] if self._path.suffix in (".db3", ".bag", *_SUFFIXES) else []
+            return [self._path] if self._path.suffix in (".db3", ".bag", *_SUFFIXES) or _is_packed(self._path) else []
         if not self._path.is_dir():
             return []
         files = listed_files(self._path)
@@ -113,77 +129,44 @@ class BagReader:
             raise RecordingError(f"{self._path}: compressed in a way that is not known; expected zstd or lz4, by file or by message")
         return files
 
+    def _note(self, text: str) -> None:
+        if text not in self.tally.notes:
+            self.tally.notes.append(text)
+
     def _note_end(self, file: Path, why: str) -> None:
         self.tally.unread.append(f"{file.name}: ends early ({why}); the messages before that are used")
 
-    def _mcap(self, file: Path, plain: Path) -> Iterator[BagTopic | tuple[BagTopic, int, bytes]]:
-        schemas: dict[int, _Type] = {}
-        kinds: dict[tuple[str, str, bytes], _Type] = {}  # thousands of schemas may be the same: each is parsed once
-        found: dict[int, BagTopic] = {}
-        nothing = _Type("", "", b"", self.tally.notes)
+    def _mcap_items(self, file: Path, plain: Path) -> Iterator[Item]:
+        schemas: dict[int, Schema] = {}
+        known = set()
         reader = McapReader(plain, stops_at_damage=True)
         for record in reader:
             if isinstance(record, Message):
-                if record.channel_id in found:
-                    yield found[record.channel_id], record.log_time, record.data
-                else:
-                    self.tally.refuse("no such channel in the file")
+                yield record.channel_id, record.log_time, record.data
             elif isinstance(record, Schema):
-                kind = record.name, record.encoding, bytes(record.data)
-                schemas[record.id] = kinds.setdefault(kind, _Type(*kind, self.tally.notes))
-            elif isinstance(record, Channel) and record.id not in found:
-                found[record.id] = schemas.get(record.schema_id, nothing).topic(record.topic, record.message_encoding)
-                if (own := own_topic(record)) != record.topic:
-                    found[record.id] = found[record.id]._replace(own_name=printable(own))
-                yield found[record.id]
+                schemas[record.id] = record
+            elif isinstance(record, Channel) and record.id not in known:
+                known.add(record.id)
+                kind = schemas.get(record.schema_id, Schema(data=b"", encoding="ros2msg", id=0, name=""))
+                own = own_topic(record)
+                own = "" if own == record.topic else printable(own)
+                yield ForeignTopic(record.id, record.topic, kind.name, record.message_encoding, kind.encoding, bytes(kind.data), own)
         if not reader.is_finished:
             self._note_end(file, reader.ends)
             if plain == file:
                 what = "saves what follows the damage" if reader.damaged else "completes the file"
                 self.tally.remedies.append(f"bearing-sim recover {printable(file)} -o GOOD.mcap {what}")
 
-    def _sqlite(self, file: Path, plain: Path) -> Iterator[BagTopic | tuple[BagTopic, int, bytes]]:
-        bag, types = SqliteBag(plain), {}
-        found: dict[int, BagTopic] = {}
-        for topic in bag.topics:
-            kind = types.setdefault(topic.ros_type, _Type(topic.ros_type, topic.encoding or "ros2msg", topic.definition, self.tally.notes))
-            found[topic.number] = kind.topic(topic.name, topic.serialization)
-            yield found[topic.number]
-        for number, time, data in bag:
-            yield found[number], time, data
-        if bag.left_out:
-            self.tally.refuse("row that is no message", bag.left_out)
-        if bag.ends:
-            self._note_end(file, bag.ends)
-
-    def _ros1(self, file: Path, plain: Path) -> Iterator[BagTopic | tuple[BagTopic, int, bytes]]:
-        bag = Ros1Bag(plain)
-        found: dict[int, BagTopic] = {}
-        for item in bag:
-            if isinstance(item, Connection):
-                found[item.number] = _Type(item.ros_type, "ros1msg", item.definition, self.tally.notes).topic(item.topic, "cdr")
-                yield found[item.number]
-            elif item[0] in found:
-                yield found[item[0]], *item[1:]
-            else:
-                self.tally.refuse("no such connection in the file")
-        if bag.ends:
-            self._note_end(file, bag.ends)
-
     @contextmanager
     def _unpacked(self, file: Path) -> Iterator[Path]:
         """Yield the path of a file's content: the file itself, or what it unpacks to."""
-        try:
-            with open_regular(file) as packed:
-                how = _PACKED.get(packed.read(4), "")
-        except FileError as error:
-            raise RecordingError(str(error)) from None
+        how = _PACKED.get(_first_bytes(file)[:4], "")
         if not how:
             yield file
             return
         self.tally.notes.append(f"{file.name}: compressed by {how}")
         with TemporaryDirectory(prefix="bearing_sim-") as folder:
-            target, left = Path(folder) / (_plain_name(file) or "bag"), FREE_EXPANSION + RECORDING_EXPANSION.value * file.stat().st_size
+            target, left = Path(folder) / (_plain_name(file) or "bag"), _most_unpacked(file)
             size, end = 0, ""
             with open_regular(file) as packed, open(target, "wb") as stream:
                 try:
@@ -221,39 +204,42 @@ def _pieces(packed: BinaryIO, how: str) -> Iterator[bytes]:
         yield frame.decompress(data, _PIECE)
 
 
-class _Unpacking:
-    """Unpacks the messages of a file that are compressed; data that cannot be unpacked become an empty message.
+def _first_bytes(file: Path) -> bytes:
+    try:
+        with open_regular(file) as stream:
+            return stream.read(8)
+    except FileError as error:
+        raise RecordingError(str(error)) from None
 
-    Parameters
-    ----------
-    file : that they are in.
-    notes : gets a text that says how they are compressed.
-    """
 
-    def __init__(self, file: Path, notes: list[str]):
-        self._file, self._left, self._notes = file, FREE_EXPANSION + RECORDING_EXPANSION.value * file.stat().st_size, notes
-        self._is_noted = False
-        self._decompress = zstandard.ZstdDecompressor().decompress
+def _is_packed(file: Path) -> bool:
+    """Return whether a file is compressed in a way that is unpacked here; refuse others with the command that unpacks them."""
+    begin = _first_bytes(file)
+    for magic, command in _UNPACKED_BY.items():
+        if begin.startswith(magic):
+            raise RecordingError(f"{file}: compressed in a way that is not read here; unpack it first, for example by: {command} {printable(file)}")
+    return begin[:4] in _PACKED
 
-    def __call__(self, data: bytes) -> bytes:
-        """Return an unpacked message."""
-        if not self._is_noted:
-            self._notes.append(f"{printable(self._file.name)}: its messages are compressed by {_PACKED[data[:4]]}")
-            self._is_noted = True
-        most = min(self._left, RECORDING_RECORD.value)
-        try:
-            if _PACKED[data[:4]] == "lz4":
-                unpacked = lz4.frame.LZ4FrameDecompressor().decompress(data, most + 1)
-                length = len(unpacked)
-            else:
-                length = zstandard.frame_content_size(data)
-                unpacked = self._decompress(data, max_output_size=most if length < 0 else length) if length <= most else b""
-        except (zstandard.ZstdError, RuntimeError, EOFError):
-            return b""
-        if length > most:
-            raise RecordingError(f"{self._file}: its messages unpack to {RECORDING_EXPANSION.refusal()}")
-        self._left -= len(unpacked)
-        return unpacked
+
+def _most_unpacked(file: Path) -> int:
+    return FREE_EXPANSION + RECORDING_EXPANSION.value * file.stat().st_size
+
+
+def _unpacked_message(file: Path, data: bytes, how: str, left: int) -> bytes:
+    """Return a compressed message of at most ``left`` bytes; an empty one if it cannot be unpacked."""
+    most = min(left, RECORDING_RECORD.value)
+    try:
+        if how == "lz4":
+            unpacked = lz4.frame.LZ4FrameDecompressor().decompress(data, most + 1)
+            length = len(unpacked)
+        else:
+            length = zstandard.frame_content_size(data)
+            unpacked = zstandard.ZstdDecompressor().decompress(data, max_output_size=most if length < 0 else length) if length <= most else b""
+    except (zstandard.ZstdError, RuntimeError, EOFError):
+        return b""
+    if length > most:
+        raise RecordingError(f"{file}: its messages unpack to {RECORDING_EXPANSION.refusal()}")
+    return unpacked
 
 
 class _Type:
@@ -266,15 +252,15 @@ class _Type:
     """
 
     def __init__(self, name: str, encoding: str, definition: bytes, notes: list[str]):
-        self.name, self._encoding, self._definition, self._notes = name, encoding, definition, notes
+        self._given, self._notes = (ros2_name(name), encoding, definition), notes
         self._decode: Callable[[bytes], object] | None = None
-        self._error = ""
 
-    def topic(self, name: str, serialization: str) -> BagTopic:
+    def topic(self, item: ForeignTopic) -> BagTopic:
         """Return a topic of this type."""
-        if serialization == "cdr":
-            return BagTopic(printable(name), printable(self.name), self.decode)
-        return BagTopic(printable(name), printable(self.name), _refusal(printable(name), serialization))
+        name, serialization = printable(item.name), item.serialization
+        is_read = serialization == "cdr" or (serialization, item.encoding) == ("ros1", "ros1msg")
+        refusal = _raiser(RecordingError(f"{name} is encoded as {serialization[:40]!r}; expected cdr"))
+        return BagTopic(name, printable(self._given[0]), self.decode if is_read else refusal, item.own_name)
 
     def _note(self, text: str) -> None:
         if printable(text) not in self._notes:
@@ -282,19 +268,18 @@ class _Type:
 
     def decode(self, data: bytes) -> object:
         """Return a decoded message; raise the same error for every message if the definition cannot be used."""
-        if self._error:
-            raise DefinitionError(self._error)
         if self._decode is None:
             try:
-                self._decode = decoder(self.name, self._encoding, self._definition, self._note)
+                self._decode = decoder(*self._given, self._note)
             except DefinitionError as error:
-                self._error = str(error)
-                raise
+                self._decode = _raiser(error)
         return self._decode(data)
 
 
-def _refusal(topic: str, serialization: str) -> Callable[[bytes], object]:
+def _raiser(error: Exception) -> Callable[[bytes], object]:
+    """Return a function of messages that raises an error."""
+
     def refuse(data: bytes) -> object:
-        raise RecordingError(f"{topic} is encoded as {serialization[:40]!r}; expected cdr")
+        raise error.with_traceback(None)
 
     return refuse

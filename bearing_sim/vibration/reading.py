@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Vibration records of any logger: CSV and other text, Parquet, MAT, NPZ and NPY, WAV, HDF5, and recordings (MCAP and other bags).
+"""Vibration records of any logger: text, Parquet, MAT, NPZ and NPY, WAV, HDF5, TDMS, universal files, and recordings (MCAP and other bags).
 
 A file is taken as channels: names with numbers.  Which of them is the vibration follows from its name where it is given, or where only one is
 long enough to be it; the rate from the file where it says one, or from its column of times.  What may mean two things is asked for.
@@ -21,6 +21,7 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 
 from bearing_sim.extras import what_is_missing
+from bearing_sim.files.labview_text import plain_lines
 from bearing_sim.files.limits import TABLE_LINE, VIBRATION_FILE, VIBRATION_PARTS, VIBRATION_SAMPLES, VIBRATION_TEXT, FileError, LimitError, printable
 from bearing_sim.files.reading import encoding_by_mark, open_regular
 from bearing_sim.files.tally import Tally
@@ -30,10 +31,7 @@ from bearing_sim.scene.quantity import to_si
 from bearing_sim.vibration.signal import FEWEST_SAMPLES, Vibration, VibrationError
 
 FORMATS = {
-    ".csv": "text",
-    ".txt": "text",
-    ".tsv": "text",
-    ".dat": "text",
+    **dict.fromkeys((".csv", ".txt", ".tsv", ".dat", ".lvm"), "text"),
     ".parquet": "parquet",
     ".mat": "matlab",
     ".npz": "numpy",
@@ -42,15 +40,14 @@ FORMATS = {
     ".h5": "hdf5",
     ".hdf5": "hdf5",
     ".hdf": "hdf5",
-    ".mcap": "bag",
-    ".active": "bag",
-    ".db3": "bag",
-    ".bag": "bag",
+    ".tdms": "tdms",
+    **dict.fromkeys((".uff", ".unv", ".u58", ".uf"), "universal"),
+    **dict.fromkeys((".mcap", ".active", ".db3", ".bag", ".zstd", ".zst", ".lz4"), "bag"),
 }
 """Formats by the suffix of a file; a folder is a bag."""
 
 _RATE_NAMES = re.compile(r"(?:^|[^a-z])(?:fs|sr|rate|sampling_?rate|sample_?rate|sampling_?frequency|samples_per_second)(?:_?hz)?$", re.IGNORECASE)
-_TIME_NAMES = re.compile(r"(?:^|[^a-z])(?:t|time|times|timestamp|seconds)(?:_?s)?(?:\s*[\[(].*)?$", re.IGNORECASE)
+_TIME_NAMES = re.compile(r"(?:^|[^a-z])(?:t|time|times|timestamp|seconds|x_value)(?:_?s)?(?:\s*[\[(].*)?$", re.IGNORECASE)
 _UNIT = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 _FIRST_LINES = 200
 _MOST_SHOWN = 12
@@ -58,6 +55,7 @@ _MOST_TOLD = 3
 _DEEPEST = 8  # levels of structures in a MAT or HDF5 file
 _MOST_CHANNELS = 2000
 _UNEVEN = 0.01  # of the spacing of times
+_ROUNDINGS = 1.5  # between times and those of an even rate, if they are only rounded
 _COMMENTS = ("#", "%", "//")
 _PIECE = 1 << 20  # [byte] that is unpacked at once
 _MAT_MATRIX, _MAT_COMPRESSED = 14, 15  # types of elements of a MAT file
@@ -156,9 +154,9 @@ def read_vibration(
         if len(speeds) != len(samples):
             raise VibrationError(f"{path}: {speed_channel} has {len(speeds)} values and {name} {len(samples)}; expected as many of each")
         speeds = speeds * _factor(speed_unit)
-    rate = rate if rate is not None else _rate(path, found, time_channel, len(samples))
+    rate, note = (rate, "") if rate is not None else _rate(path, found, time_channel, len(samples))
     unit = _UNIT.search(name)
-    return Vibration(samples, rate, unit[1] if unit else "", found.start, f"{path.name}, {printable(name)}", speeds, found.tally)
+    return Vibration(samples, rate, unit[1] if unit else "", found.start, f"{path.name}, {printable(name)}{note}", speeds, found.tally)
 
 
 def _factor(unit: str) -> float:
@@ -201,14 +199,15 @@ def _only_channel(path: Path, found: Channels, time_channel: str | None, speed_c
     raise VibrationError(f"{path}: which channel is the vibration? there are {_listed(names)}; choose one with --channel{told}")
 
 
-def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> float:
-    """Return the rate of the samples by the file."""
+def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> tuple[float, str]:
+    """Return the rate of the samples by the file, and what is to be said about it."""
+    note = ""
     if time_channel is None and found.rate is not None:
-        return found.rate
+        return found.rate, note
     if time_channel is None:
         rates = {name: value for name, value in found.numbers.items() if _RATE_NAMES.search(name) and value > 0.0}
         if len(set(rates.values())) == 1:
-            return next(iter(rates.values()))
+            return next(iter(rates.values())), note
         if rates:
             raise VibrationError(f"{path}: {', '.join(f'{printable(name)} = {value:g}' for name, value in rates.items())}; choose one with --rate")
     names = [time_channel] if time_channel else [name for name, array in found.arrays.items() if _TIME_NAMES.search(name) and len(array) == count]
@@ -216,18 +215,22 @@ def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> 
         raise VibrationError(f"{path}: the file does not say its sampling rate; give it with --rate, such as --rate 50kHz")
     times = _array(path, found, names[0], "--time-channel")
     steps = np.diff(times)
-    step = float(np.median(steps)) if len(steps) else math.nan
-    if len(times) != count or not step > 0.0:
+    changes = np.flatnonzero(steps) + 1
+    if len(times) != count or len(changes) < 2 or not steps.min() >= 0.0:
         raise VibrationError(f"{path}: {names[0]} is no column of increasing times; give the sampling rate with --rate")
-    mean = float(times[-1] - times[0]) / (count - 1)
-    if abs(mean / step - 1.0) > _UNEVEN:
-        worst = int(np.argmax(np.abs(steps - step)))
-        raise VibrationError(
-            f"{path}: {names[0]} has a gap: {times[worst]:g} is followed by {times[worst + 1]:g}; expected equal steps: cut the record there"
-        )
+    mean, usual = float(times[-1] - times[0]) / (count - 1), float(np.median(steps))
+    if abs(mean - usual) > _UNEVEN * usual:  # times with fewer digits than their steps need, or a gap
+        mean = float(times[changes[-1]] - times[changes[0]]) / float(changes[-1] - changes[0])
+        off = np.abs(times - times[changes[0]] - mean * (np.arange(count) - changes[0]))
+        if off.max() > _ROUNDINGS * float(np.median(steps[steps > 0.0])):
+            worst = int(np.argmax(np.abs(steps - mean)))
+            raise VibrationError(
+                f"{path}: {names[0]} has a gap: {times[worst]:g} is followed by {times[worst + 1]:g}; expected equal steps: cut the record there"
+            )
+        note = f"; {printable(names[0])} has rounded times, so the rate is the mean one"
     unit = _UNIT.search(names[0])
     seconds = {"ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}.get(unit[1] if unit else "", 1.0)
-    return 1.0 / (mean * seconds)
+    return 1.0 / (mean * seconds), note
 
 
 def _cannot_be_read(path: Path, form: str, error: Exception) -> FileError:
@@ -259,7 +262,7 @@ def _lines(path: Path) -> Iterator[str]:
 def _rows(path: Path, begin: int, width: int, decimal: str) -> Iterator[str]:
     """Yield the lines of numbers of a text from the line with the index ``begin`` on."""
     count, most = 0, VIBRATION_TEXT.value
-    for line in itertools.islice(_lines(path), begin, None):
+    for line in itertools.islice(plain_lines(_lines(path)), begin, None):
         if not line.strip() or line.lstrip().startswith(_COMMENTS):
             continue
         count += width
@@ -270,7 +273,7 @@ def _rows(path: Path, begin: int, width: int, decimal: str) -> Iterator[str]:
 
 def _text(path: Path) -> Channels:
     """Return the columns of a text: numbers between commas, semicolons, tabs or blanks, under headings or none."""
-    first_lines = list(itertools.islice(_lines(path), _FIRST_LINES))
+    first_lines = list(itertools.islice(plain_lines(_lines(path)), _FIRST_LINES))
     begin, delimiter, decimal = _first_row(path, first_lines)
     heading = first_lines[begin - 1] if begin else ""
     names = [cell.strip().strip('"').lstrip("#% ") for cell in (heading.split(delimiter) if delimiter else heading.split())]
@@ -316,7 +319,7 @@ def _first_row(path: Path, lines: list[str]) -> tuple[int, str | None, str]:
 
 def _first_fault(path: Path, begin: int, delimiter: str | None, decimal: str, width: int) -> str:
     """Return what is wrong with the first row that cannot be read."""
-    for number, line in enumerate(itertools.islice(_lines(path), begin, None), begin + 1):
+    for number, line in enumerate(itertools.islice(plain_lines(_lines(path)), begin, None), begin + 1):
         if not line.strip() or line.lstrip().startswith(_COMMENTS):
             continue
         cells = _cells(line, delimiter)
@@ -653,6 +656,57 @@ def _wave(path: Path) -> Channels:
     return collector.channels._replace(rate=float(rate))
 
 
+def _tdms(path: Path) -> Channels:
+    """Return the channels of a file of LabVIEW and other programs of National Instruments."""
+    try:
+        import nptdms
+    except ModuleNotFoundError as error:
+        raise VibrationError(f"{path}: {what_is_missing(error)}") from None
+    collector, start, values = _Collector(path), 0.0, 0
+    with open_regular(path, VIBRATION_FILE) as stream:
+        try:
+            with nptdms.TdmsFile.open(stream) as file:
+                for channel in (each for group in file.groups() for each in group.channels()):
+                    values += len(channel)
+                    VIBRATION_SAMPLES.check(values, str(path))
+                    told = channel.properties
+                    name = f"{channel.group_name}/{channel.name}" + (f" [{told['unit_string']}]" if told.get("unit_string") else "")
+                    collector.add(name, channel[:] if len(channel) else np.zeros(0))
+                    if float(told.get("wf_increment", 0.0)) > 0.0:
+                        collector.numbers[f"{name}.rate"] = 1.0 / float(told["wf_increment"])
+                    if isinstance(told.get("wf_start_time"), np.datetime64):
+                        start = float(told["wf_start_time"].astype("datetime64[us]").astype(np.int64)) * 1e-6
+        except Exception as error:
+            raise _cannot_be_read(path, "TDMS", error) from None
+    return collector.channels._replace(start=start)
+
+
+def _universal(path: Path) -> Channels:
+    """Return the functions of time of a universal file: its data sets 58, as text or binary."""
+    try:
+        import pyuff
+    except ModuleNotFoundError as error:
+        raise VibrationError(f"{path}: {what_is_missing(error)}") from None
+    open_regular(path, VIBRATION_FILE).close()
+    collector = _Collector(path)
+    try:
+        file = pyuff.UFF(str(path))
+        kinds = list(file.get_set_types())
+        VIBRATION_PARTS.check(len(kinds), str(path))
+        for number in (number for number, kind in enumerate(kinds) if int(kind) == 58):
+            found = file.read_sets([number])
+            unit, title = str(found.get("ordinate_axis_units_lab", "")).strip(), str(found.get("id1", "")).strip()
+            name = f"{number + 1} {title}".replace(" NONE", "") + (f" [{unit}]" if unit not in ("", "NONE") else "")
+            collector.add(name, found["data"])
+            if int(found.get("abscissa_spacing", 0)) and float(found.get("abscissa_inc", 0.0)) > 0.0:
+                collector.numbers[f"{name}.rate"] = 1.0 / float(found["abscissa_inc"])
+            elif "x" in found:
+                collector.add(f"{name} time", np.real(found["x"]))
+    except Exception as error:
+        raise _cannot_be_read(path, "universal file", error) from None
+    return collector.channels
+
+
 _READERS: Mapping[str, Callable[[Path], Channels]] = {
     "text": _text,
     "parquet": _parquet,
@@ -660,6 +714,8 @@ _READERS: Mapping[str, Callable[[Path], Channels]] = {
     "hdf5": _hdf5,
     "numpy": _numpy,
     "wave": _wave,
+    "tdms": _tdms,
+    "universal": _universal,
 }
 
 
