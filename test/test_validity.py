@@ -399,7 +399,9 @@ def test_the_ends_of_every_range_are_those_of_this_table():
     assert ends.keys() == RANGES.keys()
     for name, (low, high) in RANGES.items():
         assert [end is None for end in ends[name]] == [low is None, high is None], name
-        assert [end for end in ends[name] if end is not None] == pytest.approx([end for end in (low, high) if end is not None], rel=1e-12), name
+        assert [end for end in ends[name] if end is not None] == pytest.approx([end for end in (low, high) if end is not None], rel=1e-12, abs=0.0), (
+            name
+        )
 
 
 @pytest.mark.parametrize(("name", "overrides", "low", "high"), RANGES_OF_SCENES)
