@@ -14,7 +14,7 @@ from typing import NamedTuple
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import cosine_sine
-from bearing_sim.numerics.simd import LANES, floor, larger, load, spread, spread_run, square_root, store, total
+from bearing_sim.numerics.simd import LANES, add, floor, larger, load, spread, spread_run, square_root, store, total
 from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.film import resist_rolling
 from bearing_sim.physics.profile import concentrate, spread_tractions
@@ -34,12 +34,6 @@ class StateRuns(NamedTuple):
     radial_speed: int
     orbital_speed: int
     spin: int
-
-
-@kernel
-def add(array, block, row, value):
-    """Add a value (lanes) to a row of a block, see `bearing_sim.numerics.simd.new_rows`."""
-    store(array, block, row, load(array, block, row) + value)
 
 
 @kernel

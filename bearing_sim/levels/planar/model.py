@@ -13,16 +13,15 @@ from bearing_sim.levels.common.observation import average_moments, count_damage,
 from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
-from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
-from bearing_sim.levels.planar import jacobian
+from bearing_sim.levels.common.support import factor_level, observe_support, place_support, solve_level, support_change
 from bearing_sim.levels.planar import state as planar_state
 from bearing_sim.levels.planar.forces import carry_forces, equations
 from bearing_sim.levels.planar.power import planar_powers
 from bearing_sim.levels.planar.state import (
     BLOCK,
-    BORDER,
     CAGE_Y,
     CAGE_Z,
+    LAYOUT,
     OMEGA,
     RING_Y,
     RING_Z,
@@ -62,18 +61,13 @@ def rhs_and_jacobian(t, y, model, work, rate):
 @fused
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
-    if work.support.shape[0] > 0:
-        return factor_supported(jacobian.factor, jacobian.solve, BORDER, shift, work)
-    return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
+    return factor_level(LAYOUT, shift, work)
 
 
 @fused
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
-    if work.support.shape[0] > 0:
-        solve_supported(jacobian.solve, BORDER, work, x)
-    else:
-        jacobian.solve(work.jacobian, work.factored, x)
+    solve_level(LAYOUT, work, x)
 
 
 @fused

@@ -28,12 +28,12 @@ import numpy as np
 
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, stop_skew_on_face, total_load
 from bearing_sim.levels.common.model import films_at, inner_growth, shaft_speed_at
-from bearing_sim.levels.common.rollers import add, carry_normal_forces, linear_churning, place_in_pockets, place_outwards, place_rollers
-from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
+from bearing_sim.levels.common.rollers import carry_normal_forces, linear_churning, place_in_pockets, place_outwards, place_rollers
+from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, react_on_support, support_accelerations, support_jacobian
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.forces import border_accelerations as planar_accelerations
 from bearing_sim.levels.planar.state import BORDER as PLANAR
-from bearing_sim.levels.spatial.jacobian import land_cage_jacobian, land_ring_jacobian, react_on_support, roller_jacobian
+from bearing_sim.levels.spatial.jacobian import follow_axes, land_cage_jacobian, land_ring_jacobian, roller_jacobian, turn_axes
 from bearing_sim.levels.spatial.slices import press_points, resist, sum_tractions
 from bearing_sim.levels.spatial.state import (
     BORDER,
@@ -41,6 +41,7 @@ from bearing_sim.levels.spatial.state import (
     CAGE_TILT_Z,
     CAGE_Y,
     CAGE_Z,
+    LAYOUT,
     OMEGA,
     RING_TILT_Y,
     RING_TILT_Z,
@@ -53,11 +54,10 @@ from bearing_sim.levels.spatial.state import (
     SLICED,
     THETA,
     TILT,
-    collect_rates,
-    spread_state,
 )
+from bearing_sim.numerics.block_arrow import collect_rates, spread_state
 from bearing_sim.numerics.compilation import fused, kernel
-from bearing_sim.numerics.simd import larger, load, magnitude, spread, spread_run, store, total, where_positive
+from bearing_sim.numerics.simd import add, larger, load, magnitude, spread, spread_run, store, total, where_positive
 from bearing_sim.physics.contact import damped_line_contact
 from bearing_sim.physics.flange import axial_share
 from bearing_sim.physics.pocket import pocket_friction_lanes
@@ -67,7 +67,7 @@ from bearing_sim.physics.traction import traction_along
 class LandWork(NamedTuple):
     """The part of the planar level's memory that a guide land needs."""
 
-    border_own: np.ndarray  # shape (5, 10)
+    global_block: np.ndarray  # shape (5, 10)
 
 
 @fused
@@ -125,7 +125,7 @@ def border_accelerations(t, y, model, work, rate, with_jacobian):
         rate[BORDER + RING_TILT_Z] += ring_lever * (near[PLANAR + planar.RING_Z] - far[PLANAR + planar.RING_Z])
     if not with_jacobian:
         return
-    own = work.border_own
+    own = work.global_block
     land_cage_jacobian(position, lever, work.land_own, own)
     own[RING_TILT_Y, BORDER + RING_TILT_Z], own[RING_TILT_Z, BORDER + RING_TILT_Y] = 0.0, 0.0
     if on_ring:
@@ -384,7 +384,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     shaft_speed = shaft_speed_at(t, model.drive)
     films, churning = films_at(t, shaft_speed, model), linear_churning(y[OMEGA], shaft_speed, model)
     inner_radius, resistance = params.raceways.inner_radius + inner_growth(shaft_speed, model), model.lubrication.rolling_resistance.on
-    spread_state(y, params.rollers.count, rows)
+    spread_state(LAYOUT, y, params.rollers.count, rows)
     border_accelerations(t, y, model, work, rate, with_jacobian)
     for k in range(BORDER):
         rate[k] = y[BORDER + k]
@@ -416,7 +416,7 @@ def equations(t, y, model, work, rate, with_jacobian):
         roller_jacobian(y, inner_radius, churning, resistance, params, model.lubrication.viscosity, rows, contacts, work.chain, work.jacobian)
     if work.support.shape[0] > 0:
         _carry(t, y, model, work, rate, with_jacobian)
-    collect_rates(y, params.rollers.count, rows, rate)
+    collect_rates(LAYOUT, y, params.rollers.count, rows, rate)
     return True
 
 
@@ -430,7 +430,10 @@ def _carry(t, y, model, work, rate, with_jacobian):
     support_accelerations(t, y, BORDER, CAGE_Y, momentum_y, momentum_z, model, rate, support)
     if with_jacobian:
         support_jacobian(y, BORDER, CAGE_Y, model, support)
-        react_on_support(params, rows, work.border_own, work.jacobian, support)
+        react_on_support(LAYOUT, RUNS, ROLLER, params, rows, work.global_block, work.jacobian, support)
+        follow_axes(params.rollers.count, rows, support)
+        for block in range(rows.shape[0]):
+            turn_axes(block, frame_of(support), rows, work.jacobian)
     for block in range(rows.shape[0]):
         turned = load(rows, block, ROLLER.orbital_acceleration)
         follow_frame(ROLLER, block, frame_of(support), rows)

@@ -1,10 +1,10 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The Jacobian of level ``spatial``, and the solution of (I - s J) x = b; ``LANES`` rollers at a time (a block).
+"""The Jacobian of level ``spatial``; ``LANES`` rollers at a time (a block).
 
-Derivatives through a roller, rows of an array of `bearing_sim.numerics.simd.new_rows`: those of its r'', phi'', tilt'', skew'', w' by its own nine
-variables and the border's 18 first; then those of the ring's four accelerations by its own nine and the ring's eight, because the ring does
-not depend on the cage; then those of the cage's five by its own nine and the cage's ten.  The rows of a roller's accelerations collect forces,
-moments and the torque of the spin first, from contact to contact; at the end they become accelerations.
+Derivatives through a roller (`bearing_sim.numerics.block_arrow`): those of its r'', phi'', tilt'', skew'', w' by its own nine variables and the
+border's 18; those of the ring's four accelerations by its own nine and the ring's eight; those of the cage's five by its own nine and the cage's
+ten.  The rows of a roller's accelerations collect forces, moments and the torque of the spin first, from contact to contact; at the end they
+become accelerations.
 
 **Inner contact.** It depends on four pairs: the roller's position a and inclination b relative to the ring, and their rates a', b' in a frame that
 does not turn; each pair along the normal n and across it, along p.  v = a', h = 1/|a|, and n turns at h v_p as the roller passes by.  With delta =
@@ -18,23 +18,16 @@ variables follow as at level ``planar``.
 
 **Pocket.** Force and moment depend on four quantities: how far the roller stands off the pocket's middle, how it is skewed there, and both
 rates.  Their changes by the 18 variables of roller and cage are written once, in ``chain``; every row follows from them.
-
-**Linear algebra.** As at level ``planar`` the system is reduced to speeds: a 5x5 block for each roller and one 9x9 border.  Cost O(Z).
 """
 
 from bearing_sim.levels.common.flanges import FLANGE
-from bearing_sim.levels.common.rollers import add
-from bearing_sim.levels.common.support import FOLLOWING, REACTION, frame_of, react_by_border, react_by_rollers, turn_frame
+from bearing_sim.levels.common.support import FOLLOWING
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.state import BORDER as PLANAR
 from bearing_sim.levels.spatial.state import (
     AT_CAGE,
     AT_CAGE_SPEEDS,
-    AT_RING,
-    BELOW,
-    BLOCK,
     BORDER,
-    CAGE,
     CAGE_COLUMNS,
     CAGE_ROWS,
     CAGE_TILT_Y,
@@ -45,10 +38,7 @@ from bearing_sim.levels.spatial.state import (
     OMEGA,
     PHI,
     PHI_SPEED,
-    POSITIONS,
     R_SPEED,
-    RIGHT,
-    RING,
     RING_COLUMNS,
     RING_ROWS,
     RING_TILT_Y,
@@ -60,17 +50,14 @@ from bearing_sim.levels.spatial.state import (
     SKEW,
     SKEW_SPEED,
     SLICED,
-    SPEEDS,
     SPIN,
     THETA,
     TILT,
     TILT_SPEED,
     R,
 )
-from bearing_sim.model.params import SUPPORT
 from bearing_sim.numerics.compilation import fused, kernel
-from bearing_sim.numerics.linear_algebra import back_substitute, decompose
-from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, load, magnitude, spread, spread_runs, store, total, where_positive
+from bearing_sim.numerics.simd import LANES, add, load, magnitude, spread, store, where_positive
 
 # Rows of forces outwards and along, of moments outwards and along, of the spin's torque; in this order.
 _RADIAL, _ALONG, _TILTING, _SKEWING, _SPINNING = 0, LOCAL, 2 * LOCAL, 3 * LOCAL, 4 * LOCAL
@@ -833,52 +820,20 @@ def _land_pair(row, tilt_row, planar_row, lever, column, tilt_column, planar_col
 
 
 @kernel
-def _border_state(m):
-    """Return which state of the border the m-th of the border's columns of a roller's rows belongs to."""
-    if m < 2 * RING:
-        return m if m < RING else BORDER + m - RING
-    at_cage = m - 2 * RING
-    return RING + at_cage if at_cage < CAGE else BORDER + RING + at_cage - CAGE
-
-
-@kernel
-def react_on_support(params, rows, own, jacobian, support):
-    """Write what all bodies do to the outer ring that a support carries, as `bearing_sim.levels.planar.jacobian.react_on_support`."""
-    count, per_mass = params.rollers.count, params.support[SUPPORT.outer_moves] / params.support[SUPPORT.outer_mass]
-    at = R, PHI, R_SPEED, PHI_SPEED, BLOCK, ROLLERS
-    react_by_rollers(ROLLER, at, LOCAL, count, per_mass * params.rollers.mass, rows, jacobian, support)
-    for m in range(2 * BORDER):
-        state, per_roller = _border_state(m), per_mass * params.rollers.mass
-        react_by_border(state, BLOCK + m, LOCAL, ROLLER.cosine, ROLLER.sine, ROLLER.radius, count, per_roller, rows, jacobian, support)
-    for body in range(2):
-        mass, columns = per_mass * (params.ring.mass if body == 0 else params.cage.mass), 2 * (RING if body == 0 else CAGE)
-        for axis in range(2):
-            reaction, row = support[REACTION + axis], (RING_Y if body == 0 else CAGE_Y) + axis
-            first = RING_ROWS + axis * RING_COLUMNS if body == 0 else CAGE_ROWS + axis * CAGE_COLUMNS
-            for m in range(2 * BORDER):
-                reaction[m] -= mass * own[row, m]
-            for j in range(count):
-                block, lane = j // LANES, j % LANES
-                for m in range(BLOCK):
-                    reaction[ROLLERS + m * count + j] -= mass * jacobian[block, first + m, lane]
-                for m in range(columns):
-                    state = _border_state(m if body == 0 else 2 * RING + m)
-                    reaction[state] -= mass * jacobian[block, first + BLOCK + m, lane]
-    for j in range(count):  # a roller's axis is described in the frame that turns with the orbit
+def follow_axes(count, rows, support):
+    """Write what a unit of a_O does to the axes of the rollers, which are described in the frame that turns with the orbit."""
+    for j in range(count):
         block, lane = j // LANES, j % LANES
         tilt, skew = rows[block, ROLLER.tilt, lane], rows[block, ROLLER.skew, lane]
         for axis in range(2):
             turned = support[FOLLOWING + axis, ROLLERS + PHI_SPEED * count + j]
             support[FOLLOWING + axis, ROLLERS + TILT_SPEED * count + j] = turned * skew
             support[FOLLOWING + axis, ROLLERS + SKEW_SPEED * count + j] = -(turned * tilt)
-    for block in range(rows.shape[0]):
-        _turn_frame(block, frame_of(support), rows, jacobian)
 
 
 @kernel
-def _turn_frame(block, frame, rows, jacobian):
-    """Add to a block's rows how the frame's acceleration turns with a roller's azimuth."""
-    turn_frame((R, PHI), LOCAL, ROLLER, block, frame, rows, jacobian)
+def turn_axes(block, frame, rows, jacobian):
+    """Add to a block's rows of tilt'' and skew'' how the frame's acceleration turns with a roller's azimuth."""
     cosine, sine, inverse = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine), 1.0 / load(rows, block, ROLLER.radius)
     outwards, along = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
     tilt, skew, turned = load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.skew), -(along * inverse)
@@ -888,196 +843,3 @@ def _turn_frame(block, frame, rows, jacobian):
     add(jacobian, block, _SKEWING + TILT, -turned)
     add(jacobian, block, _SKEWING + PHI, -(tilt * outwards * inverse))
     add(jacobian, block, _SKEWING + R, tilt * turned * inverse)
-
-
-@kernel
-def _shifted(jacobian, block, position, speed, s):
-    """Return s (d/d(speed) + s d/d(position)): what a speed does within an implicit step."""
-    return s * (load(jacobian, block, speed) + s * load(jacobian, block, position))
-
-
-@kernel
-def _own(jacobian, block, first, k, s):
-    """Return what a roller's own k-th speed does to a row within an implicit step."""
-    if k == POSITIONS:
-        return s * load(jacobian, block, first + 2 * POSITIONS)
-    return _shifted(jacobian, block, first + k, first + POSITIONS + k, s)
-
-
-@fused
-def _invert_blocks(block, jacobian, s, rows, matrix):
-    """Invert I - s (dv'/dv + s dv'/dq) of a block of rollers; return whether all are regular.
-
-    Gauss and Jordan without pivoting: springs, dampers and inertia keep the diagonal above what else is in the matrix.
-    """
-    n = SPEEDS
-    for i in range(n):
-        for j in range(n):
-            store(matrix, 0, n * i + j, (1.0 if i == j else 0.0) - _own(jacobian, block, i * LOCAL, j, s))
-            store(rows, block, n * i + j, 1.0 if i == j else 0.0)
-    regular = True
-    for k in range(n):
-        pivot = load(matrix, 0, n * k + k)
-        regular = regular and total(where_positive(magnitude(pivot), 1.0, 0.0)) == LANES
-        inverse = 1.0 / pivot
-        for j in range(k + 1, n):
-            store(matrix, 0, n * k + j, inverse * load(matrix, 0, n * k + j))
-        for j in range(k + 1):
-            store(rows, block, n * k + j, inverse * load(rows, block, n * k + j))
-        for i in range(n):
-            if i != k:
-                factor = load(matrix, 0, n * i + k)
-                for j in range(k + 1, n):
-                    store(matrix, 0, n * i + j, load(matrix, 0, n * i + j) - factor * load(matrix, 0, n * k + j))
-                for j in range(k + 1):
-                    store(rows, block, n * i + j, load(rows, block, n * i + j) - factor * load(rows, block, n * k + j))
-    return regular
-
-
-@fused
-def _couplings(block, jacobian, s, rows):
-    """Write how a block of rollers and the border act on each other."""
-    for m in range(BORDER):
-        position = AT_RING + m if m < RING else AT_CAGE + m - RING
-        speed = position + (RING if m < RING else CAGE)
-        c_0, c_1 = _shifted(jacobian, block, position, speed, s), _shifted(jacobian, block, LOCAL + position, LOCAL + speed, s)
-        c_2 = _shifted(jacobian, block, 2 * LOCAL + position, 2 * LOCAL + speed, s)
-        c_3 = _shifted(jacobian, block, 3 * LOCAL + position, 3 * LOCAL + speed, s)
-        c_4 = _shifted(jacobian, block, 4 * LOCAL + position, 4 * LOCAL + speed, s)
-        for k in range(SPEEDS):
-            row = SPEEDS * k
-            value = load(rows, block, row) * c_0 + load(rows, block, row + 1) * c_1 + load(rows, block, row + 2) * c_2
-            value += load(rows, block, row + 3) * c_3 + load(rows, block, row + 4) * c_4
-            store(rows, block, RIGHT + BORDER * k + m, value)
-    for k in range(BORDER):
-        first = RING_ROWS + k * RING_COLUMNS if k < RING else CAGE_ROWS + (k - RING) * CAGE_COLUMNS
-        for m in range(SPEEDS):
-            store(rows, block, BELOW + SPEEDS * k + m, _own(jacobian, block, first, m, s))
-
-
-@fused
-def _reduce(block, jacobian, s, rows, sums):
-    """Add what a block of rollers does to the border's system.
-
-    Parameters
-    ----------
-    sums : sums over blocks of what is taken from the border's matrix and, behind that, of derivatives by its positions, shape (1, 162, LANES).
-    """
-    for k in range(BORDER):
-        below = BELOW + SPEEDS * k
-        b_0, b_1, b_2 = load(rows, block, below), load(rows, block, below + 1), load(rows, block, below + 2)
-        b_3, b_4 = load(rows, block, below + 3), load(rows, block, below + 4)
-        on_ring = k < RING
-        first = RING_ROWS + k * RING_COLUMNS if on_ring else CAGE_ROWS + (k - RING) * CAGE_COLUMNS
-        for m in range(BORDER):
-            right = RIGHT + m
-            through = b_0 * load(rows, block, right) + b_1 * load(rows, block, right + BORDER) + b_2 * load(rows, block, right + 2 * BORDER)
-            through += b_3 * load(rows, block, right + 3 * BORDER) + b_4 * load(rows, block, right + 4 * BORDER)
-            if on_ring == (m < RING):
-                column = first + BLOCK + (m if on_ring else m - RING)
-                d_position = load(jacobian, block, column)
-                through += s * (load(jacobian, block, column + (RING if on_ring else CAGE)) + s * d_position)
-                add(sums, 0, BORDER * (BORDER + k) + m, d_position)
-            add(sums, 0, BORDER * k + m, through)
-
-
-@fused
-def factor(jacobian, border, s, factored):
-    """Factor I - s J.
-
-    Parameters
-    ----------
-    jacobian : derivatives through each roller.
-    border : derivatives of the border's accelerations by its own positions and speeds, shape (9, 18).
-    s : gamma h [s].
-    factored : takes the factorisation.
-
-    Returns
-    -------
-    regular : False where a pivot is zero or not finite.
-    """
-    rows, positions, corner = factored.rows, factored.positions, factored.schur
-    factored.shift[0] = s
-    for k in range(BORDER):
-        for m in range(BORDER):
-            positions[k, m] = border[k, m]
-            corner[k, m] = (1.0 if k == m else 0.0) - s * (border[k, BORDER + m] + s * border[k, m])
-    for m in range(2 * BORDER * BORDER):
-        store(factored.sums, 0, m, 0.0)
-    regular = True
-    for block in range(jacobian.shape[0]):
-        regular = _invert_blocks(block, jacobian, s, rows, factored.block) and regular
-        _couplings(block, jacobian, s, rows)
-        _reduce(block, jacobian, s, rows, factored.sums)
-    for k in range(BORDER):
-        for m in range(BORDER):
-            corner[k, m] -= total(load(factored.sums, 0, BORDER * k + m))
-            if (k < RING) == (m < RING):
-                positions[k, m] += total(load(factored.sums, 0, BORDER * (BORDER + k) + m))
-    return decompose(BORDER, corner, factored.order) and regular
-
-
-@fused
-def _eliminate(block, jacobian, s, x, factored):
-    """Reduce a block's right side to speeds, solve for them without the border, and take what they do to it from its own."""
-    rows, right, reduced = factored.rows, factored.right, factored.block
-    q_0, q_1, q_2, q_3 = load(right, block, 0), load(right, block, 1), load(right, block, 2), load(right, block, 3)
-    for k in range(SPEEDS):
-        first = k * LOCAL
-        value = load(jacobian, block, first) * q_0 + load(jacobian, block, first + 1) * q_1
-        value += load(jacobian, block, first + 2) * q_2 + load(jacobian, block, first + 3) * q_3
-        for m in range(RING):
-            value += x[m] * load(jacobian, block, first + AT_RING + m)
-        for m in range(CAGE):
-            value += x[RING + m] * load(jacobian, block, first + AT_CAGE + m)
-        store(reduced, 0, k, load(right, block, POSITIONS + k) + s * value)
-    b_0, b_1, b_2 = load(reduced, 0, 0), load(reduced, 0, 1), load(reduced, 0, 2)
-    b_3, b_4 = load(reduced, 0, 3), load(reduced, 0, 4)
-    for k in range(SPEEDS):
-        row = SPEEDS * k
-        value = load(rows, block, row) * b_0 + load(rows, block, row + 1) * b_1 + load(rows, block, row + 2) * b_2
-        store(right, block, POSITIONS + k, value + load(rows, block, row + 3) * b_3 + load(rows, block, row + 4) * b_4)
-    v_0, v_1, v_2 = load(right, block, 4), load(right, block, 5), load(right, block, 6)
-    v_3, v_4 = load(right, block, 7), load(right, block, 8)
-    for k in range(BORDER):
-        below = BELOW + SPEEDS * k
-        first = RING_ROWS + k * RING_COLUMNS if k < RING else CAGE_ROWS + (k - RING) * CAGE_COLUMNS
-        passed = load(jacobian, block, first) * q_0 + load(jacobian, block, first + 1) * q_1
-        passed = s * (passed + load(jacobian, block, first + 2) * q_2 + load(jacobian, block, first + 3) * q_3)
-        passed += load(rows, block, below) * v_0 + load(rows, block, below + 1) * v_1 + load(rows, block, below + 2) * v_2
-        x[BORDER + k] += total(passed + load(rows, block, below + 3) * v_3 + load(rows, block, below + 4) * v_4)
-
-
-@fused
-def _substitute(block, s, x, factored):
-    """Complete a block's speeds by what the border does to them, and its positions."""
-    rows, right = factored.rows, factored.right
-    for k in range(SPEEDS):
-        value = load(right, block, POSITIONS + k)
-        for m in range(BORDER):
-            value += x[BORDER + m] * load(rows, block, RIGHT + BORDER * k + m)
-        store(right, block, POSITIONS + k, value)
-        if k < POSITIONS:
-            store(right, block, k, load(right, block, k) + s * value)
-
-
-@fused
-def solve(jacobian, factored, x):
-    """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
-    s = factored.shift[0]
-    count = (x.shape[0] - 2 * BORDER) // BLOCK
-    spread_runs(x, 2 * BORDER, BLOCK, count, factored.right)
-    fill_lanes(factored.right, BLOCK, count)  # a NaN of an attempt that failed would stay there and reach the border
-    for k in range(BORDER):
-        through = 0.0
-        for m in range(BORDER):
-            through += factored.positions[k, m] * x[m]
-        x[BORDER + k] += s * through
-    for block in range(jacobian.shape[0]):
-        _eliminate(block, jacobian, s, x, factored)
-    back_substitute(BORDER, factored.schur, factored.order, x[BORDER : 2 * BORDER])
-    for block in range(jacobian.shape[0]):
-        _substitute(block, s, x, factored)
-    for k in range(BORDER):
-        x[k] += s * x[BORDER + k]
-    collect_runs(factored.right, 0, BLOCK, count, x, 2 * BORDER)

@@ -17,19 +17,18 @@ from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
 from bearing_sim.levels.common.slice_balance import balance, roller_tilts
 from bearing_sim.levels.common.state_transfer import FIRST_CAGE_TILT, first_cage_centre, rolling_state
-from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
-from bearing_sim.levels.spatial import jacobian
+from bearing_sim.levels.common.support import factor_level, observe_support, place_support, solve_level, support_change
 from bearing_sim.levels.spatial import state as spatial_state
 from bearing_sim.levels.spatial.forces import carry_forces, equations
 from bearing_sim.levels.spatial.power import spatial_powers
 from bearing_sim.levels.spatial.slices import average_laminae, lamina_pressures, sum_lamina_powers
 from bearing_sim.levels.spatial.state import (
     BLOCK,
-    BORDER,
     CAGE_TILT_Y,
     CAGE_TILT_Z,
     CAGE_Y,
     CAGE_Z,
+    LAYOUT,
     OMEGA,
     PHI,
     PHI_SPEED,
@@ -139,18 +138,13 @@ def rhs_and_jacobian(t, y, model, work, rate):
 @fused
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
-    if work.support.shape[0] > 0:
-        return factor_supported(jacobian.factor, jacobian.solve, BORDER, shift, work)
-    return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
+    return factor_level(LAYOUT, shift, work)
 
 
 @fused
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
-    if work.support.shape[0] > 0:
-        solve_supported(jacobian.solve, BORDER, work, x)
-    else:
-        jacobian.solve(work.jacobian, work.factored, x)
+    solve_level(LAYOUT, work, x)
 
 
 @fused
