@@ -111,10 +111,10 @@ def test_the_house_has_at_most_ten_floors():
 @pytest.mark.long
 def test_a_second_process_finds_all_machine_code_in_the_cache():
     code = (
-        "from bearing_sim import Simulation, load_scene; from bearing_sim.levels.slip import methods, model;"
+        "from bearing_sim import Simulation, load_scene; from bearing_sim.levels.slip import model;"
         "Simulation(load_scene('deng2017_table1')).advance(1e-3);"
-        "misses = sum(methods.advance.stats.cache_misses.values()) + sum(model.observe.stats.cache_misses.values());"
-        "print(misses, sum(methods.advance.stats.cache_hits.values()))"
+        "misses = sum(model.advance.stats.cache_misses.values()) + sum(model.observe.stats.cache_misses.values());"
+        "print(misses, sum(model.advance.stats.cache_hits.values()))"
     )
     run = [sys.executable, "-c", code]
     subprocess.run(run, timeout=300, cwd=ROOT, check=True, capture_output=True)

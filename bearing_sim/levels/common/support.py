@@ -328,6 +328,25 @@ def react_on_support(layout, runs, row, params, rows, own, jacobian, work):
 
 
 @kernel
+def carry(layout, runs, row, t, y, model, work, rate, with_jacobian):
+    """Let the support move the outer ring and the shaft, and ring and cage with them; the rollers follow in the level.
+
+    Parameters
+    ----------
+    layout, runs, row : as of `react_on_support`.
+    rate : the level's part is written; changed.
+    """
+    params, rows, support, border, cage = model.params, work.rollers, work.support, layout.border, layout.size[0]
+    momentum_y, momentum_z = momentum_rate(row, params, rows)
+    momentum_y += params.ring.mass * rate[border] + params.cage.mass * rate[border + cage]
+    momentum_z += params.ring.mass * rate[border + 1] + params.cage.mass * rate[border + cage + 1]
+    support_accelerations(t, y, border, cage, momentum_y, momentum_z, model, rate, support)
+    if with_jacobian:
+        support_jacobian(y, border, cage, model, support)
+        react_on_support(layout, runs, row, params, rows, work.global_block, work.jacobian, support)
+
+
+@kernel
 def _stiffen_ring(shift, border, own, work):
     """Eliminate the shaft: keep what `_bend_shaft` and `_follow_shaft` need, and take what it does to the ring into the border's derivatives.
 

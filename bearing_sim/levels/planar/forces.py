@@ -30,7 +30,7 @@ import math
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, total_load
 from bearing_sim.levels.common.model import films_at, inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import carry_normal_forces, drag, linear_churning, place_in_pockets, place_outwards, place_rollers
-from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, react_on_support, support_accelerations, support_jacobian
+from bearing_sim.levels.common.support import carry, follow_frame, frame_of
 from bearing_sim.levels.planar.jacobian import (
     flange_jacobian,
     guide_jacobian,
@@ -281,24 +281,11 @@ def equations(t, y, model, work, rate, with_jacobian):
         if params.flanges.on:
             flange_jacobian(y, params, rows, work.jacobian)
     if work.support.shape[0] > 0:
-        _carry(t, y, model, work, rate, with_jacobian)
+        carry(LAYOUT, RUNS, ROLLER, t, y, model, work, rate, with_jacobian)
+        for block in range(rows.shape[0]):
+            follow_frame(ROLLER, block, frame_of(work.support), rows)
     collect_rates(LAYOUT, y, params.rollers.count, rows, rate)
     return True
-
-
-@kernel
-def _carry(t, y, model, work, rate, with_jacobian):
-    """Let the support move the outer ring and the shaft, and everything else with them; see `bearing_sim.levels.common.support`."""
-    params, rows, support = model.params, work.rollers, work.support
-    momentum_y, momentum_z = momentum_rate(ROLLER, params, rows)
-    momentum_y += params.ring.mass * rate[BORDER + RING_Y] + params.cage.mass * rate[BORDER + CAGE_Y]
-    momentum_z += params.ring.mass * rate[BORDER + RING_Z] + params.cage.mass * rate[BORDER + CAGE_Z]
-    support_accelerations(t, y, BORDER, CAGE_Y, momentum_y, momentum_z, model, rate, support)
-    if with_jacobian:
-        support_jacobian(y, BORDER, CAGE_Y, model, support)
-        react_on_support(LAYOUT, RUNS, ROLLER, params, rows, work.global_block, work.jacobian, support)
-    for block in range(rows.shape[0]):
-        follow_frame(ROLLER, block, frame_of(support), rows)
 
 
 @kernel

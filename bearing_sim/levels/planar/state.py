@@ -7,17 +7,16 @@ z, cage y, z and angle.  With a support its `bearing_sim.levels.common.support.T
 A roller sees 15 variables: its own five, the border's five positions and five speeds (`bearing_sim.numerics.block_arrow`).
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.levels.common.flanges import PLANE_ROWS
 from bearing_sim.levels.common.observation import Tally
-from bearing_sim.levels.common.rollers import StateRuns
+from bearing_sim.levels.common.rollers import StateRuns, new_rollers
 from bearing_sim.levels.common.support import new_support
 from bearing_sim.numerics.block_arrow import Factored, block_arrow, new_factored
-from bearing_sim.numerics.simd import LANES, new_blocks, new_rows
+from bearing_sim.numerics.simd import new_blocks, new_rows
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.lamina_life import MOMENTS
 
@@ -107,11 +106,7 @@ class Work(NamedTuple):
 def new_work(params):
     """Return the level's workspace for a bearing."""
     count = params.rollers.count
-    rollers = new_rows(ROLLER_ROWS, count)
-    lanes = np.arange(rollers.shape[0] * LANES).reshape(-1, LANES)
-    rollers[:, ROLLER.present] = lanes < count
-    pitch = 2 * math.pi * np.minimum(lanes, count - 1) / count
-    rollers[:, ROLLER.pitch_cosine], rollers[:, ROLLER.pitch_sine] = np.cos(pitch), np.sin(pitch)
+    rollers = new_rollers(ROLLER, ROLLER_ROWS, count)
     return Work(
         rollers,
         new_blocks(2 * rollers.shape[0], len(CONTACT)),

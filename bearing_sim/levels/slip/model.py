@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from bearing_sim.levels.common.advance import advance_by
 from bearing_sim.levels.common.model import HALF_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import TALLY, count_damage, fade_moment, observe_course, observe_rest, oil_at_speed, turn_is_over
 from bearing_sim.levels.common.power import write_powers
@@ -21,6 +22,7 @@ from bearing_sim.levels.slip.state import OMEGA, POCKET, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import factor_shifted, solve_factored
+from bearing_sim.numerics.time_stepping import Kernels
 from bearing_sim.physics.lamina_life import MOMENTS, add_load_moments, equivalent_loads
 from bearing_sim.physics.load_balance import LOAD
 
@@ -173,3 +175,12 @@ def sum_up(t, h, y, model, work):
     if turn_is_over(t, h, model, tally):
         oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
         count_damage(t, equivalent_loads(work.load_moments, oil, model.params.life), oil, model, tally)
+
+
+KERNELS = Kernels(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, correction_norm, restrain, step_limit, sum_up, observe)
+
+
+@kernel
+def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    """Advance with error control, or ``fixed`` in steps of ``maximum_step`` [s]; see `bearing_sim.levels.common.advance.advance_by`."""
+    return advance_by(KERNELS, fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

@@ -29,7 +29,7 @@ import numpy as np
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, stop_skew_on_face, total_load
 from bearing_sim.levels.common.model import films_at, inner_growth, shaft_speed_at
 from bearing_sim.levels.common.rollers import carry_normal_forces, linear_churning, place_in_pockets, place_outwards, place_rollers
-from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, react_on_support, support_accelerations, support_jacobian
+from bearing_sim.levels.common.support import carry, follow_frame, frame_of
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.forces import border_accelerations as planar_accelerations
 from bearing_sim.levels.planar.state import BORDER as PLANAR
@@ -422,19 +422,14 @@ def equations(t, y, model, work, rate, with_jacobian):
 
 @kernel
 def _carry(t, y, model, work, rate, with_jacobian):
-    """Let the support move the outer ring and the shaft, and everything else with them; see `bearing_sim.levels.common.support`."""
-    params, rows, support = model.params, work.rollers, work.support
-    momentum_y, momentum_z = momentum_rate(ROLLER, params, rows)
-    momentum_y += params.ring.mass * rate[BORDER + RING_Y] + params.cage.mass * rate[BORDER + CAGE_Y]
-    momentum_z += params.ring.mass * rate[BORDER + RING_Z] + params.cage.mass * rate[BORDER + CAGE_Z]
-    support_accelerations(t, y, BORDER, CAGE_Y, momentum_y, momentum_z, model, rate, support)
+    """Let the support move everything, see `bearing_sim.levels.common.support`."""
+    rows, support = work.rollers, work.support
+    carry(LAYOUT, RUNS, ROLLER, t, y, model, work, rate, with_jacobian)
     if with_jacobian:
-        support_jacobian(y, BORDER, CAGE_Y, model, support)
-        react_on_support(LAYOUT, RUNS, ROLLER, params, rows, work.global_block, work.jacobian, support)
-        follow_axes(params.rollers.count, rows, support)
-        for block in range(rows.shape[0]):
-            turn_axes(block, frame_of(support), rows, work.jacobian)
+        follow_axes(model.params.rollers.count, rows, support)
     for block in range(rows.shape[0]):
+        if with_jacobian:
+            turn_axes(block, frame_of(support), rows, work.jacobian)
         turned = load(rows, block, ROLLER.orbital_acceleration)
         follow_frame(ROLLER, block, frame_of(support), rows)
         turned = load(rows, block, ROLLER.orbital_acceleration) - turned
