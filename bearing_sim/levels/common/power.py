@@ -22,8 +22,6 @@ from bearing_sim.numerics.tr_bdf2 import WEIGHT
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.drag import bore_torque, mixture_torque
 
-_LOSSES = COLUMN.inner_sliding_power - 1  # column before the first of the losses
-
 
 class Powers(NamedTuple):
     """Power by cause [W]; the fields are those of `bearing_sim.model.sample` without the ending ``_power``."""
@@ -45,9 +43,9 @@ class Powers(NamedTuple):
 
 @kernel
 def write_powers(powers, row):
-    """Write the losses into a flat sample (see `bearing_sim.model.sample`), whose columns have the order of `Powers`."""
+    """Write the losses into a flat sample (see `bearing_sim.model.sample.flat`), whose columns have the order of `Powers`."""
     for k in range(1, len(powers)):
-        row[_LOSSES + k] = powers[k]
+        row[COLUMN.shaft_power + k] = powers[k]
 
 
 @kernel
@@ -71,8 +69,8 @@ def write_step_powers(rhs, state_powers, t, y, model, work, memory, row):
     rhs(t, y, model, work, memory.scratch[0])
     powers = state_powers(t, y, shaft_speed_at(t, model.drive), model, work)
     for k in range(1, len(powers)):
-        before = row[_LOSSES + k]
-        row[_LOSSES + k] = powers[k] if weight == 1.0 else before + weight * (powers[k] - before)
+        before = row[COLUMN.shaft_power + k]
+        row[COLUMN.shaft_power + k] = powers[k] if weight == 1.0 else before + weight * (powers[k] - before)
 
 
 @kernel

@@ -35,7 +35,7 @@ RUNS = StateRuns(ROLLERS, R, PHI, R_SPEED, PHI_SPEED, SPIN)
 
 
 class RollerRow(NamedTuple):
-    """Rows of the rollers array, see `bearing_sim.numerics.simd.new_rows`."""
+    """Indices of the rows of the rollers array, see `bearing_sim.numerics.simd.new_rows`."""
 
     radius: int = 0  # r [m]
     angle: int = 1  # phi [rad]

@@ -80,16 +80,11 @@ def place_land(y, position, land):
     position : of the land along the axis [m].
     land : takes the planar border's positions and speeds, shape (10,) or longer.
     """
-    land[planar.RING_Y] = y[RING_Y] + position * y[RING_TILT_Y]
-    land[planar.RING_Z] = y[RING_Z] + position * y[RING_TILT_Z]
-    land[PLANAR + planar.RING_Y] = y[BORDER + RING_Y] + position * y[BORDER + RING_TILT_Y]
-    land[PLANAR + planar.RING_Z] = y[BORDER + RING_Z] + position * y[BORDER + RING_TILT_Z]
-    land[planar.CAGE_Y] = y[CAGE_Y] + position * y[CAGE_TILT_Y]
-    land[planar.CAGE_Z] = y[CAGE_Z] + position * y[CAGE_TILT_Z]
-    land[planar.THETA] = y[THETA]
-    land[PLANAR + planar.CAGE_Y] = y[BORDER + CAGE_Y] + position * y[BORDER + CAGE_TILT_Y]
-    land[PLANAR + planar.CAGE_Z] = y[BORDER + CAGE_Z] + position * y[BORDER + CAGE_TILT_Z]
-    land[planar.OMEGA] = y[OMEGA]
+    for first, to in ((0, 0), (BORDER, PLANAR)):
+        for axis in range(2):
+            land[to + planar.RING_Y + axis] = y[first + RING_Y + axis] + position * y[first + RING_TILT_Y + axis]
+            land[to + planar.CAGE_Y + axis] = y[first + CAGE_Y + axis] + position * y[first + CAGE_TILT_Y + axis]
+        land[to + planar.THETA] = y[first + THETA]
 
 
 @fused
@@ -101,10 +96,10 @@ def border_accelerations(t, y, model, work, rate, with_jacobian):
     place_land(y, -position, work.lands[1])
     planar_accelerations(t, work.lands[0], model, LandWork(work.land_own[0]), near, with_jacobian)
     planar_accelerations(t, work.lands[1], model, LandWork(work.land_own[1]), far, with_jacobian)
-    rate[BORDER + RING_Y] = 0.5 * (near[PLANAR + planar.RING_Y] + far[PLANAR + planar.RING_Y])
-    rate[BORDER + RING_Z] = 0.5 * (near[PLANAR + planar.RING_Z] + far[PLANAR + planar.RING_Z])
-    rate[BORDER + CAGE_Y] = 0.5 * (near[PLANAR + planar.CAGE_Y] + far[PLANAR + planar.CAGE_Y])
-    rate[BORDER + CAGE_Z] = 0.5 * (near[PLANAR + planar.CAGE_Z] + far[PLANAR + planar.CAGE_Z])
+    for axis in range(2):
+        ring, cage = PLANAR + planar.RING_Y + axis, PLANAR + planar.CAGE_Y + axis
+        rate[BORDER + RING_Y + axis] = 0.5 * (near[ring] + far[ring])
+        rate[BORDER + CAGE_Y + axis] = 0.5 * (near[cage] + far[cage])
     rate[OMEGA] = 0.5 * (near[planar.OMEGA] + far[planar.OMEGA])
     lever = 0.5 * position * params.cage.mass / tilts.cage_inertia
     # I x'' = M_y - J omega y', I y'' = M_z + J omega x' of an axis inclined by (x, y) that turns at omega

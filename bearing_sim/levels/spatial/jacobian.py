@@ -518,98 +518,110 @@ def _pocket_variables(block, y, rows, chain):
     _put(chain, _AT_THETA + 5, _SKEW_RATE, lean_r - outwards)
 
 
-@fused
-def _pocket_rows(block, y, params, rows, chain, jacobian):
-    """Add to a roller's rows of forces and moments, and write those of the cage."""
+@kernel
+def _wall_columns(put, block, column, d_f, d_m, push, braking, jacobian):
+    """Put the change by one variable into the rows of a roller's forces and moments."""
+    put(jacobian, block, column, -(d_f * push[0]))
+    put(jacobian, block, LOCAL + column, -(d_f * push[1]))
+    put(jacobian, block, 2 * LOCAL + column, -(d_m * push[0]))
+    put(jacobian, block, 3 * LOCAL + column, -(d_m * push[1]))
+    put(jacobian, block, 4 * LOCAL + column, -(d_f * braking))
+
+
+@kernel
+def _wall_rows(put, block, force, moment, sums, push, arms, between, across, sign, rates, params, rows, chain, jacobian):
+    """Write what two opposite walls of the pockets do, to the rows of a roller's forces and moments and of the cage, as far as directions stay.
+
+    Parameters
+    ----------
+    put : `store` where nothing has written what the cage does yet, else `add`.
+    force, moment : of a block of rollers on the walls.
+    sums : rows of the sums over slices of the force's derivatives by the offset between the walls, and by its rate.
+    push : directions of the force on a roller outwards and along the orbit, on the cage along y and z, with friction (lanes).
+    arms : of force and moment about the bearing's axis (lanes).
+    between : kinds, in ``chain``, of offset and inclination between the walls; ``across`` of those along them, which change the arms with a ``sign``.
+    rates : where the rate of the offset stands in ``chain`` for the first variable, from variable to variable, and to that of the inclination.
+    """
     cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
-    force, moment, friction = (
-        -load(rows, block, ROLLER.pocket_force),
-        -load(rows, block, ROLLER.pocket_moment),
-        load(rows, block, ROLLER.pocket_friction),
-    )
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    k_0, k_1, k_2 = (
-        load(rows, block, ROLLER.pocket_stiffness),
-        load(rows, block, ROLLER.pocket_stiffness + 1),
-        load(rows, block, ROLLER.pocket_stiffness + 2),
-    )
-    d_0, d_1, d_2 = (
-        load(rows, block, ROLLER.pocket_damping),
-        load(rows, block, ROLLER.pocket_damping + 1),
-        load(rows, block, ROLLER.pocket_damping + 2),
-    )
-    push_r, push_t, push_y, push_z = s + friction * c, c - friction * s, friction * p_c - p_s, p_c + friction * p_s
-    reach = load(rows, block, ROLLER.radius) * c - (y[CAGE_Y] * p_c + y[CAGE_Z] * p_s)
-    side = where_positive(force, params.rollers.radius, -params.rollers.radius)
-    arm = reach - friction * (side + load(rows, block, ROLLER.pocket_offset))
-    lean = load(rows, block, ROLLER.pocket_lean) - friction * load(rows, block, ROLLER.pocket_skew)
+    k, d = sums
+    k_0, k_1, k_2 = load(rows, block, k), load(rows, block, k + 1), load(rows, block, k + 2)
+    d_0, d_1, d_2 = load(rows, block, d), load(rows, block, d + 1), load(rows, block, d + 2)
+    friction = load(rows, block, ROLLER.pocket_friction)
     braking = friction * where_positive(force, 1.0, -1.0)
     per_mass, per_tilt, per_turn = present * (1.0 / cage.mass), present * (1.0 / tilts.cage_inertia), present * (1.0 / cage.inertia)
     for k in range(_VARIABLES):
-        first = _CHAIN + _KINDS * k
-        offset, rate = load(chain, 0, first + _OFFSET), load(chain, 0, first + _RATE)
-        skew, skew_rate = load(chain, 0, first + _INCLINATION), load(chain, 0, first + _SKEW_RATE)
-        lever, leaning = load(chain, 0, first + _LEVER), load(chain, 0, first + _LEAN)
-        d_f = k_0 * offset + k_1 * skew + d_0 * rate + d_1 * skew_rate
-        d_m = k_1 * offset + k_2 * skew + d_1 * rate + d_2 * skew_rate
-        if k > SPIN:  # nothing else writes what the cage does
-            column = AT_CAGE + k - _AT_Y
-            store(jacobian, block, column, -(d_f * push_r))
-            store(jacobian, block, LOCAL + column, -(d_f * push_t))
-            store(jacobian, block, 2 * LOCAL + column, -(d_m * push_r))
-            store(jacobian, block, 3 * LOCAL + column, -(d_m * push_t))
-            store(jacobian, block, 4 * LOCAL + column, -(d_f * braking))
+        first, rate_row = _CHAIN + _KINDS * k, rates[0] + rates[1] * k
+        offset, inclination = load(chain, 0, first + between[0]), load(chain, 0, first + between[1])
+        lever, leaning = sign * load(chain, 0, first + across[0]), sign * load(chain, 0, first + across[1])
+        rate, inclining = load(chain, 0, rate_row), load(chain, 0, rate_row + rates[2])
+        d_f = k_0 * offset + k_1 * inclination + d_0 * rate + d_1 * inclining
+        d_m = k_1 * offset + k_2 * inclination + d_1 * rate + d_2 * inclining
+        if k > SPIN:
+            _wall_columns(put, block, AT_CAGE + k - _AT_Y, d_f, d_m, push, braking, jacobian)
         else:
-            add(jacobian, block, k, -(d_f * push_r))
-            add(jacobian, block, LOCAL + k, -(d_f * push_t))
-            add(jacobian, block, 2 * LOCAL + k, -(d_m * push_r))
-            add(jacobian, block, 3 * LOCAL + k, -(d_m * push_t))
-            add(jacobian, block, 4 * LOCAL + k, -(d_f * braking))
-        store(jacobian, block, CAGE_ROWS + k, per_mass * (d_f * push_y))
-        store(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + k, per_mass * (d_f * push_z))
-        store(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + k, per_tilt * (d_m * push_y))
-        store(jacobian, block, CAGE_ROWS + 3 * CAGE_COLUMNS + k, per_tilt * (d_m * push_z))
-        turned = d_f * arm + d_m * lean + force * (lever - friction * offset) + moment * (leaning - friction * skew)
-        store(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + k, per_turn * turned)
+            _wall_columns(add, block, k, d_f, d_m, push, braking, jacobian)
+        put(jacobian, block, CAGE_ROWS + k, per_mass * (d_f * push[2]))
+        put(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + k, per_mass * (d_f * push[3]))
+        put(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + k, per_tilt * (d_m * push[2]))
+        put(jacobian, block, CAGE_ROWS + 3 * CAGE_COLUMNS + k, per_tilt * (d_m * push[3]))
+        turned = d_f * arms[0] + d_m * arms[1] + force * (lever - friction * offset) + moment * (leaning - friction * inclination)
+        put(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + k, per_turn * turned)
 
 
-@fused
-def _pocket_directions(block, params, rows, jacobian):
-    """Add that forces and moments turn with pocket and roller, and that friction goes with the spin."""
+@kernel
+def _wall_directions(block, force, moment, push, bends, slid, params, rows, jacobian):
+    """Add that forces and moments turn with pocket and roller, and that friction goes with the spin.
+
+    Parameters
+    ----------
+    bends : derivatives of ``push`` by the coefficient of friction.
+    slid : by what the torque on the cage falls with it.
+    """
     cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
-    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    push_r, push_t, push_y, push_z = s + friction * c, c - friction * s, friction * p_c - p_s, p_c + friction * p_s
-    force, moment = -load(rows, block, ROLLER.pocket_force), -load(rows, block, ROLLER.pocket_moment)
-    theta = AT_CAGE + 4
+    bend, theta = load(rows, block, ROLLER.pocket_friction_d_spin), AT_CAGE + _AT_THETA - _AT_Y
     for kind in range(2):
-        push = force if kind == 0 else moment
+        pressed = force if kind == 0 else moment
         per = present * (1.0 / cage.mass if kind == 0 else 1.0 / tilts.cage_inertia)
         first, to = 2 * kind * LOCAL, CAGE_ROWS + 2 * kind * CAGE_COLUMNS
-        add(jacobian, block, first + PHI, -(push * push_t))
-        add(jacobian, block, first + theta, push * push_t)
-        add(jacobian, block, first + LOCAL + PHI, push * push_r)
-        add(jacobian, block, first + LOCAL + theta, -(push * push_r))
-        add(jacobian, block, first + SPIN, -(push * c * bend))
-        add(jacobian, block, first + LOCAL + SPIN, push * s * bend)
-        add(jacobian, block, to + _AT_THETA, -(per * push * push_z))
-        add(jacobian, block, to + CAGE_COLUMNS + _AT_THETA, per * push * push_y)
-        add(jacobian, block, to + SPIN, per * push * p_c * bend)
-        add(jacobian, block, to + CAGE_COLUMNS + SPIN, per * push * p_s * bend)
-    size = magnitude(force)
-    add(jacobian, block, 4 * LOCAL + SPIN, -(size * bend))
-    slid = size * params.rollers.radius + load(rows, block, ROLLER.pocket_offset) * force + load(rows, block, ROLLER.pocket_skew) * moment
+        add(jacobian, block, first + PHI, -(pressed * push[1]))
+        add(jacobian, block, first + theta, pressed * push[1])
+        add(jacobian, block, first + LOCAL + PHI, pressed * push[0])
+        add(jacobian, block, first + LOCAL + theta, -(pressed * push[0]))
+        add(jacobian, block, first + SPIN, -(pressed * bends[0] * bend))
+        add(jacobian, block, first + LOCAL + SPIN, -(pressed * bends[1] * bend))
+        add(jacobian, block, to + _AT_THETA, -(per * pressed * push[3]))
+        add(jacobian, block, to + CAGE_COLUMNS + _AT_THETA, per * pressed * push[2])
+        add(jacobian, block, to + SPIN, per * pressed * bends[2] * bend)
+        add(jacobian, block, to + CAGE_COLUMNS + SPIN, per * pressed * bends[3] * bend)
+    add(jacobian, block, 4 * LOCAL + SPIN, -(magnitude(force) * bend))
     add(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + SPIN, -(present * (1.0 / cage.inertia) * slid * bend))
+
+
+@kernel
+def _frames(block, rows):
+    """Return cosine and sine of the pocket's azimuth and of the angle from the pocket to the roller, and the coefficient of friction."""
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    return p_c, p_s, load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine), load(rows, block, ROLLER.pocket_friction)
 
 
 @fused
 def _pocket_jacobian(block, y, params, rows, chain, jacobian):
-    """Add the pockets to the rows of a block of rollers and write those of the cage; parameters as of `spatial_jacobian.roller_jacobian`."""
+    """Add the pockets to the rows of a block of rollers and write those of the cage; parameters as of `roller_jacobian`."""
     _pocket_variables(block, y, rows, chain)
-    _pocket_rows(block, y, params, rows, chain, jacobian)
-    _pocket_directions(block, params, rows, jacobian)
+    p_c, p_s, c, s, friction = _frames(block, rows)
+    force, moment = -load(rows, block, ROLLER.pocket_force), -load(rows, block, ROLLER.pocket_moment)
+    offset, skew, radius = load(rows, block, ROLLER.pocket_offset), load(rows, block, ROLLER.pocket_skew), params.rollers.radius
+    push = s + friction * c, c - friction * s, friction * p_c - p_s, p_c + friction * p_s
+    reach = load(rows, block, ROLLER.radius) * c - (y[CAGE_Y] * p_c + y[CAGE_Z] * p_s)
+    arms = (
+        reach - friction * (where_positive(force, radius, -radius) + offset),
+        load(rows, block, ROLLER.pocket_lean) - friction * skew,
+    )
+    sums, rates = (ROLLER.pocket_stiffness, ROLLER.pocket_damping), (_CHAIN + _RATE, _KINDS, _SKEW_RATE - _RATE)
+    between, across = (_OFFSET, _INCLINATION), (_LEVER, _LEAN)
+    _wall_rows(store, block, force, moment, sums, push, arms, between, across, 1.0, rates, params, rows, chain, jacobian)
+    slid = magnitude(force) * radius + offset * force + skew * moment
+    _wall_directions(block, force, moment, push, (c, -s, p_c, p_s), slid, params, rows, jacobian)
 
 
 @kernel
@@ -655,83 +667,21 @@ def _guide_rates(block, y, params, rows, chain):
 
 
 @kernel
-def _guide_rows(block, params, rows, chain, jacobian):
-    """Add to the rows of a roller's forces and moments and to those of the cage, as far as the directions stay."""
-    cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    force, moment, friction = (
-        -load(rows, block, ROLLER.guide_force),
-        -load(rows, block, ROLLER.guide_moment),
-        load(rows, block, ROLLER.pocket_friction),
-    )
-    k, d = ROLLER.guide_stiffness, ROLLER.guide_damping
-    k_0, k_1, k_2 = load(rows, block, k), load(rows, block, k + 1), load(rows, block, k + 2)
-    d_0, d_1, d_2 = load(rows, block, d), load(rows, block, d + 1), load(rows, block, d + 2)
-    push_r, push_t = c - friction * s, s + friction * c
-    push_y, push_z = p_c + friction * p_s, p_s - friction * p_c
-    braking = friction * where_positive(force, 1.0, -1.0)
-    arm = load(rows, block, ROLLER.pocket_offset) + braking * params.rollers.radius
-    arm += friction * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius)
-    skewed = load(rows, block, ROLLER.pocket_skew) + friction * load(rows, block, ROLLER.pocket_lean)
-    per_mass, per_tilt, per_turn = present * (1.0 / cage.mass), present * (1.0 / tilts.cage_inertia), present * (1.0 / cage.inertia)
-    for k in range(_VARIABLES):
-        first, rates = _CHAIN + _KINDS * k, _RATES + 2 * k
-        position, skew = load(chain, 0, first + _OFFSET), load(chain, 0, first + _INCLINATION)
-        outwards, lean = load(chain, 0, first + _LEVER), load(chain, 0, first + _LEAN)
-        rate, lean_rate = load(chain, 0, rates), load(chain, 0, rates + 1)
-        d_f = k_0 * outwards + k_1 * lean + d_0 * rate + d_1 * lean_rate
-        d_m = k_1 * outwards + k_2 * lean + d_1 * rate + d_2 * lean_rate
-        column = k if k <= SPIN else AT_CAGE + k - _AT_Y
-        add(jacobian, block, column, -(d_f * push_r))
-        add(jacobian, block, LOCAL + column, d_f * push_t)
-        add(jacobian, block, 2 * LOCAL + column, -(d_m * push_r))
-        add(jacobian, block, 3 * LOCAL + column, d_m * push_t)
-        add(jacobian, block, 4 * LOCAL + column, -(d_f * braking))
-        add(jacobian, block, CAGE_ROWS + k, per_mass * (d_f * push_y))
-        add(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + k, per_mass * (d_f * push_z))
-        add(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + k, per_tilt * (d_m * push_y))
-        add(jacobian, block, CAGE_ROWS + 3 * CAGE_COLUMNS + k, per_tilt * (d_m * push_z))
-        turned = d_f * arm + d_m * skewed + force * (position + friction * outwards) + moment * (skew + friction * lean)
-        add(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + k, -(per_turn * turned))
-
-
-@kernel
-def _guide_directions(block, params, rows, jacobian):
-    """Add that forces and moments turn with pocket and roller, and that friction goes with the spin."""
-    cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
-    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    push_r, push_t = c - friction * s, s + friction * c
-    force, moment = -load(rows, block, ROLLER.guide_force), -load(rows, block, ROLLER.guide_moment)
-    theta = AT_CAGE + _AT_THETA - _AT_Y
-    for kind in range(2):
-        push = force if kind == 0 else moment
-        per = present * (1.0 / cage.mass if kind == 0 else 1.0 / tilts.cage_inertia)
-        first, to = 2 * kind * LOCAL, CAGE_ROWS + 2 * kind * CAGE_COLUMNS
-        add(jacobian, block, first + PHI, push * push_t)
-        add(jacobian, block, first + theta, -(push * push_t))
-        add(jacobian, block, first + SPIN, push * s * bend)
-        add(jacobian, block, first + LOCAL + PHI, push * push_r)
-        add(jacobian, block, first + LOCAL + theta, -(push * push_r))
-        add(jacobian, block, first + LOCAL + SPIN, push * c * bend)
-        add(jacobian, block, to + _AT_THETA, per * push * (friction * p_c - p_s))
-        add(jacobian, block, to + SPIN, per * push * p_s * bend)
-        add(jacobian, block, to + CAGE_COLUMNS + _AT_THETA, per * push * (p_c + friction * p_s))
-        add(jacobian, block, to + CAGE_COLUMNS + SPIN, -(per * push * p_c * bend))
-    add(jacobian, block, 4 * LOCAL + SPIN, -(magnitude(force) * bend))
-    slid = force * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius) + magnitude(force) * params.rollers.radius
-    slid += moment * load(rows, block, ROLLER.pocket_lean)
-    add(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + SPIN, -(present * (1.0 / cage.inertia) * slid * bend))
-
-
-@kernel
 def _guide_jacobian(block, y, params, rows, chain, jacobian):
-    """Add the derivatives of what guiding pockets do, after `pocket_jacobian`; parameters as of `spatial_jacobian.roller_jacobian`."""
+    """Add the derivatives of what guiding pockets do, after `_pocket_jacobian`: its walls turned by a right angle."""
     _guide_rates(block, y, params, rows, chain)
-    _guide_rows(block, params, rows, chain, jacobian)
-    _guide_directions(block, params, rows, jacobian)
+    p_c, p_s, c, s, friction = _frames(block, rows)
+    force, moment = -load(rows, block, ROLLER.guide_force), -load(rows, block, ROLLER.guide_moment)
+    lean, radius = load(rows, block, ROLLER.pocket_lean), params.rollers.radius
+    push = c - friction * s, -(s + friction * c), p_c + friction * p_s, p_s - friction * p_c
+    reach = load(rows, block, ROLLER.guide_offset) + params.cage.guidance.pocket_radius
+    arm = load(rows, block, ROLLER.pocket_offset) + friction * where_positive(force, 1.0, -1.0) * radius
+    arms = -(arm + friction * reach), -(load(rows, block, ROLLER.pocket_skew) + friction * lean)
+    sums, rates = (ROLLER.guide_stiffness, ROLLER.guide_damping), (_RATES, 2, 1)
+    between, across = (_LEVER, _LEAN), (_OFFSET, _INCLINATION)
+    _wall_rows(add, block, force, moment, sums, push, arms, between, across, -1.0, rates, params, rows, chain, jacobian)
+    slid = force * reach + magnitude(force) * radius + moment * lean
+    _wall_directions(block, force, moment, push, (-s, -c, p_s, -p_c), slid, params, rows, jacobian)
 
 
 @fused
@@ -764,42 +714,11 @@ def land_ring_jacobian(position, lever, ring_lever, lands, own):
         first, planar_first = which * BORDER, which * PLANAR
         for axis in range(2):
             for other in range(2):
-                _land_pair(
-                    CAGE_Y + axis,
-                    CAGE_TILT_Y + axis,
-                    planar.CAGE_Y + axis,
-                    lever,
-                    first + RING_Y + other,
-                    first + RING_TILT_Y + other,
-                    planar_first + planar.RING_Y + other,
-                    position,
-                    lands,
-                    own,
-                )
-                _land_pair(
-                    RING_Y + axis,
-                    RING_TILT_Y + axis,
-                    planar.RING_Y + axis,
-                    ring_lever,
-                    first + RING_Y + other,
-                    first + RING_TILT_Y + other,
-                    planar_first + planar.RING_Y + other,
-                    position,
-                    lands,
-                    own,
-                )
-                _land_pair(
-                    RING_Y + axis,
-                    RING_TILT_Y + axis,
-                    planar.RING_Y + axis,
-                    ring_lever,
-                    first + CAGE_Y + other,
-                    first + CAGE_TILT_Y + other,
-                    planar_first + planar.CAGE_Y + other,
-                    position,
-                    lands,
-                    own,
-                )
+                to_ring, to_cage = first + RING_Y + other, first + CAGE_Y + other
+                by_ring, by_cage = planar_first + planar.RING_Y + other, planar_first + planar.CAGE_Y + other
+                _land_pair(CAGE_Y + axis, planar.CAGE_Y + axis, lever, to_ring, by_ring, position, lands, own)
+                _land_pair(RING_Y + axis, planar.RING_Y + axis, ring_lever, to_ring, by_ring, position, lands, own)
+                _land_pair(RING_Y + axis, planar.RING_Y + axis, ring_lever, to_cage, by_cage, position, lands, own)
             near, far = lands[0, planar.THETA, planar_first + axis], lands[1, planar.THETA, planar_first + axis]
             own[THETA, first + RING_Y + axis] = 0.5 * (near + far)
             own[THETA, first + RING_TILT_Y + axis] = 0.5 * position * (near - far)
@@ -810,13 +729,13 @@ def land_ring_jacobian(position, lever, ring_lever, lands, own):
 
 
 @kernel
-def _land_pair(row, tilt_row, planar_row, lever, column, tilt_column, planar_column, position, lands, own):
-    """Write the derivatives of a body's acceleration and tilting by a body's position and tilt, from those of both lands."""
+def _land_pair(row, planar_row, lever, column, planar_column, position, lands, own):
+    """Write the derivatives of a body's acceleration and tilting by a body's position and tilt, two rows and columns on, from those of both lands."""
     near, far = lands[0, planar_row, planar_column], lands[1, planar_row, planar_column]
     own[row, column] = 0.5 * (near + far)
-    own[row, tilt_column] = 0.5 * position * (near - far)
-    own[tilt_row, column] = lever * (near - far)
-    own[tilt_row, tilt_column] = lever * position * (near + far)
+    own[row, column + 2] = 0.5 * position * (near - far)
+    own[row + 2, column] = lever * (near - far)
+    own[row + 2, column + 2] = lever * position * (near + far)
 
 
 @kernel

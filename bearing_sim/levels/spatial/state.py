@@ -46,7 +46,7 @@ ROLLER_ROWS = _PLAIN_ROWS + 2 * FLANGE_ROWS
 
 
 class SlicedRow(NamedTuple):
-    """Rows of a sliced contacts array: all blocks of inner contacts, then all of outer ones.  Moments are sums of forces times x."""
+    """Indices of the rows of a sliced contacts array: all blocks of inner contacts, then all of outer ones.  Moments are sums of forces times x."""
 
     load: int = 0  # normal force Q [N]
     rolling: int = 1  # mean speed u of both surfaces relative to the contact [m/s]
@@ -79,7 +79,7 @@ SLICED = SlicedRow()
 
 
 class RollerRow(NamedTuple):
-    """Rows of the rollers array, see `bearing_sim.numerics.simd.new_rows`; frame: outwards, along the orbit."""
+    """Indices of the rows of the rollers array, see `bearing_sim.numerics.simd.new_rows`; frame: outwards, along the orbit."""
 
     radius: int = 0  # r [m]
     angle: int = 1  # phi [rad]
