@@ -45,6 +45,7 @@ setup(
             "scene/catalog/designations/*.csv",
             "scene/scenes/*.bands.npz",
             "scene/scenes/*.yaml",
+            "physics/limits.toml",
             "ros/dds/*.xml",
             "ros/profiles/*.yaml",
             "studies/*.csv",

@@ -46,7 +46,7 @@ ROOMS = {
     ),
     "studies": (
         "numpy numba pandas scipy matplotlib pydantic sksundae",
-        "files scene numerics physics model levels simulation messages recording inputs monitoring estimation sweep",
+        "files scene numerics physics model levels simulation messages recording inputs monitoring estimation runtime sweep",
     ),
     "cli": (
         "click numpy pydantic_core rich",
@@ -112,10 +112,10 @@ def test_the_house_has_at_most_ten_floors():
 @pytest.mark.long
 def test_a_second_process_finds_all_machine_code_in_the_cache():
     code = (
-        "from bearing_sim import Simulation, load_scene; from bearing_sim.levels.slip import methods, model;"
+        "from bearing_sim import Simulation, load_scene; from bearing_sim.levels.slip import model;"
         "Simulation(load_scene('deng2017_table1')).advance(1e-3);"
-        "misses = sum(methods.advance.stats.cache_misses.values()) + sum(model.observe.stats.cache_misses.values());"
-        "print(misses, sum(methods.advance.stats.cache_hits.values()))"
+        "misses = sum(model.advance.stats.cache_misses.values()) + sum(model.observe.stats.cache_misses.values());"
+        "print(misses, sum(model.advance.stats.cache_hits.values()))"
     )
     run = [sys.executable, "-c", code]
     subprocess.run(run, timeout=300, cwd=ROOT, check=True, capture_output=True)

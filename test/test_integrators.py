@@ -15,6 +15,7 @@ from bearing_sim.numerics.time_stepping import (
     NOT_EVALUATED,
     OK,
     STEP_BUDGET,
+    Kernels,
     advance_in_steps,
     new_counts,
     new_memory,
@@ -48,20 +49,20 @@ def norm(t, y, change, model):
 
 
 @kernel
-def solved_if_short(t, y, h, model, work, memory, counts):
+def solved_if_short(kernels, t, y, h, model, work, memory, counts):
     # what contacts do to an iteration: whether it converges depends on the length of the step
     memory.scratch[1, 0] = y[0] + h
     return OK if h <= model[SOLVABLE] else NOT_CONVERGED
 
 
 @kernel
-def unsolved_across_an_impact(t, y, h, model, work, memory, counts):
+def unsolved_across_an_impact(kernels, t, y, h, model, work, memory, counts):
     memory.scratch[1, 0] = y[0] + h
     return OK if h <= 2.0**-9 or not t <= model[SOLVABLE] < t + h else NOT_CONVERGED
 
 
 @kernel
-def error_by_length(t, y, h, model, work, memory, counts):
+def error_by_length(kernels, t, y, h, model, work, memory, counts):
     memory.scratch[1, 0], memory.scratch[2, 0] = y[0] + h, h
     return OK
 
@@ -95,67 +96,53 @@ def keep_correction(y, change, model, work):
     pass
 
 
-@kernel
-def tr_bdf2_step(t, y, h, model, work, memory, counts):
-    return tr_bdf2_attempt(rate_of, rate_and_jacobian, guess_known, factor, solve, norm, norm, keep_correction, t, y, h, model, work, memory, counts)
+def kernels_of(rhs, rhs_and_jacobian, taken=step_taken):
+    """Return the functions of a level of one equation; nobody asks for samples."""
+    return Kernels(rhs, rhs_and_jacobian, guess_known, factor, solve, norm, norm, keep_correction, no_limit, taken, failing)
 
 
-@kernel
-def rubbed_step(t, y, h, model, work, memory, counts):
-    return tr_bdf2_attempt(
-        rubbed, rubbed_with_jacobian, guess_known, factor, solve, norm, norm, keep_correction, t, y, h, model, work, memory, counts
-    )
-
-
-@kernel
-def failing_step(t, y, h, model, work, memory, counts):
-    return tr_bdf2_attempt(failing, failing, guess_known, factor, solve, norm, norm, keep_correction, t, y, h, model, work, memory, counts)
+STIFF, LENGTHS = kernels_of(rate_of, rate_and_jacobian), kernels_of(rate_of, rate_and_jacobian, keep_longest)
+RUBBED, FAILING = kernels_of(rubbed, rubbed_with_jacobian), kernels_of(failing, failing)
 
 
 @kernel
 def with_error_by_length(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(
-        error_by_length, ERROR_ORDER, norm, no_limit, keep_longest, False, t, end, y, h, longest, budget, model, work, memory, counts
-    )
+    return advance_in_steps(error_by_length, ERROR_ORDER, LENGTHS, False, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_tr_bdf2(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(tr_bdf2_step, ERROR_ORDER, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(tr_bdf2_attempt, ERROR_ORDER, STIFF, False, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_tr_bdf2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(tr_bdf2_step, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(tr_bdf2_attempt, ERROR_ORDER, STIFF, True, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_rubbed_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(rubbed_step, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(tr_bdf2_attempt, ERROR_ORDER, RUBBED, True, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_failing_kernels(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(failing_step, ERROR_ORDER, norm, no_limit, step_taken, False, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(tr_bdf2_attempt, ERROR_ORDER, FAILING, False, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_failing_kernels_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(failing_step, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts)
+    return advance_in_steps(tr_bdf2_attempt, ERROR_ORDER, FAILING, True, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def by_short_steps_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(
-        solved_if_short, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts
-    )
+    return advance_in_steps(solved_if_short, ERROR_ORDER, STIFF, True, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 @kernel
 def across_an_impact_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_in_steps(
-        unsolved_across_an_impact, ERROR_ORDER, norm, no_limit, step_taken, True, t, end, y, h, longest, budget, model, work, memory, counts
-    )
+    return advance_in_steps(unsolved_across_an_impact, ERROR_ORDER, STIFF, True, t, end, y, h, longest, budget, model, work, memory, counts)
 
 
 def solution(run, stiffness=2.0, step=1e9, given=1.0, tolerance=1e-9, end=2.0, budget=10**7, start=1.0, nan_from=math.inf, solvable=math.inf):

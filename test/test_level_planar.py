@@ -5,12 +5,13 @@ import math
 
 import numpy as np
 import pytest
+from dense_arrow import dense_arrow
 from validation.independent import INDEPENDENT
 
 from bearing_sim import Inputs, Simulation, load_scene
 from bearing_sim.levels.planar import model as planar
 from bearing_sim.levels.planar.forces import equations
-from bearing_sim.levels.planar.state import BLOCK, BORDER, LOCAL, ROLLERS, RollerRow
+from bearing_sim.levels.planar.state import BLOCK, BORDER, LAYOUT, ROLLERS, RollerRow
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import ContactRow
 from bearing_sim.scene.loader import scene_from_yaml
@@ -35,20 +36,7 @@ def rough_state(run):
 def dense_jacobian(run, state):
     model, work, rate = run._model(run.inputs, 1.0), run._work, np.zeros_like(state)
     equations(0.0, state, model, work, rate, True)
-    size, border = state.size, 2 * BORDER
-    matrix = np.zeros((size, size))
-    matrix[:BORDER, BORDER:border] = np.eye(BORDER)
-    matrix[BORDER:border, :border] = work.border_own
-    count = run._params.rollers.count
-    for j in range(count):
-        own = ROLLERS + j + count * np.arange(BLOCK)
-        slopes = work.jacobian[j // LANES, :, j % LANES].reshape(-1, LOCAL)
-        matrix[own[:2], own[2:4]] = 1.0
-        matrix[own[2:, None], own] = slopes[:3, :BLOCK]
-        matrix[own[2:], :border] += slopes[:3, BLOCK:]
-        matrix[BORDER:border, own] = slopes[3:, :BLOCK]
-        matrix[BORDER:border, :border] += slopes[3:, BLOCK:]
-    return matrix
+    return dense_arrow(LAYOUT, work, run._params.rollers.count)
 
 
 def differences(run, state):

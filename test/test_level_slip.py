@@ -12,7 +12,7 @@ from bearing_sim import Inputs, Simulation, load_scene
 from bearing_sim.levels.slip import model as slip
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
-from bearing_sim.levels.slip.methods import advance
+from bearing_sim.levels.slip.model import advance
 from bearing_sim.numerics.linear_algebra import ARROW
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.scene.scene import tolerance_overrides

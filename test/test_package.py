@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 TOP_LEVEL = {
     *("package.xml", "setup.py", "setup.cfg", "bearing_sim", "launch_scripts", "test", "resource"),
     *("README.md", "LICENSE", "CHANGELOG.rst", "QUALITY_DECLARATION.md"),
-    *("doc", "CONTRIBUTING.md", "CITATION.cff", "MANIFEST.in"),
+    *("doc", "examples", "CONTRIBUTING.md", "CITATION.cff", "MANIFEST.in"),
 }
 KEYS = {
     "PyYAML": "python3-yaml",
@@ -84,6 +84,19 @@ def test_the_citation_names_the_version_the_licence_and_the_paper(package):
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     assert (citation["title"], citation["version"], citation["license"]) == (package.name, package.version, package.licenses[0])
     assert [reference["doi"] for reference in citation["references"]] == ["10.1016/j.cja.2017.07.001"]
+
+
+def test_every_data_file_of_the_package_is_installed():
+    package = ROOT / "bearing_sim"
+    (declared,) = (
+        ast.literal_eval(keyword.value.values[0])
+        for keyword in ast.walk(ast.parse((ROOT / "setup.py").read_text()))
+        if isinstance(keyword, ast.keyword) and keyword.arg == "package_data"
+    )
+    installed = {path for pattern in declared for path in package.glob(pattern)}
+    data = {path for path in package.rglob("*") if path.is_file() and path.suffix not in (".py", ".pyc")}
+    assert data and not data - installed
+    assert all(any(package.glob(pattern)) for pattern in declared)
 
 
 def test_the_changelog_can_be_read_and_its_newest_version_is_the_packages(package):

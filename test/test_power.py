@@ -8,12 +8,16 @@ import pytest
 
 from bearing_sim import Inputs, Simulation, load_scene
 from bearing_sim.levels.common.model import Drive
+from bearing_sim.levels.common.power import Powers
 from bearing_sim.levels.planar import model as planar
 from bearing_sim.levels.planar.power import planar_powers
 from bearing_sim.levels.planar.state import BLOCK, ROLLER, ROLLERS
 from bearing_sim.levels.slip import model as slip
 from bearing_sim.levels.slip.power import slip_powers
+from bearing_sim.model.sample import COLUMN, OBSERVABLES
 from bearing_sim.numerics.simd import by_roller
+from bearing_sim.numerics.time_stepping import INNER_STAGE
+from bearing_sim.numerics.tr_bdf2 import WEIGHT
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.load_balance import LOAD as LOAD_ROW
 
@@ -145,6 +149,22 @@ def test_contour_without_slope_leaves_the_books_open_by_its_own_squeeze(seed):
     assert gap == pytest.approx(squeeze, abs=1e-8 * largest)
 
 
+def test_the_columns_of_powers_have_the_order_of_their_record():
+    first = COLUMN.shaft_power
+    assert [each.name for each in OBSERVABLES[first : first + len(Powers._fields)]] == [f"{name}_power" for name in Powers._fields]
+
+
+def planar_step_powers(run, model):
+    """Return the `Powers` of the step before the present state: those within it and at its end, by their weights."""
+
+    def powers_at(t, y):
+        planar.rhs(t, y, model, run._work, np.zeros_like(y))
+        return np.array(planar_powers(t, y, run.inputs.shaft_speed, model, run._work))
+
+    within = powers_at(run._memory.stage_time[0], run._memory.scratch[INNER_STAGE].copy())
+    return within + (1.0 - WEIGHT) * (powers_at(run.time, run._state) - within)
+
+
 def stepped(run, duration, samples):
     """Advance by equal intervals; return the samples, and the powers of the step before each (`Powers`) in rows, shape (samples, 13).
 
@@ -154,7 +174,9 @@ def stepped(run, duration, samples):
     for _ in range(samples):
         block.append(run.advance(duration / samples).copy())
         if run.scene.level == "planar":
-            powers.append(planar._powers(run.time, run._state, model, run._work, run._memory))
+            powers.append(planar_step_powers(run, model))
+            lost = [block[-1][f"{name}_power"][-1] for name in Powers._fields[1:]]
+            np.testing.assert_allclose(lost, powers[-1][1:], rtol=1e-9, atol=1e-9)
         else:
             slip.rhs(run.time, run._state, model, run._work, np.zeros_like(run._state))
             powers.append(slip_powers(run._state[1], run._state[2:], run.inputs.shaft_speed, model, run._work))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from cold_scenes import OTHERWISE, SCENES
 from complex_step import assert_blocks_agree, complex_step_jacobian
+from dense_arrow import dense_arrow
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference_planar import Reference
@@ -16,11 +17,9 @@ from scipy.integrate import solve_ivp
 from test_planar_reference import GROWN, TIGHTER
 
 from bearing_sim import Simulation, load_scene
-from bearing_sim.levels.spatial import jacobian
 from bearing_sim.levels.spatial import model as spatial
 from bearing_sim.levels.spatial.power import spatial_powers
-from bearing_sim.levels.spatial.state import AT_CAGE, BLOCK, BORDER, CAGE_COLUMNS, CAGE_ROWS, LOCAL, RING, RING_COLUMNS, RING_ROWS
-from bearing_sim.numerics.simd import LANES
+from bearing_sim.levels.spatial.state import BLOCK, BORDER, LAYOUT
 
 BORDER_STATES = 2 * BORDER
 CROWN = np.array([3e-6, 1e-6, 0.0, 0.0, 1e-6, 3e-6])
@@ -208,26 +207,7 @@ def test_the_plain_numpy_model_tells_what_films_and_asperities_do(part):
 def dense_jacobian(run, state):
     model, work, rate = run._model(run.inputs, 1.0), run._work, np.zeros_like(state)
     spatial.rhs_and_jacobian(0.0, state, model, work, rate)
-    size, count = state.size, run._params.rollers.count
-    matrix = np.zeros((size, size))
-    matrix[:BORDER, BORDER:BORDER_STATES] = np.eye(BORDER)
-    matrix[BORDER:BORDER_STATES, :BORDER_STATES] = work.border_own
-    ring = np.concatenate([np.arange(RING), BORDER + np.arange(RING)])
-    cage = np.concatenate([np.arange(RING, BORDER), BORDER + np.arange(RING, BORDER)])
-    for j in range(count):
-        own = BORDER_STATES + j + count * np.arange(BLOCK)
-        slopes = work.jacobian[j // LANES, :, j % LANES]
-        rows = slopes[:RING_ROWS].reshape(5, LOCAL)
-        matrix[own[:4], own[4:8]] = 1.0
-        matrix[own[4:, None], own] = rows[:, :BLOCK]
-        matrix[own[4:, None], ring] = rows[:, BLOCK:AT_CAGE]
-        matrix[own[4:, None], cage] = rows[:, AT_CAGE:]
-        for first, columns, border in ((RING_ROWS, RING_COLUMNS, ring), (CAGE_ROWS, CAGE_COLUMNS, cage)):
-            speeds = border[len(border) // 2 :]
-            rows = slopes[first : first + len(speeds) * columns].reshape(len(speeds), columns)
-            matrix[speeds[:, None], own] = rows[:, :BLOCK]
-            matrix[speeds[:, None], border] += rows[:, BLOCK:]
-    return matrix
+    return dense_arrow(LAYOUT, work, run._params.rollers.count)
 
 
 @pytest.mark.parametrize("variant", [*VARIANTS, *SCENES])
@@ -245,8 +225,8 @@ def test_block_arrow_solution_is_that_of_the_dense_matrix():
     matrix = np.eye(state.size) - shift * dense_jacobian(run, state)
     right = np.random.default_rng(2).normal(size=state.size)
     x = right.copy()
-    assert jacobian.factor(run._work.jacobian, run._work.border_own, shift, run._work.factored)
-    jacobian.solve(run._work.jacobian, run._work.factored, x)
+    assert spatial.factor(shift, run._work)
+    spatial.solve(run._work, x)
     expected = np.linalg.solve(matrix, right)
     np.testing.assert_allclose(x, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
 

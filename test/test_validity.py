@@ -5,6 +5,8 @@ import json
 import math
 import re
 import time
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,10 +18,13 @@ from scipy.integrate import solve_bvp
 from bearing_sim import Simulation, load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.model import validity
 from bearing_sim.model.sample import new_block
 from bearing_sim.model.validity import (
     BY_NAME,
     LAWS,
+    MINIMUM_LOAD,
+    UNWATCHED,
     Conditions,
     Effect,
     Exceedance,
@@ -301,6 +306,114 @@ def test_every_law_has_a_case_a_source_and_an_alternative():
     for law in LAWS:
         assert law.kind.startswith("validity.") and law.source and law.instead and law.quantity, law.name
         assert law.is_condition or law.expected or law.low < law.high, law.name
+
+
+INF, BY_SCENE = math.inf, None
+RANGES = {  # low and high; temperatures in degC
+    "table_correction": (0.0, 1.0),
+    "table_states": (-INF, 0.5),
+    "oil_4109_class": (2.5, 7.5),
+    "oil_4109_base": (-INF, 0.5),
+    "oil_4109_pressure": (0.5, 3.0),
+    "oil_4109_speed": (5.0, 80.0),
+    "oil_4109_temperature": (-5.0, 150.0),
+    "oil_4109_sliding": (-INF, 0.6),
+    "traction_sample_curve": (-INF, 0.5),
+    "eyring_stress": (2.0, 10.0),
+    "eyring_limiting_stress": (0.03, 0.12),
+    "eyring_viscosity": (0.2, INF),
+    "film_speed": (1e-13, 1e-9),
+    "film_load": (1e-5, 1e-3),
+    "film_material": (1e3, 1e4),
+    "rolling_speed": (6e-13, 1e-9),
+    "bath_viscosity": (-INF, 500.0),
+    "bath_speed": (-INF, 1.0),
+    "mixture_fraction": (0.015, 0.05),
+    "mixture_of_jet": (4e5, INF),
+    "jet_flow": (5e5, 6e6),
+    "grease_speed": (-INF, BY_SCENE),
+    "grease_temperature": (BY_SCENE, BY_SCENE),
+    "thin_film": (0.1, INF),
+    "starved_film": (0.2, INF),
+    "churning_reynolds": (0.1, 1e6),
+    "end_face_reynolds": (-INF, 1e7),
+    "cage_gap": (-INF, 0.25),
+    "land_length": (-INF, 0.5),
+    "land_clearance": (-INF, 0.02),
+    "land_laminar": (-INF, 41.0),
+    "land_heating": (-INF, 1.0),
+    "pocket_film": (0.003, 0.05),
+    "hertz_pressure": (-INF, 4.0),
+    "iso_spring_steel": (200.0, 215.0),
+    "roller_slenderness": (0.5, 3.0),
+    "diameter_ratio": (0.01, 0.3),
+    "life_load": (-INF, 0.5),
+    "catalogue_life": (-INF, 1.5),
+    "static_load": (-INF, 1.0),
+    "viscosity_ratio": (-INF, 4.0),
+    "life_laminae": (30.0, INF),
+    "roller_profile": (-INF, 0.5),
+    "oil_temperature": (BY_SCENE, BY_SCENE),
+    "local_temperature": (-INF, BY_SCENE),
+    "polyamide_cage": (-40.0, 120.0),
+    "ring_stabilisation": (-INF, BY_SCENE),
+    "mineral_oil": (-INF, 100.0),
+    "shaft_in_air": (-INF, 4e5),
+    "oil_viscosity": (0.21, 2e7),
+    "class_pressure_viscosity": (1.0, 3000.0),
+    "viscosity_index": (2.0, INF),
+    "speed_factor": (-INF, 3e6),
+    "given_temperatures": (-INF, 0.5),
+    "inner_ring_stress": (-INF, BY_SCENE),
+    "sleeve_seat": (0.0, INF),
+    "shaft_seat": (0.0, INF),
+    "squeeze_film_eccentricity": (-INF, 0.4),
+    "squeeze_film_length": (-INF, 0.5),
+    "squeeze_film_reynolds": (-INF, 10.0),
+    "flange_axial_ratio": (-INF, 0.5),
+    "flange_axial_load": (-INF, 1.0),
+    "flange_gap": (-INF, 1440.0),
+    "limiting_speed": (-INF, BY_SCENE),
+    "estimated_rollers": (-INF, 0.0),
+    "full_complement_play": (-INF, 1.5),
+    "minimum_load": (1.0, INF),
+}
+RANGES_OF_SCENES = [  # limit, overrides, low, high; in SI units where the table above has BY_SCENE
+    ("grease_temperature", ("lubricant={grease: {base_oil: ISO VG 100, nlgi: 2}, temperature: 70 degC}",), -INF, INF),
+    ("grease_temperature", (GREASE,), 253.15, 393.15),
+    ("grease_temperature", ("lubricant={grease: SKF LGMT 2, temperature: 70 degC}",), 243.15, 393.15),
+    ("oil_temperature", VG_320, 253.15, 433.15),
+    ("local_temperature", VG_320, -INF, 433.15),
+    ("ring_stabilisation", ("bearing=NU 210 ECP",), -INF, 393.15),
+    ("ring_stabilisation", ("bearing=NU 210 ECP/S0",), -INF, 423.15),
+    ("ring_stabilisation", ("bearing=NU 210 ECP/S1",), -INF, 473.15),
+    ("ring_stabilisation", ("bearing=NU 210 ECP/S2",), -INF, 523.15),
+    ("inner_ring_stress", ("bearing.material.strength=1500 MPa",), -INF, 1500.0),
+    ("limiting_speed", ("bearing.ratings.limiting_speed=9000 rpm",), -INF, 9000.0),
+]
+
+
+def test_the_ends_of_every_range_are_those_of_this_table():
+    found = {law.name: (law.low, law.high) for law in (*LAWS, MINIMUM_LOAD)}
+    shown = {law.name: law.shown for law in (*LAWS, MINIMUM_LOAD)}
+    ends = {name: tuple(None if callable(end) else shown[name](end) for end in both) for name, both in found.items()}
+    assert ends.keys() == RANGES.keys()
+    for name, (low, high) in RANGES.items():
+        assert [end is None for end in ends[name]] == [low is None, high is None], name
+        assert [end for end in ends[name] if end is not None] == pytest.approx([end for end in (low, high) if end is not None], rel=1e-12, abs=0.0), (
+            name
+        )
+
+
+@pytest.mark.parametrize(("name", "overrides", "low", "high"), RANGES_OF_SCENES)
+def test_a_range_that_depends_on_the_scene_is_the_one_of_this_table(scenes, name, overrides, low, high):
+    assert BY_NAME[name].limits(load_scene(scenes["motor"], list(overrides))) == pytest.approx((low, high), rel=1e-12)
+
+
+def test_every_entry_of_the_table_of_limits_is_used():
+    entries = tomllib.loads((Path(validity.__file__).parents[1] / "physics" / "limits.toml").read_text())
+    assert entries.keys() - {"unwatched"} == {*BY_NAME, MINIMUM_LOAD.name}
+    assert UNWATCHED == tuple(entries["unwatched"].items()) and all(law and why for law, why in UNWATCHED)
 
 
 def test_the_bundled_scenes_are_calm_where_the_papers_laws_are_in_their_range(scenes):

@@ -61,25 +61,25 @@ def _steady() -> Level:
 
 def _slip() -> Level:
     from bearing_sim.levels.common.state_transfer import slip_state_at
-    from bearing_sim.levels.slip import methods, model, state
+    from bearing_sim.levels.slip import model, state
 
     leaves_out = "pocket play, radial vibration, cage whirl, tilt and skew"
-    return Level(state.new_work, model.initial_state, slip_state_at, model.observe, "tr_bdf2", methods.advance, leaves_out)
+    return Level(state.new_work, model.initial_state, slip_state_at, model.observe, "tr_bdf2", model.advance, leaves_out)
 
 
 def _planar() -> Level:
     from bearing_sim.levels.common.state_transfer import planar_state_at
-    from bearing_sim.levels.planar import methods, model, state
+    from bearing_sim.levels.planar import model, state
 
-    return Level(state.new_work, model.initial_state, planar_state_at, model.observe, "tr_bdf2", methods.advance, "tilt and skew")
+    return Level(state.new_work, model.initial_state, planar_state_at, model.observe, "tr_bdf2", model.advance, "tilt and skew")
 
 
 def _spatial() -> Level:
     from bearing_sim.levels.common.state_transfer import spatial_state_at
-    from bearing_sim.levels.spatial import methods, model, state
+    from bearing_sim.levels.spatial import model, state
 
     leaves_out = "the rollers' way along their axes, bending of the rings"
-    return Level(state.new_work, model.initial_state, spatial_state_at, model.observe, "tr_bdf2", methods.advance, leaves_out)
+    return Level(state.new_work, model.initial_state, spatial_state_at, model.observe, "tr_bdf2", model.advance, leaves_out)
 
 
 class _Levels(Mapping):

@@ -1,11 +1,11 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Limits of validity: where each law of the model holds, and what to use beyond.
 
-One entry of `LAWS` for each limit: the quantity, its range, where the range comes from (or the word *assumption*), what to use instead, how
-the quantity follows from a scene and its samples, and what to compute otherwise to see what it does.  A result outside a range is still
-computed, but it carries an exceedance: `outside` finds them all, `bearing_sim.sweep.grading` says by how much each moves slip, life, power and
-film, the command line prints those that move one of them, and `bearing_sim.monitoring.limits` turns all into events.  A new limit is one entry
-here and one case in ``test/test_validity.py``.
+The limits are data beside the laws, ``physics/limits.toml``: the quantity, its range, where the range comes from (or the word *assumption*) and
+what to use instead.  An entry of `LAWS` adds which scenes use the law, how the quantity follows from a scene and its samples, and what to compute
+otherwise to see what it does.  A result outside a range is still computed, but it carries an exceedance: `outside` finds them all,
+`bearing_sim.sweep.grading` says by how much each moves slip, life, power and film, the command line prints those that move one of them, and
+`bearing_sim.monitoring.limits` turns all into events.  A new limit is one entry in each, and one case in ``test/test_validity.py``.
 
 Some limits are judged by more than a scene and its samples, such as by what is kept of a table on disk.  Who knows it passes laws that
 replace those of the same name (see `sample_laws`).
@@ -13,8 +13,10 @@ replace those of the same name (see `sample_laws`).
 
 import functools
 import math
+import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from enum import StrEnum
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -252,6 +254,11 @@ class Conditions:
         return np.fmax(self.samples["equivalent_load"], self.samples["reference_load"])
 
     @property
+    def speed_factor(self) -> np.ndarray:
+        """n d_m [rpm mm]."""
+        return speed_factor(self.scene.bearing, self.samples["shaft_speed"])
+
+    @property
     def radial_load(self) -> np.ndarray:
         """The radial load on the inner ring [N]."""
         return np.hypot(self.samples["load_y"], self.samples["load_z"])
@@ -422,13 +429,14 @@ def _held_at_edge(power: float) -> "Callable[[Exceedance, Conditions], float]":
     return lambda exceedance, at: (exceedance.edge / exceedance.value) ** power
 
 
-_OTHER_FILM = (Variation("Moes' film of all regimes", {"film": _over_all_regimes}),)
+_OTHER_FILM = Variation("Moes' film of all regimes", {"film": _over_all_regimes})
 _EYRING = Variation("traction by lubricant.traction eyring", overrides=("lubricant.traction=eyring",))
-_TWICE_THE_TRACTION = Variation("twice the traction", overrides=("lubricant.traction_scale=2",))
-_HALF_THE_TRACTION = Variation("half the traction", overrides=("lubricant.traction_scale=0.5",))
-_OTHER_TRACTIONS = (_TWICE_THE_TRACTION, _HALF_THE_TRACTION)  # assumption: by so much curves of oils of one kind differ
+_OTHER_TRACTIONS = (  # assumption: by so much curves of oils of one kind differ
+    Variation("twice the traction", overrides=("lubricant.traction_scale=2",)),
+    Variation("half the traction", overrides=("lubricant.traction_scale=0.5",)),
+)
 _FACTOR_OF_TWO = (Variation("twice the drag", {"drag": 2.0}), Variation("half the drag", {"drag": 0.5}))
-_NO_JET = (Variation("drag as of circulating oil", overrides=("lubricant.supply=circulating", "lubricant.mixture_fraction=null")),)
+_NO_JET = Variation("drag as of circulating oil", overrides=("lubricant.supply=circulating", "lubricant.mixture_fraction=null"))
 
 
 Limit = float | Callable[[Scene], float]
@@ -495,11 +503,12 @@ class Law(NamedTuple):
 
     def counted_text(self, values: Sequence[float]) -> str:
         """Return the warning for several shown values outside of the range."""
-        said = self.quantity
-        if not self.is_condition:
-            ends = dict.fromkeys(number(value) for value in (min(values), max(values)))
-            said = f"{self.quantity} is {' to '.join(ends)} {unit_sign(self.unit)}".rstrip()
+        said = self.statement(*dict.fromkeys(number(value) for value in (min(values), max(values))))
         return f"{self.name}: {self.law}: {said}; expected {self.general_range} ({self.source}); {self.instead}"
+
+    def statement(self, *values: str) -> str:
+        """Return the quantity with one or several shown values; a condition has none."""
+        return self.quantity if self.is_condition else f"{self.quantity} is {' to '.join(values)} {unit_sign(self.unit)}".rstrip()
 
     def shown(self, value: float) -> float:
         """Return a value in the unit of the law."""
@@ -544,10 +553,12 @@ class Exceedance(NamedTuple):
     @property
     def finding(self) -> str:
         """What was found and what was expected."""
-        law, expected = self.law, self.law.range_text(self.low, self.high)
-        if law.is_condition:
-            return f"{law.quantity}; expected {expected} ({law.source})"
-        return f"{law.quantity} is {number(law.shown(self.value))}{f' {unit_sign(law.unit)}'.rstrip()}; expected {expected} ({law.source})"
+        return f"{self._statement} ({self.law.source})"
+
+    @property
+    def _statement(self) -> str:
+        law = self.law
+        return f"{law.statement(number(law.shown(self.value)))}; expected {law.range_text(self.low, self.high)}"
 
     @property
     def text(self) -> str:
@@ -557,9 +568,7 @@ class Exceedance(NamedTuple):
     @property
     def note(self) -> str:
         """Grade, name, value, range and effect in a line."""
-        law = self.law
-        value = "" if law.is_condition else f" is {number(law.shown(self.value))}{f' {unit_sign(law.unit)}'.rstrip()}"
-        return f"{self.grade}: {law.name}: {law.quantity}{value}; expected {law.range_text(self.low, self.high)}; {self.said_effect}"
+        return f"{self.grade}: {self.law.name}: {self._statement}; {self.said_effect}"
 
     @property
     def short(self) -> str:
@@ -573,15 +582,16 @@ class Exceedance(NamedTuple):
 
     def report(self) -> dict[str, object]:
         """Return the fields for JSON."""
-        law, condition = self.law, self.law.is_condition
+        law = self.law
+        value, low, high = (None if law.is_condition else law.shown(each) for each in (self.value, self.low, self.high))
         return {
             "name": law.name,
             "law": law.law,
             "quantity": law.quantity,
-            "value": None if condition else law.shown(self.value),
+            "value": value,
             "unit": law.unit,
-            "low": None if condition else law.shown(self.low),
-            "high": None if condition else law.shown(self.high),
+            "low": low,
+            "high": high,
             "expected": law.range_text(self.low, self.high),
             "source": law.source,
             "instead": law.instead,
@@ -606,10 +616,6 @@ def _has_mixture(scene: Scene) -> bool:
 
 def _has_given_mixture(scene: Scene) -> bool:
     return _has_mixture(scene) and scene.lubricant.mixture_fraction is not None
-
-
-def _has_mixture_by_flow(scene: Scene) -> bool:
-    return scene.lubricant.mixture_fraction is None
 
 
 def _has_grease(scene: Scene) -> bool:
@@ -654,6 +660,14 @@ def _has_lands(scene: Scene) -> bool:
     return scene.bearing.cage.has_lands
 
 
+def _is_cold(scene: Scene) -> bool:
+    return scene.bearing.dimensions_at == "cold"
+
+
+def _has_axial_load(scene: Scene) -> bool:
+    return scene.operating.axial_load != 0.0
+
+
 def _always(scene: Scene) -> bool:
     return True
 
@@ -665,13 +679,13 @@ def _by_laminae(scene: Scene) -> bool:
 def _flange_load_share(at: "Conditions") -> np.ndarray:
     """Return the axial load over the least that limits it all the time, while the shaft turns."""
     scene, samples = at.scene, at.samples
-    heat = heat_limits(scene, samples["shaft_speed"], np.hypot(samples["load_y"], samples["load_z"]), samples["viscosity_ratio"])
+    heat = heat_limits(scene, samples["shaft_speed"], at.radial_load, samples["viscosity_ratio"])
     return at.while_turning(abs(scene.operating.axial_load) / np.maximum(np.fmin(heat, strength_limit(scene.bearing)), 1e-9))
 
 
 def _share_of_minimum_load(at: "Conditions") -> np.ndarray:
-    law, samples = minimum_load_law(at.scene.bearing), at.samples
-    return np.hypot(samples["load_y"], samples["load_z"]) / (law.at_rest + law.by_speed * np.abs(samples["shaft_speed"]))
+    law = minimum_load_law(at.scene.bearing)
+    return at.radial_load / (law.at_rest + law.by_speed * np.abs(at.samples["shaft_speed"]))
 
 
 def _has_polyamide_cage(scene: Scene) -> bool:
@@ -717,12 +731,6 @@ def _nominal_speed_factor(scene: Scene) -> float:
     return float(speed_factor(scene.bearing, scene.operating.shaft_speed)) if scene.operating.shaft_speed else math.nan
 
 
-# The publication of the fit could not be read.  Other rigs for oils of its kind: K. Deng et al. with oils 4010, 4050 and 4102, Wang Yanshuang et
-# al. 2019 with oil 4129; the theory of traction has both.  A product of powers is trusted somewhat beyond what was measured.
-_RIGS = "assumption: {} on rigs for aviation oils, widened {}"
-_OTHER_TRACTION = "use lubricant.traction.law eyring with the oil's own data, or constant or kragelskii with coefficients measured for this oil"
-
-
 def towards_ends(conditions: Conditions, span: Span | None = None) -> np.ndarray:
     """Return how far operating points are towards the ends of a table of level ``steady``; more than 1 beyond them, NaN at rest.
 
@@ -734,7 +742,7 @@ def towards_ends(conditions: Conditions, span: Span | None = None) -> np.ndarray
     span, samples = span or span_of(conditions.scene), conditions.samples
     middle, half = 0.5 * (span.minimum_temperature + span.maximum_temperature), 0.5 * (span.maximum_temperature - span.minimum_temperature)
     temperature = np.abs(samples["oil_temperature"] - middle) / max(half, _SAME_OIL)
-    ratios = np.abs(samples["shaft_speed"]) / span.maximum_speed, np.hypot(samples["load_y"], samples["load_z"]) / span.maximum_load, temperature
+    ratios = np.abs(samples["shaft_speed"]) / span.maximum_speed, conditions.radial_load / span.maximum_load, temperature
     return conditions.while_turning(np.maximum.reduce(ratios))
 
 
@@ -742,990 +750,261 @@ def _has_corrected_table(scene: Scene) -> bool:
     return scene.level == "steady" and scene.table.correction != "none"
 
 
+_TABLE = tomllib.loads((Path(__file__).resolve().parents[1] / "physics" / "limits.toml").read_text("utf-8"))
+
+
+def _law(name: str, applies: Callable[[Scene], bool], value: Callable, *variations: Variation, of_scene=False, low=None, high=None) -> Law:
+    """Return the limit of a name in the table of limits; ends of its range that depend on the scene are functions."""
+    entry = _TABLE[name]
+    offset = ZERO_CELSIUS if entry.get("unit") == "degC" else 0.0
+    entry = {"unit": ""} | entry | {"low": low or entry.get("low", -math.inf) + offset, "high": high or entry.get("high", math.inf) + offset}
+    return Law(name, **entry, applies=applies, value=value, of_scene=of_scene, variations=variations)
+
+
+def _is_as_of_jets(fraction: float) -> bool:
+    return _TABLE["mixture_fraction"]["low"] <= fraction <= _TABLE["mixture_fraction"]["high"]
+
+
 LAWS = (
-    Law(
-        "table_correction",
-        "validity.level",
-        "corrected table of level steady",
-        "shaft speed, load or oil temperature, over the ends of the table",
-        "",
-        0.0,
-        1.0,
-        "the table: beyond it points are solved for without what level planar adds",
-        "widen the scene's block table, or use level planar",
-        _has_corrected_table,
-        towards_ends,
-    ),
-    Law(
-        "table_states",
-        "validity.level",
-        "corrected table of level steady",
-        "the difference of slip between two states that level planar has at this operating point",
-        "points",
-        -math.inf,
-        0.5,
-        "from ideal rolling level planar settles in the state that the table has, from more slip in another",
-        "use level planar",
-        _has_corrected_table,
-        lambda at: at.while_turning(np.zeros(len(at.samples))),  # in place of which comes that of a table: `bearing_sim.estimation.two_states`
-    ),
-    Law(
-        "oil_4109_class",
-        "validity.traction",
-        "traction law oil_4109",
-        "the oil's viscosity at 100 degC",
-        "mm^2/s",
-        2.5,
-        7.5,
-        "assumption: fitted to one aviation turbine oil; oils of its class have 3 to 7 mm^2/s",
-        _OTHER_TRACTION,
-        _with_traction(Oil4109Traction),
-        _class_viscosity,
-        of_scene=True,
-        variations=(_EYRING,),
-    ),
-    Law(
-        "oil_4109_base",
-        "validity.traction",
-        "traction law oil_4109",
-        "the oil is not an aviation turbine oil",
-        "",
-        -math.inf,
-        0.5,
-        "fitted to one aviation oil (Wang Yanshuang; Deng 2017, ref. 17)",
-        "leave lubricant.traction out, which takes the law eyring with the strength of this kind of base oil, or give coefficients measured for "
-        "this oil",
-        _with_traction(Oil4109Traction),
-        lambda scene: float(scene.lubricant.oil.base != "aviation"),
-        of_scene=True,
-        expected="an oil whose base is aviation",
-        variations=(_EYRING,),
-    ),
-    Law(
-        "oil_4109_pressure",
-        "validity.traction",
-        "traction law oil_4109",
-        "the largest Hertz pressure",
-        "GPa",
-        0.5,
-        3.0,
-        _RIGS.format("1.0 to 1.5 GPa", "by a factor of 2"),
-        _OTHER_TRACTION,
-        _with_traction(Oil4109Traction),
-        lambda at: at.while_turning(1e-9 * at.pressure),
-        variations=_OTHER_TRACTIONS,
-    ),
-    Law(
-        "oil_4109_speed",
-        "validity.traction",
-        "traction law oil_4109",
-        "the rolling speed of the most heavily loaded contact",
-        "m/s",
-        5.0,
-        80.0,
-        _RIGS.format("about 10 to 40 m/s", "by a factor of 2"),
-        _OTHER_TRACTION,
-        _with_traction(Oil4109Traction),
-        lambda at: at.rolling_speed,
-        variations=_OTHER_TRACTIONS,
-    ),
-    Law(
-        "oil_4109_temperature",
-        "validity.traction",
-        "traction law oil_4109",
-        "the oil temperature",
-        "degC",
-        -5.0 + ZERO_CELSIUS,
-        150.0 + ZERO_CELSIUS,
-        _RIGS.format("25 to 120 degC", "by 30 K"),
-        _OTHER_TRACTION,
-        _with_traction(Oil4109Traction),
-        lambda at: at.while_turning(at.samples["oil_temperature"]),
-        variations=_OTHER_TRACTIONS,
-    ),
-    Law(
-        "oil_4109_sliding",
-        "validity.traction",
-        "traction law oil_4109",
-        "the slide-to-roll ratio of the most heavily loaded contact",
-        "",
-        -math.inf,
-        0.6,
-        _RIGS.format("0 to 0.3", "by a factor of 2"),
-        "take the slip for gross sliding, not for its value; heating by sliding then decides: use lubricant.traction.law eyring",
-        _with_traction(Oil4109Traction),
-        lambda at: at.slide_to_roll,
-        variations=_OTHER_TRACTIONS,
-    ),
-    Law(
-        "traction_sample_curve",
-        "validity.traction",
-        "traction law constant or kragelskii",
-        "its coefficients are the defaults, a sample curve of no particular oil",
-        "",
-        -math.inf,
-        0.5,
-        "assumption: the curve has no range but the oil and conditions that it was measured with",
-        "give the coefficients of your oil, measured at the pressure, speed and temperature of the bearing",
-        _with_traction(ConstantTraction, KragelskiiTraction),
-        _is_sample_curve,
-        of_scene=True,
-        expected="coefficients of the oil in use",
-        variations=(_EYRING,),
-    ),
-    Law(
+    _law("table_correction", _has_corrected_table, towards_ends),
+    # in place of whose quantity comes that of a table: `bearing_sim.estimation.two_states`
+    _law("table_states", _has_corrected_table, lambda at: at.while_turning(np.zeros(len(at.samples)))),
+    _law("oil_4109_class", _with_traction(Oil4109Traction), _class_viscosity, _EYRING, of_scene=True),
+    _law("oil_4109_base", _with_traction(Oil4109Traction), lambda scene: float(scene.lubricant.oil.base != "aviation"), _EYRING, of_scene=True),
+    _law("oil_4109_pressure", _with_traction(Oil4109Traction), lambda at: at.while_turning(1e-9 * at.pressure), *_OTHER_TRACTIONS),
+    _law("oil_4109_speed", _with_traction(Oil4109Traction), lambda at: at.rolling_speed, *_OTHER_TRACTIONS),
+    _law("oil_4109_temperature", _with_traction(Oil4109Traction), lambda at: at.while_turning(at.samples["oil_temperature"]), *_OTHER_TRACTIONS),
+    _law("oil_4109_sliding", _with_traction(Oil4109Traction), lambda at: at.slide_to_roll, *_OTHER_TRACTIONS),
+    _law("traction_sample_curve", _with_traction(ConstantTraction, KragelskiiTraction), _is_sample_curve, _EYRING, of_scene=True),
+    _law(
         "eyring_stress",
-        "validity.traction",
-        "traction law eyring",
-        "the Eyring stress",
-        "MPa",
-        2.0,
-        10.0,
-        "assumption: values in use for ester and mineral oils, see the theory of traction",
-        "take the stress from a measured traction curve",
         _with_eyring_field("eyring_stress"),
         lambda scene: 1e-6 * scene.lubricant.traction.eyring_stress,
+        Variation("the stress at the end of its range", overrides=lambda each: (f"lubricant.traction.eyring_stress={each.edge} MPa",)),
         of_scene=True,
-        variations=(Variation("the stress at the end of its range", overrides=lambda each: (f"lubricant.traction.eyring_stress={each.edge} MPa",)),),
     ),
-    Law(
+    _law(
         "eyring_limiting_stress",
-        "validity.traction",
-        "traction law eyring",
-        "limiting shear stress over pressure",
-        "",
-        0.03,
-        0.12,
-        "assumption: values in use for ester and mineral oils, see the theory of traction",
-        "take the ratio from the maximum of a measured traction curve",
         _with_eyring_field("limiting_ratio"),
         lambda scene: scene.lubricant.traction.limiting_ratio,
+        Variation("the ratio at the end of its range", overrides=lambda each: (f"lubricant.traction.limiting_ratio={each.edge}",)),
         of_scene=True,
-        variations=(Variation("the ratio at the end of its range", overrides=lambda each: (f"lubricant.traction.limiting_ratio={each.edge}",)),),
     ),
-    Law(
-        "eyring_viscosity",
-        "validity.traction",
-        "traction law eyring, viscosity under pressure by Roelands",
-        "the oil's viscosity",
-        "mPa s",
-        0.2,
-        math.inf,
-        "assumption: three times the pole of Roelands' law (1966) at 0.063 mPa s, near which it gives no pressure dependence",
-        "use lubricant.traction.law constant or kragelskii with measured coefficients",
-        _with_traction(EyringTraction),
-        lambda at: at.while_turning(1e3 * at.viscosity),
-    ),
-    Law(
-        "film_speed",
-        "validity.film",
-        "film formulas of Dowson and Higginson, Dowson and Toyoda",
-        "the speed parameter U = eta_0 u/(E' R) of the most heavily loaded contact",
-        "",
-        1e-13,
-        1e-9,
-        "assumption: numerical solutions behind such formulas go to about 1e-10, the originals were not read; widened because to 1e-9 Moes' film of "
-        "all regimes is within a tenth of this one at W from 1e-4 to 1e-3",
-        "read the film as an order of magnitude; at high U oil supply and heating of the inlet limit the film",
-        _has_film,
-        lambda at: at.film_speed,
-        variations=_OTHER_FILM,
-    ),
-    Law(
-        "film_load",
-        "validity.film",
-        "film formulas of Dowson and Higginson, Dowson and Toyoda",
-        "the load parameter W = Q/(E' R L) of the most heavily loaded contact",
-        "",
-        1e-5,
-        1e-3,
-        "assumption: range of the numerical solutions behind such formulas; the originals were not read",
-        "at low W the contact is rigid, and the film thicker than computed; at high W lower the load",
-        _has_film,
-        lambda at: at.film_load,
-        variations=_OTHER_FILM,
-    ),
-    Law(
-        "film_material",
-        "validity.film",
-        "film formulas of Dowson and Higginson, Dowson and Toyoda",
-        "the material parameter G = alpha E'",
-        "",
-        1e3,
-        1e4,
-        "assumption: steel with oils; Dowson and Higginson's solutions are for G of 2500 and 5000",
-        "for a fluid that hardly thickens under pressure, such as water, use a formula of the isoviscous regime",
-        _has_film,
-        lambda at: at.film_material,
-        variations=_OTHER_FILM,
-    ),
-    Law(
+    _law("eyring_viscosity", _with_traction(EyringTraction), lambda at: at.while_turning(1e3 * at.viscosity)),
+    _law("film_speed", _has_film, lambda at: at.film_speed, _OTHER_FILM),
+    _law("film_load", _has_film, lambda at: at.film_load, _OTHER_FILM),
+    _law("film_material", _has_film, lambda at: at.film_material, _OTHER_FILM),
+    _law(
         "rolling_speed",
-        "validity.film",
-        "hydrodynamic resistance to rolling",
-        "the speed parameter 2 eta_0 u/(E' R) of the most heavily loaded contact",
-        "",
-        6e-13,
-        1e-9,
-        "assumption: N. Biboulet and L. Houpert, Proc. IMechE J 224 (2010) 765, computed to 1.6e-10; widened because to 1e-9 the ratio to SKF's "
-        "model stays as it is inside, and their elastic resistance is 1.3 to 1.65 times the one in use, inside 0.6 to 1.4 times",
-        "read rolling powers as good to a factor of 1.5; at high speed heating and supply of oil limit them, see "
-        "lubricant.starvation",
         lambda scene: scene.lubricant.rolling_resistance.law != "none",
         lambda at: 2.0 * at.film_speed,
-        variations=(
-            Variation(
-                "Biboulet and Houpert's elastic resistance, equal at the end of the range",
-                {"rolling_resistance": _held_at_edge(-_ELASTIC_EXPONENTS)},
-            ),
+        Variation(
+            "Biboulet and Houpert's elastic resistance, equal at the end of the range",
+            {"rolling_resistance": _held_at_edge(-_ELASTIC_EXPONENTS)},
         ),
     ),
-    Law(
-        "bath_viscosity",
-        "validity.drag",
-        "drag in an oil bath",
-        "the kinematic viscosity",
-        "mm^2/s",
-        -math.inf,
-        500.0,
-        "SKF, The SKF model for calculating the frictional moment: for levels up to half of D",
-        "warm the oil, or read churning as an order of magnitude",
-        _has_bath,
-        lambda at: at.while_turning(1e6 * at.viscosity / at.density),
-        variations=_FACTOR_OF_TWO,
-    ),
-    Law(
+    _law("bath_viscosity", _has_bath, lambda at: at.while_turning(1e6 * at.viscosity / at.density), *_FACTOR_OF_TWO),
+    _law(
         "bath_speed",
-        "validity.drag",
-        "drag in an oil bath",
-        "the shaft speed over bearing.ratings.reference_speed",
-        "",
-        -math.inf,
-        1.0,
-        "SKF, The SKF model for calculating the frictional moment: its diagram ends at the reference speed",
-        "lower the speed, or supply the oil by jet",
         lambda scene: _has_bath(scene) and scene.bearing.ratings.reference_speed is not None,
         lambda at: np.abs(at.samples["shaft_speed"]) / at.scene.bearing.ratings.reference_speed,
-        variations=(Variation("drag as at the reference speed", {"drag": _held_at_edge(2.0)}),),
+        Variation("drag as at the reference speed", {"drag": _held_at_edge(2.0)}),
     ),
-    Law(
+    _law(
         "mixture_fraction",
-        "validity.drag",
-        "drag of the oil-air mixture",
-        "lubricant.mixture_fraction",
-        "",
-        0.015,
-        0.05,
-        "published for jet-lubricated high-speed bearings, see the theory of drag",
-        "say how the oil is supplied with lubricant.supply (circulating, oil_bath, oil_air, grease), or calibrate the fraction with bearing-sim "
-        "calibrate, or give its range to bearing-sim uncertainty",
         _has_given_mixture,
         lambda scene: scene.lubricant.mixture_fraction,
+        Variation("the fraction at the end of its range", overrides=lambda each: (f"lubricant.mixture_fraction={each.edge}",)),
         of_scene=True,
-        variations=(
-            Variation("the fraction at the end of its range", overrides=lambda each: (f"lubricant.mixture_fraction={each.edge}",)),
-        ),
     ),
-    Law(
+    _law(
         "mixture_of_jet",
-        "validity.drag",
-        "drag of the oil-air mixture",
-        "n d_m at operating.shaft_speed",
-        "rpm mm",
-        4e5,
-        math.inf,
-        "assumption: published fractions are of jets, which makers advise from about 400,000; slower bearings run in a bath, in circulating oil or "
-        "in grease",
-        "say how the oil is supplied with lubricant.supply (circulating, oil_bath, oil_air, grease), or calibrate the fraction with bearing-sim "
-        "calibrate, or give its range to bearing-sim uncertainty",
-        lambda scene: _has_given_mixture(scene) and 0.015 <= scene.lubricant.mixture_fraction <= 0.05,
+        lambda scene: _has_given_mixture(scene) and _is_as_of_jets(scene.lubricant.mixture_fraction),
         _nominal_speed_factor,
+        _NO_JET,
         of_scene=True,
-        variations=_NO_JET,
     ),
-    Law(
-        "jet_flow",
-        "validity.drag",
-        "fraction of oil in the mixture by the flow of the jet",
-        "n d_m",
-        "rpm mm",
-        5e5,
-        6e6,
-        "R. J. Parker, NASA TP-2275 (1984): 1 to 3 million; widened by a factor of 2 (assumption)",
-        "take lubricant.supply circulating, or give lubricant.mixture_fraction",
-        _has_mixture_by_flow,
-        lambda at: at.while_turning(speed_factor(at.scene.bearing, at.samples["shaft_speed"])),
-        variations=_FACTOR_OF_TWO,
-    ),
-    Law(
-        "grease_speed",
-        "validity.drag",
-        "grease that has been run in",
-        "n d_m",
-        "rpm mm",
-        -math.inf,
-        _grease_speed_factor,
-        "lubricant.grease.speed_factor; without one 350,000 of mineral and 500,000 of synthetic base oils, half of it above 250 mPa s at 40 degC "
-        "(assumption: usual of makers' data sheets)",
-        "lower the speed, take a grease of a thinner or synthetic base oil, or lubricate with oil",
-        _has_grease,
-        lambda at: at.while_turning(speed_factor(at.scene.bearing, at.samples["shaft_speed"])),
-        expected="at most lubricant.grease.speed_factor, or 350,000 of mineral and 500,000 rpm mm of synthetic base oils",
-    ),
-    Law(
+    _law("jet_flow", lambda scene: scene.lubricant.mixture_fraction is None, lambda at: at.while_turning(at.speed_factor), *_FACTOR_OF_TWO),
+    _law("grease_speed", _has_grease, lambda at: at.while_turning(at.speed_factor), high=_grease_speed_factor),
+    _law(
         "grease_temperature",
-        "validity.oil",
-        "grease that has been run in",
-        "the temperature of the grease",
-        "degC",
-        lambda scene: -math.inf if scene.lubricant.grease.lowest_temperature is None else scene.lubricant.grease.lowest_temperature,
-        lambda scene: math.inf if scene.lubricant.grease.highest_temperature is None else scene.lubricant.grease.highest_temperature,
-        "lubricant.grease.lowest_temperature and highest_temperature",
-        "take a grease for this temperature; below its lowest one a grease does not bleed and its drag is not modelled",
         _has_grease,
         lambda at: at.samples["oil_temperature"],
-        expected="temperatures that the grease is for",
+        low=lambda scene: -math.inf if scene.lubricant.grease.lowest_temperature is None else scene.lubricant.grease.lowest_temperature,
+        high=lambda scene: math.inf if scene.lubricant.grease.highest_temperature is None else scene.lubricant.grease.highest_temperature,
     ),
-    Law(
-        "thin_film",
-        "validity.film",
-        "films of the raceways",
-        "the viscosity ratio kappa",
-        "",
-        0.1,
-        math.inf,
-        "ISO 281:2007, 9.3.3.2: below 0.1 films separate nothing",
-        "surfaces touch: they wear, and neither a life by fatigue nor a film says how long; take a thicker oil, one with EP or AW additives, or a "
-        "higher speed",
-        _always,
-        lambda at: at.while_running(at.samples["viscosity_ratio"]),
-    ),
-    Law(
+    _law("thin_film", _always, lambda at: at.while_running(at.samples["viscosity_ratio"])),
+    _law(
         "starved_film",
-        "validity.film",
-        "starved contacts",
-        "SKF's replenishment factor",
-        "",
-        0.2,
-        math.inf,
-        "N. Biboulet and L. Houpert, Proc. IMechE J 224 (2010) 765, eq. 44, computed from S = 2 on; below, film and resistance are held at that",
-        "read film, kappa and a_ISO as upper bounds; take a thinner base oil or a lower speed, or supply more oil",
         lambda scene: scene.lubricant.starvation.law != "none",
         lambda at: at.while_turning(at.replenishment),
-        variations=(Variation("contacts with full inlets", overrides=("lubricant.starvation=none",)),),
+        Variation("contacts with full inlets", overrides=("lubricant.starvation=none",)),
     ),
-    Law(
-        "churning_reynolds",
-        "validity.drag",
-        "drag of rollers in the mixture",
-        "the Reynolds number of a roller",
-        "",
-        0.1,
-        1e6,
-        "table of the drag coefficient of a cylinder, H. Schlichting, Boundary-Layer Theory",
-        "read churning as an order of magnitude; calibrate lubricant.mixture_fraction at this speed and temperature",
-        _has_mixture,
-        lambda at: at.churning_reynolds,
-        variations=_FACTOR_OF_TWO,
-    ),
-    Law(
-        "end_face_reynolds",
-        "validity.drag",
-        "drag of the cage's end faces",
-        "the Reynolds number of the end faces",
-        "",
-        -math.inf,
-        1e7,
-        "assumption: the 1/5th power of T. von Karman (1921) follows a velocity profile that holds to about this number",
-        "read the windage of the end faces as an order of magnitude",
-        _always,
-        lambda at: at.end_face_reynolds,
-        variations=_FACTOR_OF_TWO,
-    ),
-    Law(
-        "cage_gap",
-        "validity.drag",
-        "torque between cage and rings",
-        "the widest gap beside the cage over its radius",
-        "",
-        -math.inf,
-        0.25,
-        "assumption: G. I. Taylor's (1923) critical number 41 is of a narrow gap; it is about 47 at 0.25",
-        "give the cage's inner_radius and outer_radius; in a wide gap the torque of the faces is uncertain by its half",
-        _always,
-        _widest_gap,
-        of_scene=True,
-        variations=(Variation("drag greater by its half", {"drag": 1.5}),),
-    ),
-    Law(
-        "land_length",
-        "validity.land",
-        "film of the guide lands",
-        "the width of one land over the land's diameter",
-        "",
-        -math.inf,
-        0.5,
-        "assumption: side flow governs a short bearing, G. B. DuBois and F. W. Ocvirk, NACA Report 1157 (1953)",
-        "reduce bearing.cage.guide_land_width to the width that carries; the forces of a wider land are smaller than computed",
-        _has_lands,
-        lambda scene: scene.bearing.cage.guide_land_width / (2.0 * scene.bearing.cage.land_radius),
-        of_scene=True,
-    ),
-    Law(
-        "land_clearance",
-        "validity.land",
-        "film of the guide lands",
-        "the guide clearance over the land's radius",
-        "",
-        -math.inf,
-        0.02,
-        "assumption: a film is thin, as Reynolds' equation presupposes, at a few hundredths at most",
-        "check bearing.cage.guide_clearance, which is radial; a cage so loose is guided by its rollers: bearing.cage.guidance roller",
-        _has_lands,
-        lambda scene: scene.bearing.cage.guide_clearance / scene.bearing.cage.land_radius,
-        of_scene=True,
-    ),
-    Law(
+    _law("churning_reynolds", _has_mixture, lambda at: at.churning_reynolds, *_FACTOR_OF_TWO),
+    _law("end_face_reynolds", _always, lambda at: at.end_face_reynolds, *_FACTOR_OF_TWO),
+    _law("cage_gap", _always, _widest_gap, Variation("drag greater by its half", {"drag": 1.5}), of_scene=True),
+    _law("land_length", _has_lands, lambda scene: scene.bearing.cage.guide_land_width / (2.0 * scene.bearing.cage.land_radius), of_scene=True),
+    _law("land_clearance", _has_lands, lambda scene: scene.bearing.cage.guide_clearance / scene.bearing.cage.land_radius, of_scene=True),
+    _law(
         "land_laminar",
-        "validity.land",
-        "film of the guide lands",
-        "the Taylor number in the lands",
-        "",
-        -math.inf,
-        41.0,
-        "G. I. Taylor (1923); judged where vortices add more than a tenth to what brakes the cage",
-        "the drag of the lands is larger than computed, by 1.3 (Ta/41)^0.539; set bearing.cage.land_vortices to true",
         lambda scene: _has_lands(scene) and not scene.bearing.cage.land_vortices,
         lambda at: at.land_taylor,
-        variations=(Variation("drag of lands with vortices", {"lands": lambda each, at: float(vortex_factor(each.value))}),),
+        Variation("drag of lands with vortices", {"lands": lambda each, at: float(vortex_factor(each.value))}),
     ),
-    Law(
+    _law(
         "land_heating",
-        "validity.land",
-        "film of the guide lands",
-        "the Nahme-Griffith number beta eta U^2/k in the lands",
-        "",
-        -math.inf,
-        1.0,
-        "R. Nahme (1940): between walls of one temperature the oil's own heat takes 8 % off the shear stress at 1; judged where it takes more than a "
-        "tenth off what brakes the cage",
-        "the drag of the lands is smaller than computed, by arsinh(x)/(x sqrt(1 + x^2)), x^2 = Na/8, and by more where a wall lets no heat through",
         _has_lands,
         lambda at: at.land_nahme,
-        variations=(Variation("drag of lands that heat themselves", {"lands": lambda each, at: float(heated_shear(each.value))}),),
+        Variation("drag of lands that heat themselves", {"lands": lambda each, at: float(heated_shear(each.value))}),
     ),
-    Law(
+    _law(
         "pocket_film",
-        "validity.pocket",
-        "film of the pockets, 67 N at the end of the clearance",
-        "the pocket clearance over the roller diameter",
-        "",
-        0.003,
-        0.05,
-        "assumption: Deng 2017, eq. 10, gives 67 N for 7 mm rollers without a source; clearances in use are 0.05 to 0.3 mm there",
-        "give bearing.cage.pocket_film_force for this clearance, or check bearing.cage.pocket_clearance",
         lambda scene: scene.cage_whirls,
         lambda scene: scene.bearing.cage.pocket_clearance / scene.bearing.roller.diameter,
         of_scene=True,
     ),
-    Law(
-        "hertz_pressure",
-        "validity.contact",
-        "elastic line contact of Palmgren and Hertz",
-        "the largest Hertz pressure",
-        "GPa",
-        -math.inf,
-        4.0,
-        "ISO 76: C_0 is the load of 4 GPa, which dents raceways by a ten-thousandth of the roller diameter",
-        "lower the load or take a larger bearing; beyond it steel yields, loads spread and the life by fatigue says nothing",
-        _always,
-        lambda at: 1e-9 * at.pressure,
-    ),
-    Law(
+    _law("hertz_pressure", _always, lambda at: 1e-9 * at.pressure),
+    _law(
         "iso_spring_steel",
-        "validity.contact",
-        "contact spring of ISO/TS 16281",
-        "Young's modulus",
-        "GPa",
-        200.0,
-        215.0,
-        "ISO/TS 16281:2008: c_L is for bearing steel",
-        "use bearing.contact.spring palmgren, which takes the elastic constants of bearing.material",
         lambda scene: scene.bearing.contact.spring == "iso",
         lambda scene: 1e-9 * scene.bearing.material.youngs_modulus,
-        of_scene=True,
-        variations=(Variation("the spring of Palmgren", overrides=("bearing.contact.spring=palmgren",)),),
-    ),
-    Law(
-        "roller_slenderness",
-        "validity.contact",
-        "line contact, load ratings of cylindrical rollers",
-        "roller length over diameter",
-        "",
-        0.5,
-        3.0,
-        "ISO 5593: a longer roller is a needle; the lower end is an assumption",
-        "for needles and very short rollers take load ratings of the maker; skew and edge loads then decide",
-        _always,
-        lambda scene: scene.bearing.roller.length / scene.bearing.roller.diameter,
+        Variation("the spring of Palmgren", overrides=("bearing.contact.spring=palmgren",)),
         of_scene=True,
     ),
-    Law(
-        "diameter_ratio",
-        "validity.life",
-        "load ratings of ISO 281",
-        "roller diameter over pitch diameter, gamma",
-        "",
-        0.01,
-        0.30,
-        "ISO 281:2007, table of f_c for radial roller bearings",
-        "take the load rating of the maker",
-        _always,
-        lambda scene: scene.bearing.diameter_ratio,
-        of_scene=True,
-    ),
-    Law(
-        "life_load",
-        "validity.life",
-        "rating life of ISO 281 and ISO/TS 16281",
-        "equivalent load over the dynamic load rating, P/C_r",
-        "",
-        -math.inf,
-        0.5,
-        "ISO 281:2007: the life equations hold to P = 0.5 C_r",
-        "lower the load or take a larger bearing; beyond it the life is shorter than computed",
-        _always,
-        lambda at: at.while_turning(at.equivalent_load / rate(at.scene.bearing).dynamic),
-    ),
-    Law(
+    _law("roller_slenderness", _always, lambda scene: scene.bearing.roller.length / scene.bearing.roller.diameter, of_scene=True),
+    _law("diameter_ratio", _always, lambda scene: scene.bearing.diameter_ratio, of_scene=True),
+    _law("life_load", _always, lambda at: at.while_turning(at.equivalent_load / rate(at.scene.bearing).dynamic)),
+    _law(
         "catalogue_life",
-        "validity.life",
-        "rating life of ISO 281",
-        "the rollers' reference load over the radial load, P_ref/P",
-        "",
-        -math.inf,
-        1.5,
-        "assumption: ISO 281 is for normal clearance and alignment, where the two are alike; it takes no account of preload, lobes, "
-        "centrifugal forces or tilt",
-        "use life.method iso16281, which counts what each roller carries",
         lambda scene: scene.life.method == "iso281",
         lambda at: at.while_turning(at.samples["reference_load"] / np.maximum(at.samples["equivalent_load"], _LOADED_FROM)),
-        variations=(Variation("the life of ISO/TS 16281", overrides=("life.method=iso16281",)),),
+        Variation("the life of ISO/TS 16281", overrides=("life.method=iso16281",)),
     ),
-    Law(
-        "static_load",
-        "validity.life",
-        "static safety of ISO 76",
-        "radial load over the static load rating, P_0/C_0r",
-        "",
-        -math.inf,
-        1.0,
-        "ISO 76: a static safety below 1 leaves dents",
-        "lower the load or take a larger bearing",
-        _always,
-        lambda at: at.radial_load / rate(at.scene.bearing).static,
-    ),
-    Law(
+    _law("static_load", _always, lambda at: at.radial_load / rate(at.scene.bearing).static),
+    _law(
         "viscosity_ratio",
-        "validity.life",
-        "life modification factor a_ISO",
-        "the viscosity ratio kappa",
-        "",
-        -math.inf,
-        4.0,
-        "ISO 281:2007, 9.3.3.3: a_ISO is defined for 0.1 to 4",
-        "above it a_ISO is that of 4: take a thinner oil",
         lambda scene: scene.life.a_iso != "none",
         lambda at: at.while_turning(at.samples["viscosity_ratio"]),
-        variations=(
-            Variation(
-                "kappa at the end of its range",
-                {"viscosity_ratio": lambda each, at: each.edge / each.value},
-            ),
+        Variation(
+            "kappa at the end of its range",
+            {"viscosity_ratio": lambda each, at: each.edge / each.value},
         ),
     ),
-    Law(
-        "life_laminae",
-        "validity.life",
-        "reference rating life of ISO/TS 16281",
-        "laminae of a roller",
-        "",
-        30.0,
-        math.inf,
-        "ISO/TS 16281:2008, 5.3: at least 30 laminae",
-        "set life.laminae=30 or more",
-        _by_laminae,
-        lambda scene: float(scene.life.laminae),
-        of_scene=True,
-        variations=(Variation("40 laminae", overrides=("life.laminae=40",)),),
+    _law(
+        "life_laminae", _by_laminae, lambda scene: float(scene.life.laminae), Variation("40 laminae", overrides=("life.laminae=40",)), of_scene=True
     ),
-    Law(
+    _law(
         "roller_profile",
-        "validity.life",
-        "reference rating life of ISO/TS 16281",
-        "the rollers have no profile",
-        "",
-        -math.inf,
-        0.5,
-        "ISO/TS 16281:2008: the stress risers count on a profile; of straight rollers L10r depends on the number of laminae",
-        "set bearing.roller.crown to the maker's profile, or to iso_log",
         _by_laminae,
         lambda scene: float(isinstance(scene.bearing.roller.crown, NoCrown)),
+        Variation("ISO's logarithmic profile", overrides=("bearing.roller.crown=iso_log",)),
         of_scene=True,
-        expected="a crown of the rollers",
-        variations=(Variation("ISO's logarithmic profile", overrides=("bearing.roller.crown=iso_log",)),),
     ),
-    Law(
-        "oil_temperature",
-        "validity.oil",
-        "properties of the oil",
-        "the oil temperature",
-        "degC",
-        _lowest_oil,
-        _highest_oil,
-        "the table of the oil; of a custom oil 60 K beyond its viscosities at 40 and 100 degC (assumption)",
-        "give an oil with data at this temperature (lubricant.oil), or correct lubricant.temperature",
-        _always,
-        lambda at: at.samples["oil_temperature"],
-        expected="the temperatures of a catalogue oil's table; -20 to 160 degC of a custom oil",
-    ),
-    Law(
+    _law("oil_temperature", _always, lambda at: at.samples["oil_temperature"], low=_lowest_oil, high=_highest_oil),
+    _law(
         "local_temperature",
-        "validity.oil",
-        "properties of the oil in the films and in the bearing, by heat.law",
-        "the highest temperature of rings, rollers and the oil that leaves",
-        "degC",
-        -math.inf,
-        _highest_oil,
-        "the table of the oil; of a custom oil 60 K beyond its viscosities at 40 and 100 degC (assumption)",
-        "give an oil with data at this temperature (lubricant.oil), or more heat a way out: heat.oil_flow, heat.housing, heat.shaft",
         lambda scene: scene.heat.law != "none",
         lambda at: np.fmax.reduce([at.samples[name] for name in _LOCAL]),
-        expected="at most the highest temperature of a catalogue oil's table; 160 degC of a custom oil",
+        high=_highest_oil,
     ),
-    Law(
-        "polyamide_cage",
-        "validity.heat",
-        "cage of polyamide",
-        "the temperature of cage and rollers",
-        "degC",
-        -40.0 + ZERO_CELSIUS,
-        120.0 + ZERO_CELSIUS,
-        "SKF, Rolling bearings, polymer cages: PA66 from -40 to 120 degC, less in oils with EP additives",
-        "take a cage of steel or brass (bearing.cage, suffix J or M)",
-        _has_polyamide_cage,
-        lambda at: part_temperature(at.samples, "roller_temperature"),
-    ),
-    Law(
+    _law("polyamide_cage", _has_polyamide_cage, lambda at: part_temperature(at.samples, "roller_temperature")),
+    _law(
         "ring_stabilisation",
-        "validity.heat",
-        "dimensions of heat-stabilised rings",
-        "the temperature of the warmer ring",
-        "degC",
-        -math.inf,
-        _stabilised_to,
-        "DIN 623-1: rings without a suffix keep their dimensions to 120 degC (many makers': 150 degC), S0 to 150, S1 to 200, S2 to 250, S3 to 300",
-        "take a bearing with a suffix of stabilisation that reaches this temperature",
         lambda scene: readable_designation(scene.bearing.designation) is not None,
         lambda at: np.fmax(part_temperature(at.samples, "inner_ring_temperature"), part_temperature(at.samples, "outer_ring_temperature")),
-        expected="at most 120 degC, or what the suffix S0 to S4 says",
+        high=_stabilised_to,
     ),
-    Law(
+    _law(
         "mineral_oil",
-        "validity.oil",
-        "a filling of mineral oil",
-        "the temperature of the oil in the bearing",
-        "degC",
-        -math.inf,
-        100.0 + ZERO_CELSIUS,
-        "SKF, Rolling bearings, oil change: once a year up to 50 degC, every three months at about 100 degC",
-        "take a synthetic oil, or more cooling: heat.oil_flow, heat.housing; or change the oil more often",
         lambda scene: scene.lubricant.oil.base == "mineral" and scene.lubricant.grease is None,
         lambda at: part_temperature(at.samples, "oil_outlet_temperature"),
     ),
-    Law(
+    _law(
         "shaft_in_air",
-        "validity.heat",
-        "convection of the rotating shaft",
-        "Reynolds number of the shaft in air, by its surface speed",
-        "",
-        -math.inf,
-        4e5,
-        "K. M. Becker (1963): measured to 4e5",
-        "give heat.conductances.shaft_ambient; beyond it the law is extrapolated",
         lambda scene: scene.heat.law == "network" and scene.heat.conductances.shaft_ambient is None,
         lambda at: at.while_turning(np.abs(at.samples["shaft_speed"]) * at.scene.bearing.bore_diameter**2 / (2.0 * _AIR_VISCOSITY)),
     ),
-    Law(
-        "oil_viscosity",
-        "validity.oil",
-        "viscosity over temperature of a custom oil",
-        "kinematic viscosity",
-        "mm^2/s",
-        0.21,
-        2e7,
-        "ASTM D341: range of its equation",
-        "correct lubricant.oil or lubricant.temperature",
-        lambda scene: isinstance(scene.lubricant.oil, CustomOil),
-        lambda at: 1e6 * at.viscosity / at.density,
-    ),
-    Law(
-        "class_pressure_viscosity",
-        "validity.oil",
-        "pressure-viscosity coefficient by kind of base oil",
-        "kinematic viscosity in the films",
-        "mm^2/s",
-        1.0,
-        3000.0,
-        "assumption: P. W. Gold et al. (2001) measured industrial oils between about 20 and 120 degC; the original has not been read",
-        "give lubricant.oil.pressure_viscosity",
-        _by_kind_of_oil,
-        lambda at: 1e6 * at.film_viscosity / at.film_density,
-    ),
-    Law(
-        "viscosity_index",
-        "validity.oil",
-        "viscosity at 100 degC by the viscosity index",
-        "kinematic viscosity at 100 degC",
-        "mm^2/s",
-        2.0,
-        math.inf,
-        "ASTM D2270: defined from 2 mm^2/s on; below it its first row is continued (assumption)",
-        "give lubricant.oil.viscosity_100",
-        _by_viscosity_index,
-        lambda scene: 1e6 * viscosity_100(scene.lubricant.oil),
-        of_scene=True,
-    ),
-    Law(
-        "speed_factor",
-        "validity.speed",
-        "all laws",
-        "n d_m",
-        "rpm mm",
-        -math.inf,
-        3e6,
-        "assumption: the highest speeds of roller bearings on test rigs for aircraft engines",
-        "lower the speed; check the stress in the cage, which the model does not contain",
-        _always,
-        lambda at: speed_factor(at.scene.bearing, at.samples["shaft_speed"]),
-    ),
-    Law(
+    _law("oil_viscosity", lambda scene: isinstance(scene.lubricant.oil, CustomOil), lambda at: 1e6 * at.viscosity / at.density),
+    _law("class_pressure_viscosity", _by_kind_of_oil, lambda at: 1e6 * at.film_viscosity / at.film_density),
+    _law("viscosity_index", _by_viscosity_index, lambda scene: 1e6 * viscosity_100(scene.lubricant.oil), of_scene=True),
+    _law("speed_factor", _always, lambda at: at.speed_factor),
+    _law(
         "given_temperatures",
-        "validity.clearance",
-        "growth of rings and rollers by their temperatures",
-        "given temperatures change the films only and leave the clearance as it is, because bearing.dimensions_at is running",
-        "",
-        -math.inf,
-        0.5,
-        "the dimensions of the running bearing are those at its temperatures, whatever these are",
-        "leave it if the dimensions are those at these temperatures; else give those on the drawing and bearing.dimensions_at=cold",
         lambda scene: scene.heat.law == "given" and scene.bearing.dimensions_at == "running",
         _parts_differ_from_oil,
         of_scene=True,
-        expected="the dimensions on the drawing, from which parts grow",
     ),
-    Law(
+    _law(
         "inner_ring_stress",
-        "validity.clearance",
-        "growth of rings",
-        "the tangential stress at the bore of the inner ring",
-        "MPa",
-        -math.inf,
-        lambda scene: 1e-6 * scene.bearing.material.strength,
-        "the material's tensile strength, at which the ring bursts",
-        "lower the speed, take a lighter fit, or correct bearing.material.strength",
-        lambda scene: scene.bearing.dimensions_at == "cold",
+        _is_cold,
         lambda at: 1e-6 * largest_hoop_stress(at.scene.bearing, at.params.mounted, at.samples["shaft_speed"]),
-        expected="at most bearing.material.strength",
+        high=lambda scene: 1e-6 * scene.bearing.material.strength,
     ),
-    Law(
+    _law(
         "sleeve_seat",
-        "validity.clearance",
-        "growth of rings",
-        "the pressure between shaft and sleeve",
-        "MPa",
-        0.0,
-        math.inf,
-        "rings in contact: a sleeve that lets go no longer holds its ring, whose growth is then computed wrongly",
-        "take a tighter mounting.shaft.sleeve.interference, or lower the speed",
-        lambda scene: scene.bearing.dimensions_at == "cold" and scene.mounting.shaft.sleeve is not None,
+        lambda scene: _is_cold(scene) and scene.mounting.shaft.sleeve is not None,
         lambda at: 1e-6 * sleeve_pressure(at.scene.bearing, at.scene.mounting, at.samples["shaft_speed"]) * np.ones(len(at.samples)),
     ),
-    Law(
+    _law(
         "shaft_seat",
-        "validity.clearance",
-        "growth of rings",
-        "the pressure of the shaft's fit",
-        "MPa",
-        0.0,
-        math.inf,
-        "a seat without pressure lets the ring creep on the shaft, and no longer centres it",
-        "take a tighter fit (mounting.shaft), or lower the speed",
-        lambda scene: scene.bearing.dimensions_at == "cold" and mounted(scene.bearing, scene.mounting).shaft.pressure > 0.0,
+        lambda scene: _is_cold(scene) and mounted(scene.bearing, scene.mounting).shaft.pressure > 0.0,
         lambda at: 1e-6 * seat_pressure(at.params.mounted, at.samples),
     ),
-    Law(
+    _law(
         "squeeze_film_eccentricity",
-        "validity.support",
-        "squeeze film of a short bearing",
-        "the eccentricity of the outer ring in its squeeze film over the clearance",
-        "",
-        -math.inf,
-        0.4,
-        "ROSS, SqueezeFilmDamper: usual up to 0.4; above it cavitation, stiffness and inertia of the film, which the law leaves out, decide",
-        "give support.outer_ring a stiffer spring, the squeeze film more clearance, or reduce the unbalance",
         _has_squeeze_film,
         lambda at: np.hypot(at.samples["outer_ring_y"], at.samples["outer_ring_z"]) / at.scene.support.outer_ring.squeeze_film.clearance,
     ),
-    Law(
+    _law(
         "squeeze_film_length",
-        "validity.support",
-        "squeeze film of a short bearing",
-        "length over diameter of the squeeze film",
-        "",
-        -math.inf,
-        0.5,
-        "assumption: side flow governs a short bearing, G. B. DuBois and F. W. Ocvirk, NACA Report 1157 (1953)",
-        "give support.outer_ring.damping as a number; the damping of a longer film is smaller than computed",
         _has_squeeze_film,
         lambda scene: scene.support.outer_ring.squeeze_film.length / (2.0 * scene.support.outer_ring.squeeze_film.radius),
         of_scene=True,
     ),
-    Law(
+    _law(
         "squeeze_film_reynolds",
-        "validity.support",
-        "squeeze film of a short bearing",
-        "the Reynolds number rho omega c^2/eta of the squeeze film at shaft speed",
-        "",
-        -math.inf,
-        10.0,
-        "measured forces are up to twice those of lubrication theory at 10, ASME paper GT1984-79504 (1984); the law itself needs much less than 1",
-        "reduce the clearance, or give support.outer_ring.damping as a number",
         _has_squeeze_film,
         lambda at: at.while_turning(
             at.density * np.abs(at.samples["shaft_speed"]) * at.scene.support.outer_ring.squeeze_film.clearance**2 / at.viscosity
         ),
     ),
-    Law(
+    _law(
         "flange_axial_ratio",
-        "validity.axial_load",
-        "axial load on flanges, shared by the rollers as the radial load is",
-        "the axial over the radial load, F_a/F_r",
-        "",
-        -math.inf,
-        0.5,
-        "SKF, Dynamic axial load carrying capacity: at most 0.5 of the radial load; with more the rollers tilt",
-        "lower operating.axial_load, or use a bearing with a contact angle",
-        lambda scene: scene.operating.axial_load != 0.0,
-        lambda at: at.while_turning(
-            abs(at.scene.operating.axial_load) / np.maximum(np.hypot(at.samples["load_y"], at.samples["load_z"]), 1e-9)
-        ),
+        _has_axial_load,
+        lambda at: at.while_turning(abs(at.scene.operating.axial_load) / np.maximum(at.radial_load, 1e-9)),
     ),
-    Law(
-        "flange_axial_load",
-        "validity.axial_load",
-        "flanges under an axial load that acts all the time",
-        "the axial load F_a over what SKF permits by strength and heat",
-        "",
-        -math.inf,
-        1.0,
-        "SKF, Dynamic axial load carrying capacity: 0.0045 D^1.5 kN in series 2, 0.0023 D^1.7 in the others, D in mm; by heat "
-        "k_1 C_0 10^4/(n (d + D)) - k_2 F_r",
-        "lower operating.axial_load, or use a larger bearing",
-        lambda scene: scene.operating.axial_load != 0.0,
-        _flange_load_share,
-    ),
-    Law(
+    _law("flange_axial_load", _has_axial_load, _flange_load_share),
+    _law(
         "flange_gap",
-        "validity.flange",
-        "laminar shear between roller ends and flanges",
-        "the Reynolds number of the end gap, speed of the roller's end over the flange times the gap over nu",
-        "",
-        -math.inf,
-        1440.0,
-        "plane Couette flow stays laminar up to 360 by half the speed and half the gap, N. Tillmark and P. H. Alfredsson, J. Fluid Mech. 235 (1992)",
-        "reduce bearing.flanges.end_clearance to what the bearing has",
         lambda scene: scene.bearing.flanges.present,
         lambda at: at.while_turning(_flange_speed(at) * flange_geometry(at.scene.bearing).end_clearance * at.density / at.viscosity),
     ),
-    Law(
+    _law(
         "limiting_speed",
-        "validity.speed",
-        "all laws",
-        "the shaft speed",
-        "rpm",
-        -math.inf,
-        lambda scene: scene.bearing.ratings.limiting_speed * 30.0 / math.pi,
-        "limiting speed of the bearing by its maker",
-        "lower the speed, or ask the maker",
         lambda scene: scene.bearing.ratings.limiting_speed is not None,
         lambda at: np.abs(at.samples["shaft_speed"]) * (30.0 / math.pi),
-        expected="at most bearing.ratings.limiting_speed, where it is given",
+        high=lambda scene: scene.bearing.ratings.limiting_speed * 30.0 / math.pi,
     ),
-    Law(
+    _law(
         "estimated_rollers",
-        "validity.bearing",
-        "all laws",
-        "the number or the diameter of the rollers is an estimate",
-        "",
-        -math.inf,
-        0.0,
-        "assumption: bearing.estimated says by which rules, and with which error",
-        "measure or ask the maker and give bearing.roller; bearing-sim uncertainty takes the ranges of the estimates",
         lambda scene: bool(scene.bearing.estimated),
         lambda scene: float(any(each.field in ("roller.count", "roller.diameter") for each in scene.bearing.estimated)),
         of_scene=True,
-        expected="printed by a maker, or deduced from what is printed",
     ),
-    Law(
+    _law(
         "full_complement_play",
-        "validity.bearing",
-        "orbit of a full complement at one speed",
-        "the play between all rollers together, over the diameter of one",
-        "",
-        -math.inf,
-        1.5,
-        "assumption: rollers touch, for which makers leave no room for another one or two",
-        "give more rollers, or the cage that the bearing has",
         lambda scene: scene.bearing.cage.is_absent,
         lambda scene: math.pi / math.asin(scene.bearing.diameter_ratio) - scene.bearing.roller.count,
         of_scene=True,
     ),
-)  # fmt: skip
+)
 """All limits that are watched, by subject."""
 
-UNWATCHED = (
-    (
-        "friction between the rollers of a full complement",
-        "assumption: each brakes its spin by the force that it needs from its neighbours, as in a pocket; forces that pass through are left out",
-    ),
-    ("friction of roller ends on flanges", "coefficients, 0.02 on a film and 0.12 to 0.15 without; SKF weighs them for whole bearings"),
-    ("guidance of a skewed roller by flanges", "assumption of a roller in the middle of its end clearance, which is itself known to a factor of two"),
-    ("contact damping by load and by stiffness", "values, not laws with a range; slip and life depend on it where the ring or a roller vibrates"),
-    ("heating of the film's inlet", "W. R. D. Wilson and S. Sheu (1983) give no range that we could read; the factor 0.1 is an assumption"),
-    ("pocket friction and boundary friction of the lands", "coefficients, not laws with a range: 0.02 to 0.1 and 0.05 to 0.15 in use"),
-    ("vortex and turbulent torque factors of the cage's faces", "assumptions of 20 to 30 % without a known range; cage_gap limits the geometry"),
-    ("Carter's creep in series with the film", "exact for line contact far from gross sliding; beyond it the film takes the sliding"),
-    ("convection of rings, rollers and cage to the oil", "known to a factor of 3, see the theory of heat; heat.convection_factor is its knob"),
-    ("conductance of fits and contacts", "assumptions within a factor of 2 to 3; the network depends little on them, see the theory of heat"),
-    ("surface of the housing", "an assumption where the scene gives none: ISO 15312's heat flow at reference conditions is met within two"),
-    ("growth of rings", "linear elastic and plane; inner_ring_stress watches the stress; ribs and the ends of seats are left out"),
-    ("linear damage, Miner's sum", "no range; sums at failure scatter from 0.3 to 3"),
-)
+UNWATCHED = tuple(_TABLE["unwatched"].items())
 """Laws with constants for which no range is known or none is needed, and why."""
 
-MINIMUM_LOAD = Law(
-    "minimum_load",
-    "validity.life",
-    "rollers driven by their load",
-    "the radial load over the makers' minimum",
-    "",
-    1.0,
-    math.inf,
-    "SKF, LYC: k_r (6 + 4 n/n_r)(d_m/100 mm)^2; 0.02 C_r where the maker gives no factor",
-    "raise the load, take a smaller bearing or one with less clearance, or study the slip",
-    lambda scene: scene.bearing.radial_clearance_at_low_points >= 0.0,
-    lambda at: at.while_turning(_share_of_minimum_load(at)),
+MINIMUM_LOAD = _law(
+    "minimum_load", lambda scene: scene.bearing.radial_clearance_at_low_points >= 0.0, lambda at: at.while_turning(_share_of_minimum_load(at))
 )
 """Of no law but of the bearing's use, so that tables of many points judge it and runs do not: those tell it before they start."""
 

@@ -24,17 +24,14 @@ _CONTRACTION, _SLOWEST = 0.1, 0.9  # of an iteration: assumed of the first, and 
 
 
 @kernel
-def solve_implicit(
-    rhs_and_jacobian, factor, solve, correction_norm, restrain,
-    t, known, shift, enough, y, rate, change, previous, model, work, counts,
-):  # fmt: skip
+def solve_implicit(kernels, t, known, shift, enough, y, rate, change, previous, model, work, counts):
     """Solve y = known + shift f(t, y) by a damped Newton iteration.
 
     It ends when the corrections still to come, a geometric series with the ratio of the last two, are small enough together.
 
     Parameters
     ----------
-    rhs_and_jacobian, factor, solve, correction_norm, restrain : kernels of the level, see `bearing_sim.numerics.time_stepping`.
+    kernels : of the level, see `bearing_sim.numerics.time_stepping`.
     known : what the stage builds on, shape (n,).
     shift : step over the method's leading coefficient [s].
     enough : error that the iteration may leave, over what the tolerances allow in a step.
@@ -54,28 +51,28 @@ def solve_implicit(
             break
         counts[COUNT.right_hand_sides] += 1
         counts[COUNT.jacobians] += 1
-        if not rhs_and_jacobian(t, y, model, work, rate):
+        if not kernels.rhs_and_jacobian(t, y, model, work, rate):
             return NOT_EVALUATED
         counts[COUNT.factorisations] += 1
-        if not factor(shift, work):
+        if not kernels.factor(shift, work):
             return NOT_CONVERGED
         for i in range(y.shape[0]):
             change[i] = known[i] + shift * rate[i] - y[i]
-        solve(work, change)
+        kernels.solve(work, change)
         for i in range(y.shape[0]):
             y[i] += change[i]
-        size = correction_norm(t, y, change, model)
+        size = kernels.correction_norm(t, y, change, model)
         if not math.isfinite(size):
             return NON_FINITE
         ratio, whole = min(max(size / whole, _CONTRACTION), _SLOWEST), size
         if size * ratio < enough * (1.0 - ratio):
             return OK
-        restrain(y, change, model, work)
-        size, sum_with_previous = correction_norm(t, y, change, model), math.inf
+        kernels.restrain(y, change, model, work)
+        size, sum_with_previous = kernels.correction_norm(t, y, change, model), math.inf
         if iteration > 0:
             for i in range(y.shape[0]):
                 previous[i] += change[i]
-            sum_with_previous = correction_norm(t, y, previous, model)
+            sum_with_previous = kernels.correction_norm(t, y, previous, model)
         turns_back, goes_on = sum_with_previous < _TURNS_BACK * size, sum_with_previous > _GOES_ON * size
         if turns_back and fraction * before < enough:
             for i in range(y.shape[0]):

@@ -290,6 +290,12 @@ else:
     larger, smaller = _choice(">"), _choice("<")
 
 
+@kernel
+def add(array, block, row, value):
+    """Add a value (lanes) to a row of a block, see `new_rows`."""
+    store(array, block, row, load(array, block, row) + value)
+
+
 def blocks_of(count):
     """Return how many blocks of lanes hold ``count`` rollers."""
     return -(-count // LANES)

@@ -1,28 +1,15 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The loop around a time-stepping method, with error control or with a fixed step.
 
-It knows no bearing and no method.  A level comes in as kernels:
-
-rhs, rhs_and_jacobian : ``(t, y, model, work, rate)`` write dy/dt into ``rate``, the second also the Jacobian into ``work``;
-    return False where they cannot be evaluated.
-predict : ``(known, shift, slope, model, work, guess)`` writes a first guess of the solution of guess = known + shift f(guess),
-    given f a little earlier.
-factor : ``(shift, work)`` factors I - shift J; returns False where it is singular.
-solve : ``(work, x)`` replaces the right side by the solution with the last factorisation.
-error_norm : ``(t, y, change, model)`` returns the largest ratio of any state's change to what the tolerances allow it.
-correction_norm : the same of an iteration's correction, in which a level may weigh states otherwise.
-restrain : ``(y, change, model, work)`` shortens the part of an iteration's correction that has carried ``y`` too far for its equations to be linear,
-    in both.
-step_limit : ``(t, y, model, work)`` returns the longest sensible step [s].
-step_taken : ``(t, h, y, model, work)`` is called after each accepted step of length h, which ended at t.
-attempt : ``(t, y, h, model, work, memory, counts)`` computes a step of ``h`` [s] from (t, y): a method bound to the kernels above, such as
-    `bearing_sim.numerics.tr_bdf2.tr_bdf2_attempt`.  It leaves the result in row 1 of ``memory.scratch`` and the error estimate in row 2, and
-    returns a status.
+It knows no bearing and no method.  A level comes in as `Kernels`.  The method comes in as a kernel ``attempt``, ``(kernels, t, y, h, model, work,
+memory, counts)``, such as `bearing_sim.numerics.tr_bdf2.tr_bdf2_attempt`: it computes a step of ``h`` [s] from (t, y), leaves the result in row 1 of
+``memory.scratch`` and the error estimate in row 2, and returns a status.
 
 Compiled code raises nothing: how an advance ended is a value.
 """
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -42,6 +29,38 @@ REASONS = {
     NOT_EVALUATED: "the right-hand side could not be evaluated",
     NOT_CONVERGED: "the equations of a step could not be solved, not even for the smallest step",
 }
+
+
+class Kernels(NamedTuple):
+    """The compiled functions of a level.
+
+    Attributes
+    ----------
+    rhs, rhs_and_jacobian : ``(t, y, model, work, rate)`` write dy/dt into ``rate``, the second also the Jacobian into ``work``;
+        return False where they cannot be evaluated.
+    predict : ``(known, shift, slope, model, work, guess)`` writes a first guess of the solution of guess = known + shift f(guess),
+        given f a little earlier.
+    factor : ``(shift, work)`` factors I - shift J; returns False where it is singular.
+    solve : ``(work, x)`` replaces the right side by the solution with the last factorisation.
+    error_norm : ``(t, y, change, model)`` returns the largest ratio of any state's change to what the tolerances allow it.
+    correction_norm : the same of an iteration's correction, in which a level may weigh states otherwise.
+    restrain : ``(y, change, model, work)`` limits the correction of an iteration where a contact opens or closes; updates ``y`` and ``change``.
+    step_limit : ``(t, y, model, work)`` returns the longest sensible step [s].
+    step_taken : ``(t, h, y, model, work)`` is called after each accepted step of length h, which ended at t.
+    observe : ``(t, y, model, work, interval, previous, row, memory)`` writes a sample.
+    """
+
+    rhs: Callable
+    rhs_and_jacobian: Callable
+    predict: Callable
+    factor: Callable
+    solve: Callable
+    error_norm: Callable
+    correction_norm: Callable
+    restrain: Callable
+    step_limit: Callable
+    step_taken: Callable
+    observe: Callable
 
 
 class Count(NamedTuple):
@@ -188,9 +207,7 @@ def _accept_part(y, result, control):
 
 
 @kernel
-def advance_in_steps(
-    attempt, error_order, error_norm, step_limit, step_taken, fixed, t, end, y, h, maximum_step, budget, model, work, memory, counts,
-):  # fmt: skip
+def advance_in_steps(attempt, error_order, kernels, fixed, t, end, y, h, maximum_step, budget, model, work, memory, counts):
     """Advance ``y`` in place from ``t`` to ``end``, accepting or rejecting each step by its error, or in equal steps.
 
     Equal steps are for hard real time, and nothing estimates their error.  They are as long as they can be, but not longer than
@@ -200,8 +217,9 @@ def advance_in_steps(
 
     Parameters
     ----------
-    attempt, error_norm, step_limit, step_taken : kernels of the level, see the module's docstring.
+    attempt : the method, see the module's docstring.
     error_order : power of the step with which the error estimate goes, such as `bearing_sim.numerics.tr_bdf2.ERROR_ORDER`.
+    kernels : of the level.
     fixed : whether steps are equal.  Both ways share one loop, because most of what there is to compile is the attempt in it.
     t, end : time, and time to reach [s].
     y : newest state, changed in place.
@@ -225,13 +243,13 @@ def advance_in_steps(
         if fixed:
             _fit_part(control)
         else:
-            _fit(step_limit(control[CONTROL.time], y, model, work), maximum_step, end, control)
+            _fit(kernels.step_limit(control[CONTROL.time], y, model, work), maximum_step, end, control)
         now, step = control[CONTROL.time], control[CONTROL.step]
-        outcome, error = attempt(now, y, step, model, work, memory, counts), math.inf
+        outcome, error = attempt(kernels, now, y, step, model, work, memory, counts), math.inf
         if outcome == OK and fixed:
             error = 0.0 if _all_finite(result) else math.nan
         elif outcome == OK:
-            error = error_norm(now, y, memory.scratch[2], model)
+            error = kernels.error_norm(now, y, memory.scratch[2], model)
         finite = math.isfinite(error)
         if error <= 1.0 or (finite and step <= SMALLEST_STEP):
             counts[COUNT.steps] += 1
@@ -241,7 +259,7 @@ def advance_in_steps(
                 _accept_part(y, result, control)
             else:
                 _accept(error, error_order, end, y, result, control)
-            step_taken(now + step, step, y, model, work)
+            kernels.step_taken(now + step, step, y, model, work)
             continue
         if outcome == OK and not finite:
             outcome = NON_FINITE

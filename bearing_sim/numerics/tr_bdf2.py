@@ -39,9 +39,7 @@ _ENOUGH = 1 / 60  # of the tolerances: the error that the iteration of a stage m
 
 
 @kernel
-def tr_bdf2_attempt(
-    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, correction_norm, restrain, t, y, h, model, work, memory, counts,
-):  # fmt: skip
+def tr_bdf2_attempt(kernels, t, y, h, model, work, memory, counts):
     """Compute one step of ``h`` [s] from (t, y); see `bearing_sim.numerics.time_stepping`.
 
     The error estimate is F e, so that stiff components do not dominate it (L. F. Shampine, L. S. Baca: Error estimators for stiff differential
@@ -56,7 +54,7 @@ def tr_bdf2_attempt(
     per_shift = 1.0 / shift
     if math.isnan(memory.derivative_time[0]):
         counts[COUNT.right_hand_sides] += 1
-        if not rhs(t, y, model, work, slope):
+        if not kernels.rhs(t, y, model, work, slope):
             return NOT_EVALUATED
     elif abs(memory.derivative_time[0] - t) < 0.01 * h:  # not after a rejected step, whose slope at the beginning still stands
         for i in range(y.shape[0]):
@@ -65,11 +63,9 @@ def tr_bdf2_attempt(
         known[i] = y[i] + shift * slope[i]
     for stage in range(2):
         # a loop and not two texts: the kernels are compiled into it, and both copies would not fit the instruction cache
-        predict(known, shift, slope if stage == 0 else error, model, work, result)
-        outcome = solve_implicit(
-            rhs_and_jacobian, factor, solve, correction_norm, restrain,
-            t + (h if stage else 2.0 * shift), known, shift, _ENOUGH, result, rate, change, scratch[0], model, work, counts,
-        )  # fmt: skip
+        kernels.predict(known, shift, slope if stage == 0 else error, model, work, result)
+        end = t + (h if stage else 2.0 * shift)
+        outcome = solve_implicit(kernels, end, known, shift, _ENOUGH, result, rate, change, scratch[0], model, work, counts)
         if outcome != OK:
             return outcome
         if stage == 0:
@@ -77,17 +73,17 @@ def tr_bdf2_attempt(
                 first[i] = result[i]
                 error[i] = (result[i] - known[i]) * per_shift
                 known[i] = y[i] + WEIGHT * h * (slope[i] + error[i])
-    begin, inner, end = h * _EMBEDDED[0], h * _EMBEDDED[1], h * _EMBEDDED[2]
+    by_first, by_inner, by_last = h * _EMBEDDED[0], h * _EMBEDDED[1], h * _EMBEDDED[2]
     for i in range(y.shape[0]):
         next_slope[i] = (result[i] - known[i]) * per_shift
-        error[i] = begin * slope[i] + inner * error[i] + end * next_slope[i]
+        error[i] = by_first * slope[i] + by_inner * error[i] + by_last * next_slope[i]
     memory.derivative_time[0], memory.stage_time[0] = t + h, t + 2.0 * shift
-    _raise_order(solve, error_norm, t, per_shift, y, result, error, change, rate, next_slope, model, work)
+    _raise_order(kernels, t, per_shift, y, result, error, change, rate, next_slope, model, work)
     return OK
 
 
 @kernel
-def _raise_order(solve, error_norm, t, per_shift, y, result, error, change, ahead, slope, model, work):
+def _raise_order(kernels, t, per_shift, y, result, error, change, ahead, slope, model, work):
     """Filter the error of Y_2 and add it to the result, and to the slope what that changes.
 
     d h J F x = F x - x for any x: with it ``ahead`` becomes d h J (y_new - Y_2), what the addition makes of the state within d h.  Where that is
@@ -104,12 +100,12 @@ def _raise_order(solve, error_norm, t, per_shift, y, result, error, change, ahea
         if times > 0:
             for i in range(error.shape[0]):
                 filtered[times][i] = filtered[times - 1][i]
-        solve(work, filtered[times])
+        kernels.solve(work, filtered[times])
     for i in range(error.shape[0]):
         twice, thrice = ahead[i], change[i]
         change[i] = (1.0 + _FILTER) * twice - _FILTER * thrice
         ahead[i] = (1.0 + _FILTER) * (twice - error[i]) - _FILTER * (thrice - twice)
-    size = error_norm(t, y, ahead, model)
+    size = kernels.error_norm(t, y, ahead, model)
     part = (_WHOLE / size) ** 2 if size > _WHOLE else 1.0
     for i in range(error.shape[0]):
         result[i] += part * change[i]

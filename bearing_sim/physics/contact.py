@@ -16,7 +16,7 @@ TINY = 1e-15  # m; a penetration that carries nothing
 
 
 class ContactRow(NamedTuple):
-    """Rows of a contacts array (see `bearing_sim.numerics.simd.new_rows`): all blocks of inner contacts, then all of outer ones."""
+    """Indices of the rows of a contacts array (see `bearing_sim.numerics.simd.new_rows`): all blocks of inner contacts, then all of outer ones."""
 
     load: int = 0  # normal force Q [N]
     rolling: int = 1  # mean speed u of both surfaces relative to the contact [m/s]

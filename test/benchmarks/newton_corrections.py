@@ -73,14 +73,14 @@ def corrections(run, steps, second, sizes_of):
         newton._CONTRACTION = 1e3
     solve, stages = tr_bdf2.solve_implicit, []
 
-    def recording(rhs_and_jacobian, factor, solve_linear, correction_norm, *rest):
+    def recording(kernels, *rest):
         sizes = []
 
         def norm(*arguments):
             sizes.append({kind: size(*arguments) for kind, size in sizes_of.items()})
-            return correction_norm(*arguments)
+            return kernels.correction_norm(*arguments)
 
-        outcome = solve(rhs_and_jacobian, factor, solve_linear, norm, *rest)
+        outcome = solve(kernels._replace(correction_norm=norm), *rest)
         stages.append(sizes)
         return outcome
 

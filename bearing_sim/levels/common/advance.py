@@ -1,22 +1,21 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """How every level advances over an interval: a time-stepping method from sample to sample."""
 
+import math
+
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.time_stepping import COUNT, OK, advance_in_steps
+from bearing_sim.numerics.tr_bdf2 import ERROR_ORDER, tr_bdf2_attempt
 
 
 @kernel
-def advance_by(
-    attempt, error_order, error_norm, step_limit, step_taken, observe, fixed,
-    t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
-):  # fmt: skip
+def advance_by(kernels, fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance ``y`` in place by ``duration`` [s] and write evenly spaced samples into ``rows``, the last at the end.
 
     Parameters
     ----------
-    attempt, error_order, error_norm, step_limit, step_taken : method, and kernels of the level, see `bearing_sim.numerics.time_stepping`.
-    observe : kernel of the level, writes a sample, see `bearing_sim.levels.slip.model.observe`.
-    fixed : whether steps are equal and nothing controls their error.
+    kernels : of the level, see `bearing_sim.numerics.time_stepping.Kernels`.
+    fixed : whether steps are of ``maximum_step`` and nothing controls their error.
     t : time [s].
     h : step to try first [s].
     maximum_step : longest step, or the fixed one [s].
@@ -33,16 +32,14 @@ def advance_by(
     samples = rows.shape[0]
     interval = duration / samples
     before = previous
+    memory.derivative_time[0] = math.nan  # inputs may have changed
     taken = counts[COUNT.steps] + counts[COUNT.rejected_steps]
     for k in range(samples):
         start, end = t + k * interval, t + (k + 1) * interval
         left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
-        status, h = advance_in_steps(
-            attempt, error_order, error_norm, step_limit, step_taken, fixed,
-            start, end, y, h, maximum_step, left, model, work, memory, counts,
-        )  # fmt: skip
+        status, h = advance_in_steps(tr_bdf2_attempt, ERROR_ORDER, kernels, fixed, start, end, y, h, maximum_step, left, model, work, memory, counts)
         if status != OK:
             return status, h
-        observe(end, y, model, work, interval, before, rows[k], memory)
+        kernels.observe(end, y, model, work, interval, before, rows[k], memory)
         before = rows[k]
     return OK, h

@@ -7,10 +7,9 @@ ring's along the orbit, with u = r phi'.  The law is `bearing_sim.physics.flange
 
 from typing import NamedTuple
 
-from bearing_sim.levels.common.rollers import add
 from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.simd import highest, larger, load, spread, square_root, store, total, where_positive
+from bearing_sim.numerics.simd import add, highest, larger, load, spread, square_root, store, total, where_positive
 from bearing_sim.physics.flange import axial_share, rub, shear, stop_skew
 
 

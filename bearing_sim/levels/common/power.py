@@ -42,28 +42,15 @@ class Powers(NamedTuple):
 
 
 @kernel
-def _mean_powers(earlier, later, share):
-    """Return the weighted mean of two `Powers`; ``share`` is the weight of the later one."""
-    return Powers(
-        earlier.shaft + share * (later.shaft - earlier.shaft),
-        earlier.inner_sliding + share * (later.inner_sliding - earlier.inner_sliding),
-        earlier.outer_sliding + share * (later.outer_sliding - earlier.outer_sliding),
-        earlier.inner_rolling + share * (later.inner_rolling - earlier.inner_rolling),
-        earlier.outer_rolling + share * (later.outer_rolling - earlier.outer_rolling),
-        earlier.churning + share * (later.churning - earlier.churning),
-        earlier.windage + share * (later.windage - earlier.windage),
-        earlier.land + share * (later.land - earlier.land),
-        earlier.pocket + share * (later.pocket - earlier.pocket),
-        earlier.damping + share * (later.damping - earlier.damping),
-        earlier.seal + share * (later.seal - earlier.seal),
-        earlier.flange + share * (later.flange - earlier.flange),
-        earlier.support + share * (later.support - earlier.support),
-    )
+def write_powers(powers, row):
+    """Write the losses into a flat sample (see `bearing_sim.model.sample.flat`), whose columns have the order of `Powers`."""
+    for k in range(1, len(powers)):
+        row[COLUMN.shaft_power + k] = powers[k]
 
 
 @kernel
-def step_powers(rhs, state_powers, t, y, model, work, memory):
-    """Return the powers of the step that ended at ``t`` in state ``y``, or those of the state itself before the first step.
+def write_step_powers(rhs, state_powers, t, y, model, work, memory, row):
+    """Write the losses of the step that ended at ``t`` in state ``y``, or those of the state itself before the first step, into a flat sample.
 
     The work in a step of tr_bdf2 is that of its beginning, of Y_1 and of its end, with the weights w, w and 1 - 2 w.  One step's end is the next
     one's beginning, so that w P(Y_1) + (1 - w) P(y) has the same mean.  At the end alone stiff forces, those of pockets above all, are too large
@@ -74,31 +61,16 @@ def step_powers(rhs, state_powers, t, y, model, work, memory):
     rhs : kernel of the level.
     state_powers : kernel of the level, ``(t, y, shaft_speed, model, work)``, that returns the `Powers` of the state in ``work``.
     """
-    time, stage = memory.stage_time[0], memory.scratch[INNER_STAGE]
-    if math.isnan(time):
-        rhs(t, y, model, work, memory.scratch[0])
-        return state_powers(t, y, shaft_speed_at(t, model.drive), model, work)
-    rhs(time, stage, model, work, memory.scratch[0])
-    within = state_powers(time, stage, shaft_speed_at(time, model.drive), model, work)
+    time, stage, weight = memory.stage_time[0], memory.scratch[INNER_STAGE], 1.0
+    if not math.isnan(time):
+        rhs(time, stage, model, work, memory.scratch[0])
+        write_powers(state_powers(time, stage, shaft_speed_at(time, model.drive), model, work), row)
+        weight = 1.0 - WEIGHT
     rhs(t, y, model, work, memory.scratch[0])
-    return _mean_powers(within, state_powers(t, y, shaft_speed_at(t, model.drive), model, work), 1.0 - WEIGHT)
-
-
-@kernel
-def write_powers(powers, row):
-    """Write the losses into a flat sample (see `bearing_sim.model.sample.flat`)."""
-    row[COLUMN.inner_sliding_power] = powers.inner_sliding
-    row[COLUMN.outer_sliding_power] = powers.outer_sliding
-    row[COLUMN.inner_rolling_power] = powers.inner_rolling
-    row[COLUMN.outer_rolling_power] = powers.outer_rolling
-    row[COLUMN.churning_power] = powers.churning
-    row[COLUMN.windage_power] = powers.windage
-    row[COLUMN.land_power] = powers.land
-    row[COLUMN.pocket_power] = powers.pocket
-    row[COLUMN.damping_power] = powers.damping
-    row[COLUMN.seal_power] = powers.seal
-    row[COLUMN.flange_power] = powers.flange
-    row[COLUMN.support_power] = powers.support
+    powers = state_powers(t, y, shaft_speed_at(t, model.drive), model, work)
+    for k in range(1, len(powers)):
+        before = row[COLUMN.shaft_power + k]
+        row[COLUMN.shaft_power + k] = powers[k] if weight == 1.0 else before + weight * (powers[k] - before)
 
 
 @kernel

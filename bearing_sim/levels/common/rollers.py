@@ -11,10 +11,12 @@ roller's, the tangent p is a right angle ahead of it.
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import cosine_sine
-from bearing_sim.numerics.simd import LANES, floor, larger, load, spread, spread_run, square_root, store, total
+from bearing_sim.numerics.simd import LANES, add, floor, larger, load, new_rows, spread, spread_run, square_root, store, total
 from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.film import resist_rolling
 from bearing_sim.physics.profile import concentrate, spread_tractions
@@ -36,10 +38,14 @@ class StateRuns(NamedTuple):
     spin: int
 
 
-@kernel
-def add(array, block, row, value):
-    """Add a value (lanes) to a row of a block, see `bearing_sim.numerics.simd.new_rows`."""
-    store(array, block, row, load(array, block, row) + value)
+def new_rollers(row, rows, count):
+    """Return zeroed ``rows`` for ``count`` rollers, but for who is present and where the pockets stand."""
+    rollers = new_rows(rows, count)
+    lanes = np.arange(rollers.shape[0] * LANES).reshape(-1, LANES)
+    rollers[:, row.present] = lanes < count
+    pitch = 2 * math.pi * np.minimum(lanes, count - 1) / count
+    rollers[:, row.pitch_cosine], rollers[:, row.pitch_sine] = np.cos(pitch), np.sin(pitch)
+    return rollers
 
 
 @kernel

@@ -29,11 +29,11 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.model import load_at, shaft_angle_at, shaft_speed_at
-from bearing_sim.levels.common.rollers import add
 from bearing_sim.model.params import SUPPORT
 from bearing_sim.model.sample import COLUMN
-from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.simd import LANES, load, spread, total
+from bearing_sim.numerics.block_arrow import factor, solve
+from bearing_sim.numerics.compilation import fused, kernel
+from bearing_sim.numerics.simd import LANES, add, load, spread, total
 from bearing_sim.physics.squeeze_film import SqueezeFilm, squeeze_force
 
 OUTER, SHAFT, SPEEDS = 0, 2, 4  # where the outer ring and the shaft begin in the tail of a state, y and z each, and where their speeds begin
@@ -217,9 +217,9 @@ def follow_frame(row, block, frame, rows):
 
 
 @kernel
-def turn_frame(at, local, row, block, frame, rows, jacobian):
+def turn_frame(layout, runs, row, block, frame, rows, jacobian):
     """Add to a block's rows of r'' and phi'' how the frame's acceleration turns with a roller's azimuth; parameters as of `react_by_rollers`."""
-    r, phi = at[0], at[1]
+    r, phi, local = runs.radius, runs.angle, layout.local
     cosine, sine, inverse = load(rows, block, row.cosine), load(rows, block, row.sine), 1.0 / load(rows, block, row.radius)
     outwards, along = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
     add(jacobian, block, phi, -along)
@@ -228,21 +228,19 @@ def turn_frame(at, local, row, block, frame, rows, jacobian):
 
 
 @kernel
-def react_by_rollers(row, at, local, count, per_mass, rows, jacobian, work):
+def _react_by_rollers(layout, runs, row, count, per_mass, rows, jacobian, work):
     """Add to V what the rollers' own states do to the outer ring through the rollers, and write the rollers' part of U.
 
     Parameters
     ----------
-    row : rows of the rollers.
-    at : positions of a roller's r, phi, r' and phi' among its own variables, how many it has, and where their runs begin in a state.
-    local : what a roller depends on in all; the derivatives of r'' are the first so many rows of the Jacobian, those of phi'' the next.
+    layout, runs, row : as of `react_on_support`.
     count : of rollers.
     per_mass : m_r over the outer ring's mass; 0 where that is held.
     rows : of the rollers; accelerations and Jacobian as they are without the frame's acceleration.
     jacobian : derivatives through each roller.
     work : memory of the support.
     """
-    r, phi, r_speed, phi_speed, own, first = at
+    r, phi, r_speed, phi_speed, first = runs.radius, runs.angle, runs.radial_speed, runs.orbital_speed, runs.first
     for j in range(count):
         block, lane = j // LANES, j % LANES
         cosine, sine, radius = rows[block, row.cosine, lane], rows[block, row.sine, lane], rows[block, row.radius, lane]
@@ -250,8 +248,8 @@ def react_by_rollers(row, at, local, count, per_mass, rows, jacobian, work):
         turning = rows[block, row.orbital_acceleration, lane]
         outwards = rows[block, row.radial_acceleration, lane] - radius * orbital_speed * orbital_speed
         along = radius * turning + 2.0 * radial_speed * orbital_speed
-        for k in range(own):
-            d_outwards, d_along = jacobian[block, k, lane], radius * jacobian[block, local + k, lane]
+        for k in range(layout.block):
+            d_outwards, d_along = jacobian[block, k, lane], radius * jacobian[block, layout.local + k, lane]
             if k == r:
                 d_outwards -= orbital_speed * orbital_speed
                 d_along += turning
@@ -269,24 +267,83 @@ def react_by_rollers(row, at, local, count, per_mass, rows, jacobian, work):
 
 
 @kernel
-def react_by_border(state, column, local, cosine_row, sine_row, radius_row, count, per_mass, rows, jacobian, work):
+def _react_by_border(state, column, layout, row, count, per_mass, rows, jacobian, work):
     """Add to V what one state of the border does to the outer ring through all rollers.
 
     Parameters
     ----------
     state : the state.
-    column : where a roller's derivatives by it stand, see `react_by_rollers` for these and for the other parameters.
-    cosine_row, sine_row, radius_row : rows of the rollers.
+    column : of a roller's derivatives by it; for the other parameters see `_react_by_rollers`.
     """
     along_y, along_z = 0.0, 0.0
     for j in range(count):
         block, lane = j // LANES, j % LANES
-        cosine, sine = rows[block, cosine_row, lane], rows[block, sine_row, lane]
-        d_outwards, d_along = jacobian[block, column, lane], rows[block, radius_row, lane] * jacobian[block, local + column, lane]
+        cosine, sine = rows[block, row.cosine, lane], rows[block, row.sine, lane]
+        d_outwards, d_along = jacobian[block, column, lane], rows[block, row.radius, lane] * jacobian[block, layout.local + column, lane]
         along_y += cosine * d_outwards - sine * d_along
         along_z += sine * d_outwards + cosine * d_along
     work[REACTION, state] -= per_mass * along_y
     work[REACTION + 1, state] -= per_mass * along_z
+
+
+@kernel
+def react_on_support(layout, runs, row, params, rows, own, jacobian, work):
+    """Write what all bodies do to the outer ring, and add to the rows of r'' and phi'' how the frame's acceleration turns with a roller's azimuth.
+
+    Parameters
+    ----------
+    layout : of the level, a `bearing_sim.numerics.block_arrow.Layout`; its first body is the ring, its second the cage, y and z the first positions.
+    runs : `bearing_sim.levels.common.rollers.StateRuns` of the level.
+    row : rows of the rollers.
+    params : of the bearing.
+    rows : of the rollers; accelerations and derivatives as they are without the frame's acceleration.
+    own : derivatives of the border's accelerations by border positions and speeds.
+    jacobian : derivatives through each roller; changed.
+    work : memory of the support; changed.
+    """
+    count, border, per_mass = params.rollers.count, layout.border, params.support[SUPPORT.outer_moves] / params.support[SUPPORT.outer_mass]
+    per_roller = per_mass * params.rollers.mass
+    _react_by_rollers(layout, runs, row, count, per_roller, rows, jacobian, work)
+    for m in range(border):
+        _react_by_border(m, layout.column[m], layout, row, count, per_roller, rows, jacobian, work)
+        _react_by_border(border + m, layout.column[m] + layout.size[m], layout, row, count, per_roller, rows, jacobian, work)
+    for k in range(border):
+        axis = layout.own_column[k] - layout.block
+        if axis > 1:
+            continue
+        mass, reaction, first = per_mass * (params.ring.mass if layout.body[k] == 0 else params.cage.mass), work[REACTION + axis], layout.row[k]
+        for m in range(2 * border):
+            reaction[m] -= mass * own[k, m]
+        for j in range(count):
+            block, lane = j // LANES, j % LANES
+            for m in range(layout.block):
+                reaction[runs.first + m * count + j] -= mass * jacobian[block, first + m, lane]
+            for m in range(border):
+                if layout.body[m] == layout.body[k]:
+                    column = first + layout.own_column[m]
+                    reaction[m] -= mass * jacobian[block, column, lane]
+                    reaction[border + m] -= mass * jacobian[block, column + layout.size[m], lane]
+    for block in range(rows.shape[0]):
+        turn_frame(layout, runs, row, block, frame_of(work), rows, jacobian)
+
+
+@kernel
+def carry(layout, runs, row, t, y, model, work, rate, with_jacobian):
+    """Let the support move the outer ring and the shaft, and ring and cage with them; the rollers follow in the level.
+
+    Parameters
+    ----------
+    layout, runs, row : as of `react_on_support`.
+    rate : the level's part is written; changed.
+    """
+    params, rows, support, border, cage = model.params, work.rollers, work.support, layout.border, layout.size[0]
+    momentum_y, momentum_z = momentum_rate(row, params, rows)
+    momentum_y += params.ring.mass * rate[border] + params.cage.mass * rate[border + cage]
+    momentum_z += params.ring.mass * rate[border + 1] + params.cage.mass * rate[border + cage + 1]
+    support_accelerations(t, y, border, cage, momentum_y, momentum_z, model, rate, support)
+    if with_jacobian:
+        support_jacobian(y, border, cage, model, support)
+        react_on_support(layout, runs, row, params, rows, work.global_block, work.jacobian, support)
 
 
 @kernel
@@ -362,43 +419,52 @@ def _yield_frame(x, work):
 
 
 @kernel
-def _solve_held(solve, border, work, x):
+def _solve_held(layout, work, x):
     """Solve with a_O held."""
     support = work.support
-    _bend_shaft(border, x, support)
-    solve(work.jacobian, work.factored, x[: x.shape[0] - TAIL])
-    _follow_shaft(border, x, support)
+    _bend_shaft(layout.border, x, support)
+    solve(layout, work.jacobian, work.factored, x[: x.shape[0] - TAIL])
+    _follow_shaft(layout.border, x, support)
 
 
-@kernel
-def factor_supported(factor, solve, border, shift, work):
-    """Factor I - s J of a level with its support; return False where it is singular.
+@fused
+def factor_level(layout, shift, work):
+    """Factor I - s J of a level with or without a support; return False where it is singular.
 
     Parameters
     ----------
-    factor, solve : kernels of the level's block arrow.
-    border : how many positions its border has.
+    layout : of the level, a `bearing_sim.numerics.block_arrow.Layout`.
     shift : s [s].
     work : of the level.
     """
-    support, own = work.support, work.border_own
+    if work.support.shape[0] > 0:
+        return _factor_supported(layout, shift, work)
+    return factor(layout, work.jacobian, work.global_block, shift, work.factored)
+
+
+@kernel
+def _factor_supported(layout, shift, work):
+    support, own, border = work.support, work.global_block, layout.border
     along_y, along_z = own[0, border], own[1, border + 1]
     _stiffen_ring(shift, border, own, support)
-    regular = factor(work.jacobian, own, shift, work.factored)
+    regular = factor(layout, work.jacobian, own, shift, work.factored)
     own[0, border], own[1, border + 1] = along_y, along_z
     for axis in range(2):
         response = support[RESPONSE + axis]
         for i in range(response.shape[0]):
             response[i] = shift * support[FOLLOWING + axis, i]
-        _solve_held(solve, border, work, response)
+        _solve_held(layout, work, response)
     return _invert_yielding(support) and regular
 
 
-@kernel
-def solve_supported(solve, border, work, x):
-    """Replace the right side ``x`` by the solution with the last `factor_supported`; parameters as there."""
-    _solve_held(solve, border, work, x)
-    _yield_frame(x, work.support)
+@fused
+def solve_level(layout, work, x):
+    """Replace the right side ``x`` by the solution with the last `factor_level`; parameters as there."""
+    if work.support.shape[0] > 0:
+        _solve_held(layout, work, x)
+        _yield_frame(x, work.support)
+    else:
+        solve(layout, work.jacobian, work.factored, x)
 
 
 @kernel

@@ -29,14 +29,13 @@ import math
 
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, total_load
 from bearing_sim.levels.common.model import films_at, inner_growth, load_at, shaft_speed_at
-from bearing_sim.levels.common.rollers import add, carry_normal_forces, drag, linear_churning, place_in_pockets, place_outwards, place_rollers
-from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
+from bearing_sim.levels.common.rollers import carry_normal_forces, drag, linear_churning, place_in_pockets, place_outwards, place_rollers
+from bearing_sim.levels.common.support import carry, follow_frame, frame_of
 from bearing_sim.levels.planar.jacobian import (
     flange_jacobian,
     guide_jacobian,
     land_contact_jacobian,
     react_on_ring,
-    react_on_support,
     resistance_jacobian,
     roller_jacobian,
 )
@@ -44,18 +43,18 @@ from bearing_sim.levels.planar.state import (
     BORDER,
     CAGE_Y,
     CAGE_Z,
+    LAYOUT,
     OMEGA,
     RING_Y,
     RING_Z,
     ROLLER,
     RUNS,
     THETA,
-    collect_rates,
-    spread_state,
 )
+from bearing_sim.numerics.block_arrow import collect_rates, spread_state
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import cosine_sine
-from bearing_sim.numerics.simd import load, magnitude, spread, store, total, where_positive
+from bearing_sim.numerics.simd import add, load, magnitude, spread, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, damped_line_contact
 from bearing_sim.physics.drag import mixture_torque
 from bearing_sim.physics.flange import axial_share
@@ -88,7 +87,7 @@ def place_in_lands(y, shaft_speed, cage):
 @fused
 def border_accelerations(t, y, model, work, rate, with_jacobian):
     """Write the accelerations of ring and cage, but for what the rollers add, into ``rate`` and their derivatives into ``work``."""
-    params, drive, own = model.params, model.drive, work.border_own
+    params, drive, own = model.params, model.drive, work.global_block
     cage, shaft_speed = params.cage, shaft_speed_at(t, drive)
     load_y, load_z = load_at(t, drive)
     rate[BORDER + RING_Y], rate[BORDER + RING_Z] = load_y / params.ring.mass, load_z / params.ring.mass
@@ -254,7 +253,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     params, rows, contacts = model.params, work.rollers, work.contacts
     shaft_speed = shaft_speed_at(t, model.drive)
     films, churning = films_at(t, shaft_speed, model), linear_churning(y[OMEGA], shaft_speed, model)
-    spread_state(y, params.rollers.count, rows)
+    spread_state(LAYOUT, y, params.rollers.count, rows)
     border_accelerations(t, y, model, work, rate, with_jacobian)
     for k in range(BORDER):
         rate[k] = y[BORDER + k]
@@ -282,24 +281,11 @@ def equations(t, y, model, work, rate, with_jacobian):
         if params.flanges.on:
             flange_jacobian(y, params, rows, work.jacobian)
     if work.support.shape[0] > 0:
-        _carry(t, y, model, work, rate, with_jacobian)
-    collect_rates(y, params.rollers.count, rows, rate)
+        carry(LAYOUT, RUNS, ROLLER, t, y, model, work, rate, with_jacobian)
+        for block in range(rows.shape[0]):
+            follow_frame(ROLLER, block, frame_of(work.support), rows)
+    collect_rates(LAYOUT, y, params.rollers.count, rows, rate)
     return True
-
-
-@kernel
-def _carry(t, y, model, work, rate, with_jacobian):
-    """Let the support move the outer ring and the shaft, and everything else with them; see `bearing_sim.levels.common.support`."""
-    params, rows, support = model.params, work.rollers, work.support
-    momentum_y, momentum_z = momentum_rate(ROLLER, params, rows)
-    momentum_y += params.ring.mass * rate[BORDER + RING_Y] + params.cage.mass * rate[BORDER + CAGE_Y]
-    momentum_z += params.ring.mass * rate[BORDER + RING_Z] + params.cage.mass * rate[BORDER + CAGE_Z]
-    support_accelerations(t, y, BORDER, CAGE_Y, momentum_y, momentum_z, model, rate, support)
-    if with_jacobian:
-        support_jacobian(y, BORDER, CAGE_Y, model, support)
-        react_on_support(params, rows, work.border_own, work.jacobian, support)
-    for block in range(rows.shape[0]):
-        follow_frame(ROLLER, block, frame_of(support), rows)
 
 
 @kernel

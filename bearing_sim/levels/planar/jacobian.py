@@ -1,9 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The Jacobian of level ``planar``, and the solution of (I - s J) x = b; ``LANES`` rollers at a time (a block).
+"""The Jacobian of level ``planar``; ``LANES`` rollers at a time (a block).
 
-A roller depends on 15 variables: its own r, phi, r', phi', w, the border's five positions and their five speeds.  The rows of
-`bearing_sim.levels.planar.state.JACOBIAN_ROWS` are those of r'', phi'' and w', then those that the accelerations of ring and cage (the
-border) have through the roller.  Lanes without a roller contribute nothing to the border.
+A roller depends on 15 variables: its own r, phi, r', phi', w, the border's five positions and their five speeds.  Its rows
+(`bearing_sim.numerics.block_arrow`) are those of r'', phi'' and w', then those that the accelerations of ring and cage (the border) have
+through the roller.  Lanes without a roller contribute nothing to the border.
 
 **Inner contact.** Let a = (a_r, a_t) be the roller's centre relative to the ring's and v its velocity, n = a/|a|, p a right angle ahead of it,
 v_n = n.v, v_p = p.v; k and d the derivatives of Q_i by penetration and by its rate, T_Q, T_s, T_u those of the traction by load, sliding and
@@ -26,48 +26,40 @@ a roller that moves the other way.
     Q_r = k,  Q_phi = -k R_e' - d R_e'' phi',  Q_r' = d,  Q_phi' = -d R_e';   T likewise, with T_s and T_u.
 
 **Pocket.** The force f on the wall depends on s and s' (`bearing_sim.levels.common.rollers.place_in_pockets`), its direction on psi.
-
-**Linear algebra.** (I - s J) x = b for the whole first-order state is reduced to speeds, because every position is x = b + s v: J becomes
-s (d/dv + s d/dq).  What is left is a block arrow, a 3x3 block for each roller and one 5x5 border; the rollers are eliminated one by one into
-the border's Schur complement.  Cost O(Z).
 """
 
 from bearing_sim.levels.common.flanges import FLANGE
-from bearing_sim.levels.common.rollers import add
-from bearing_sim.levels.common.support import REACTION, frame_of, react_by_border, react_by_rollers, turn_frame
 from bearing_sim.levels.planar.state import (
-    AT_POSITIONS,
-    AT_SPEEDS,
-    BELOW,
+    AT_CAGE,
+    AT_RING,
     BLOCK,
     BORDER,
+    CAGE,
+    CAGE_COLUMNS,
+    CAGE_ROWS,
     CAGE_Y,
     CAGE_Z,
-    INVERSE,
     LOCAL,
     OMEGA,
     PHI,
     PHI_SPEED,
     R_SPEED,
-    RIGHT,
     RING,
+    RING_COLUMNS,
+    RING_ROWS,
     RING_Y,
     RING_Z,
     ROLLER,
-    ROLLERS,
     SPIN,
     THETA,
     R,
 )
-from bearing_sim.model.params import SUPPORT
 from bearing_sim.numerics.compilation import fused, kernel
-from bearing_sim.numerics.linear_algebra import back_substitute, decompose
-from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, load, magnitude, spread, spread_runs, store, total, where_positive
+from bearing_sim.numerics.simd import add, load, magnitude, spread, store, where_positive
 from bearing_sim.physics.contact import CONTACT
 
 _RADIAL, _ORBITAL, _SPINNING = 0, LOCAL, 2 * LOCAL  # where the rows of r'', phi'' and w' begin
-_PASSED = 3 * LOCAL  # where those of the border begin
-_CAGE_ROWS = 3 * LOCAL + LOCAL * CAGE_Y  # where the rows of the cage's accelerations begin, see `bearing_sim.levels.planar.state.JACOBIAN_ROWS`
+_AT_THETA, _AT_OMEGA = AT_CAGE + 2, AT_CAGE + CAGE + 2  # columns of the cage's angle and speed
 
 
 @kernel
@@ -77,7 +69,7 @@ def _in_frame(force, traction, turn, n_r, n_t, radial, along):
 
 
 @kernel
-def _by_own(columns, y, cosine, sine, radius, orbital_speed):
+def _d_roller(columns, y, cosine, sine, radius, orbital_speed):
     """Return the derivatives by r, phi, r', phi' from those by a and v (see the docstring of the module)."""
     d_apart_r, d_apart_t, d_speed_r, d_speed_t = columns
     ring_r, ring_t = y[RING_Y] * cosine + y[RING_Z] * sine, y[RING_Z] * cosine - y[RING_Y] * sine
@@ -88,7 +80,7 @@ def _by_own(columns, y, cosine, sine, radius, orbital_speed):
 
 
 @kernel
-def _own_columns(put, block, jacobian, first, scale, columns, d_spin):
+def _roller_columns(put, block, jacobian, first, scale, columns, d_spin):
     """Store or add (``put``) ``scale`` times the columns by r, phi, r', phi', and that by the spin."""
     put(jacobian, block, first + R, scale * columns[0])
     put(jacobian, block, first + PHI, scale * columns[1])
@@ -100,10 +92,10 @@ def _own_columns(put, block, jacobian, first, scale, columns, d_spin):
 @kernel
 def _ring_columns(put, block, jacobian, first, scale, columns, cosine, sine):
     """Store or add the columns by the ring's position and velocity, from those by a and v: a ring that moves is a roller that moves the other way."""
-    put(jacobian, block, first + AT_POSITIONS + RING_Y, scale * (columns[1] * sine - columns[0] * cosine))
-    put(jacobian, block, first + AT_POSITIONS + RING_Z, -scale * (columns[0] * sine + columns[1] * cosine))
-    put(jacobian, block, first + AT_SPEEDS + RING_Y, scale * (columns[3] * sine - columns[2] * cosine))
-    put(jacobian, block, first + AT_SPEEDS + RING_Z, -scale * (columns[2] * sine + columns[3] * cosine))
+    put(jacobian, block, first + AT_RING + RING_Y, scale * (columns[1] * sine - columns[0] * cosine))
+    put(jacobian, block, first + AT_RING + RING_Z, -scale * (columns[0] * sine + columns[1] * cosine))
+    put(jacobian, block, first + AT_RING + RING + RING_Y, scale * (columns[3] * sine - columns[2] * cosine))
+    put(jacobian, block, first + AT_RING + RING + RING_Z, -scale * (columns[2] * sine + columns[3] * cosine))
 
 
 @kernel
@@ -132,14 +124,14 @@ def _inner_rows(put, block, y, params, rows, force, radial_columns, along_column
     radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
     per_mass = 1.0 / params.rollers.mass
     per_lever = per_mass / radius
-    radial_r, radial_phi, radial_r_speed, radial_phi_speed = _by_own(radial_columns, y, cosine, sine, radius, orbital_speed)
-    along_r, along_phi, along_r_speed, along_phi_speed = _by_own(along_columns, y, cosine, sine, radius, orbital_speed)
-    spin_r, spin_phi, spin_r_speed, spin_phi_speed = _by_own(spin_columns, y, cosine, sine, radius, orbital_speed)
+    radial_r, radial_phi, radial_r_speed, radial_phi_speed = _d_roller(radial_columns, y, cosine, sine, radius, orbital_speed)
+    along_r, along_phi, along_r_speed, along_phi_speed = _d_roller(along_columns, y, cosine, sine, radius, orbital_speed)
+    spin_r, spin_phi, spin_r_speed, spin_phi_speed = _d_roller(spin_columns, y, cosine, sine, radius, orbital_speed)
     radial_phi_speed, along_phi_speed, spin_phi_speed = radial_phi_speed + d_orbit[0], along_phi_speed + d_orbit[1], spin_phi_speed + d_orbit[2]
     radial_spin, along_spin = d_spin[0], d_spin[1]
-    _own_columns(put, block, jacobian, _RADIAL, per_mass, (radial_r, radial_phi, radial_r_speed, radial_phi_speed), per_mass * radial_spin)
-    _own_columns(put, block, jacobian, _ORBITAL, per_lever, (along_r, along_phi, along_r_speed, along_phi_speed), per_lever * along_spin)
-    _own_columns(put, block, jacobian, _SPINNING, per_inertia, (spin_r, spin_phi, spin_r_speed, spin_phi_speed), per_inertia * d_spin[2])
+    _roller_columns(put, block, jacobian, _RADIAL, per_mass, (radial_r, radial_phi, radial_r_speed, radial_phi_speed), per_mass * radial_spin)
+    _roller_columns(put, block, jacobian, _ORBITAL, per_lever, (along_r, along_phi, along_r_speed, along_phi_speed), per_lever * along_spin)
+    _roller_columns(put, block, jacobian, _SPINNING, per_inertia, (spin_r, spin_phi, spin_r_speed, spin_phi_speed), per_inertia * d_spin[2])
     _ring_columns(put, block, jacobian, _RADIAL, per_mass, radial_columns, cosine, sine)
     _ring_columns(put, block, jacobian, _ORBITAL, per_lever, along_columns, cosine, sine)
     _ring_columns(put, block, jacobian, _SPINNING, per_inertia, spin_columns, cosine, sine)
@@ -148,9 +140,9 @@ def _inner_rows(put, block, y, params, rows, force, radial_columns, along_column
     # the force's direction turns with the roller's azimuth
     of_radial = radial_r, radial_phi - force[1], radial_r_speed, radial_phi_speed
     of_along = along_r, along_phi + force[0], along_r_speed, along_phi_speed
-    ring_y, ring_z = _PASSED + LOCAL * RING_Y, _PASSED + LOCAL * RING_Z
-    _own_columns(put, block, jacobian, ring_y, 1.0, _turned(of_radial, of_along, c, s), radial_spin * c - along_spin * s)
-    _own_columns(put, block, jacobian, ring_z, 1.0, _turned(of_radial, of_along, s, -c), radial_spin * s + along_spin * c)
+    ring_y, ring_z = RING_ROWS, RING_ROWS + RING_COLUMNS
+    _roller_columns(put, block, jacobian, ring_y, 1.0, _turned(of_radial, of_along, c, s), radial_spin * c - along_spin * s)
+    _roller_columns(put, block, jacobian, ring_z, 1.0, _turned(of_radial, of_along, s, -c), radial_spin * s + along_spin * c)
     _ring_columns(put, block, jacobian, ring_y, 1.0, _turned(radial_columns, along_columns, c, s), cosine, sine)
     _ring_columns(put, block, jacobian, ring_z, 1.0, _turned(radial_columns, along_columns, s, -c), cosine, sine)
 
@@ -220,7 +212,7 @@ def _outer_jacobian(y, churning, params, rows, contacts, jacobian):
         )
         add(jacobian, block, _ORBITAL + SPIN, per_lever * t_spin)
         pitch_speed = params.raceways.pitch_radius * y[OMEGA]
-        store(jacobian, block, _ORBITAL + AT_SPEEDS + THETA, per_lever * (-churning[2] * (radius * orbital_speed - pitch_speed)))
+        store(jacobian, block, _ORBITAL + _AT_OMEGA, per_lever * (-churning[2] * (radius * orbital_speed - pitch_speed)))
         add(jacobian, block, _SPINNING + R, per_inertia * t_r)
         add(jacobian, block, _SPINNING + PHI, per_inertia * t_phi)
         add(jacobian, block, _SPINNING + R_SPEED, per_inertia * t_r_speed)
@@ -230,13 +222,10 @@ def _outer_jacobian(y, churning, params, rows, contacts, jacobian):
 
 @kernel
 def _cage_columns(block, jacobian, first, scale, d_position, d_speed):
-    """Write the columns by the cage's position and speed."""
-    store(jacobian, block, first + AT_POSITIONS + CAGE_Y, scale * d_position[0])
-    store(jacobian, block, first + AT_POSITIONS + CAGE_Z, scale * d_position[1])
-    store(jacobian, block, first + AT_POSITIONS + THETA, scale * d_position[2])
-    store(jacobian, block, first + AT_SPEEDS + CAGE_Y, scale * d_speed[0])
-    store(jacobian, block, first + AT_SPEEDS + CAGE_Z, scale * d_speed[1])
-    store(jacobian, block, first + AT_SPEEDS + THETA, scale * d_speed[2])
+    """Write the columns by the cage's position and speed, which begin at ``first``."""
+    for k in range(CAGE):
+        store(jacobian, block, first + k, scale * d_position[k])
+        store(jacobian, block, first + CAGE + k, scale * d_speed[k])
 
 
 @fused
@@ -266,19 +255,19 @@ def _pocket_jacobian(y, params, rows, jacobian):
         size, side = magnitude(force), where_positive(force, 1.0, -1.0)
         per_mass, per_lever = -1.0 / mass, (-1.0 / mass) / radius
         per_inertia = (-params.rollers.radius / params.rollers.inertia) * friction * side
-        _own_columns(add, block, jacobian, _RADIAL, per_mass * push_r, own, per_mass * (force * play_c * bend))
-        _own_columns(add, block, jacobian, _ORBITAL, per_lever * push_t, own, -(per_lever * (force * play_s * bend)))
-        _own_columns(add, block, jacobian, _SPINNING, per_inertia, own, (-params.rollers.radius / params.rollers.inertia) * size * bend)
-        _cage_columns(block, jacobian, _RADIAL, per_mass * push_r, at, with_speed)
-        churned = load(jacobian, block, _ORBITAL + AT_SPEEDS + THETA)
-        _cage_columns(block, jacobian, _ORBITAL, per_lever * push_t, at, with_speed)
-        add(jacobian, block, _ORBITAL + AT_SPEEDS + THETA, churned)
-        _cage_columns(block, jacobian, _SPINNING, per_inertia, at, with_speed)
+        _roller_columns(add, block, jacobian, _RADIAL, per_mass * push_r, own, per_mass * (force * play_c * bend))
+        _roller_columns(add, block, jacobian, _ORBITAL, per_lever * push_t, own, -(per_lever * (force * play_s * bend)))
+        _roller_columns(add, block, jacobian, _SPINNING, per_inertia, own, (-params.rollers.radius / params.rollers.inertia) * size * bend)
+        _cage_columns(block, jacobian, _RADIAL + AT_CAGE, per_mass * push_r, at, with_speed)
+        churned = load(jacobian, block, _ORBITAL + _AT_OMEGA)
+        _cage_columns(block, jacobian, _ORBITAL + AT_CAGE, per_lever * push_t, at, with_speed)
+        add(jacobian, block, _ORBITAL + _AT_OMEGA, churned)
+        _cage_columns(block, jacobian, _SPINNING + AT_CAGE, per_inertia, at, with_speed)
         # the force's direction turns with the roller's azimuth and with the pocket
         add(jacobian, block, _RADIAL + PHI, per_mass * (force * push_t))
-        add(jacobian, block, _RADIAL + AT_POSITIONS + THETA, -per_mass * (force * push_t))
+        add(jacobian, block, _RADIAL + _AT_THETA, -per_mass * (force * push_t))
         add(jacobian, block, _ORBITAL + PHI, -(per_lever * (force * push_r)))
-        add(jacobian, block, _ORBITAL + AT_POSITIONS + THETA, per_lever * (force * push_r))
+        add(jacobian, block, _ORBITAL + _AT_THETA, per_lever * (force * push_r))
         _cage_jacobian(block, params, rows, jacobian, own, at, with_speed, cage_t, lever)
 
 
@@ -294,24 +283,24 @@ def _cage_jacobian(block, params, rows, jacobian, own, at, with_speed, cage_t, l
     push_y, push_z = friction * p_c - p_s, p_c + friction * p_s
     arm = lever - friction * (where_positive(force, roller_radius, -roller_radius) + offset)
     per_mass, per_inertia = present * (1.0 / cage.mass), present * (1.0 / cage.inertia)
-    cage_y, cage_z, theta = _PASSED + LOCAL * CAGE_Y, _PASSED + LOCAL * CAGE_Z, _PASSED + LOCAL * THETA
-    _own_columns(store, block, jacobian, cage_y, per_mass * push_y, own, 0.0)
-    _own_columns(store, block, jacobian, cage_z, per_mass * push_z, own, 0.0)
+    cage_y, cage_z, theta = CAGE_ROWS, CAGE_ROWS + CAGE_COLUMNS, CAGE_ROWS + 2 * CAGE_COLUMNS
+    _roller_columns(store, block, jacobian, cage_y, per_mass * push_y, own, 0.0)
+    _roller_columns(store, block, jacobian, cage_z, per_mass * push_z, own, 0.0)
     store(jacobian, block, cage_y + SPIN, per_mass * (force * p_c * bend))
     store(jacobian, block, cage_z + SPIN, per_mass * (force * p_s * bend))
-    _cage_columns(block, jacobian, cage_y, per_mass * push_y, at, with_speed)
-    _cage_columns(block, jacobian, cage_z, per_mass * push_z, at, with_speed)
-    add(jacobian, block, cage_y + AT_POSITIONS + THETA, -(per_mass * (force * push_z)))
-    add(jacobian, block, cage_z + AT_POSITIONS + THETA, per_mass * (force * push_y))
+    _cage_columns(block, jacobian, cage_y + BLOCK, per_mass * push_y, at, with_speed)
+    _cage_columns(block, jacobian, cage_z + BLOCK, per_mass * push_z, at, with_speed)
+    add(jacobian, block, cage_y + BLOCK + 2, -(per_mass * (force * push_z)))
+    add(jacobian, block, cage_z + BLOCK + 2, per_mass * (force * push_y))
     braked = force * friction
     turned = (own[0] * arm - braked * play_s + force * play_c, own[1] * arm - (braked * play_c + force * play_s) * radius, own[2] * arm, own[3] * arm)
-    _own_columns(store, block, jacobian, theta, per_inertia, turned, per_inertia * (-((magnitude(force) * roller_radius + offset * force) * bend)))
+    _roller_columns(store, block, jacobian, theta, per_inertia, turned, per_inertia * (-((magnitude(force) * roller_radius + offset * force) * bend)))
     moved = (
         at[0] * arm - braked * p_s - force * p_c,
         at[1] * arm + braked * p_c - force * p_s,
         at[2] * arm + braked * lever + force * (radius * play_s - cage_t),
     )
-    _cage_columns(block, jacobian, theta, per_inertia, moved, (with_speed[0] * arm, with_speed[1] * arm, with_speed[2] * arm))
+    _cage_columns(block, jacobian, theta + BLOCK, per_inertia, moved, (with_speed[0] * arm, with_speed[1] * arm, with_speed[2] * arm))
 
 
 @fused
@@ -370,8 +359,8 @@ def _outer_resistance(params, rows, contacts, jacobian):
         d_angle, d_orbit = -(stiffness * slope) - damping * curvature * orbital_speed, d_rolling * (radius + 2.0 * roller_radius)
         columns = (stiffness + d_rolling * orbital_speed, d_angle, damping, d_orbit - damping * slope)
         per_lever, d_spin = per_mass / radius, d_rolling * roller_radius
-        _own_columns(add, block, jacobian, _ORBITAL, per_lever, columns, per_lever * d_spin)
-        _own_columns(add, block, jacobian, _SPINNING, per_inertia, columns, per_inertia * d_spin)
+        _roller_columns(add, block, jacobian, _ORBITAL, per_lever, columns, per_lever * d_spin)
+        _roller_columns(add, block, jacobian, _SPINNING, per_inertia, columns, per_inertia * d_spin)
 
 
 @kernel
@@ -434,14 +423,14 @@ def _guide_by_variable(block, column, d_offset, d_rate, d_place, params, rows, j
     change = load(rows, block, ROLLER.guide_stiffness) * d_offset + load(rows, block, ROLLER.guide_damping) * d_rate
     braking = friction * where_positive(force, rollers.radius, -rollers.radius)
     arm = load(rows, block, ROLLER.pocket_offset) + friction * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius) + braking
-    per_mass = 1.0 / rollers.mass
+    per_mass, of_cage = 1.0 / rollers.mass, CAGE_ROWS + (column if column < BLOCK else column - 2 * RING)
     add(jacobian, block, column, -(per_mass * change * (c - friction * s)))
     add(jacobian, block, LOCAL + column, per_mass * change * (s + friction * c) / load(rows, block, ROLLER.radius))
     add(jacobian, block, 2 * LOCAL + column, -(change * braking * (1.0 / rollers.inertia)))
-    add(jacobian, block, _CAGE_ROWS + column, present * change * (p_c + friction * p_s) * (1.0 / cage.mass))
-    add(jacobian, block, _CAGE_ROWS + LOCAL + column, present * change * (p_s - friction * p_c) * (1.0 / cage.mass))
+    add(jacobian, block, of_cage, present * change * (p_c + friction * p_s) * (1.0 / cage.mass))
+    add(jacobian, block, of_cage + CAGE_COLUMNS, present * change * (p_s - friction * p_c) * (1.0 / cage.mass))
     turned = change * arm + force * (d_place + friction * d_offset)
-    add(jacobian, block, _CAGE_ROWS + 2 * LOCAL + column, -(present * turned * (1.0 / cage.inertia)))
+    add(jacobian, block, of_cage + 2 * CAGE_COLUMNS, -(present * turned * (1.0 / cage.inertia)))
 
 
 @kernel
@@ -454,21 +443,20 @@ def _guide_directions(block, params, rows, jacobian):
     force = -load(rows, block, ROLLER.guide_force)
     turned = force * (1.0 / rollers.mass)
     lever = turned / load(rows, block, ROLLER.radius)
-    theta = AT_POSITIONS + THETA
     add(jacobian, block, PHI, turned * (s + friction * c))
-    add(jacobian, block, theta, -(turned * (s + friction * c)))
+    add(jacobian, block, _AT_THETA, -(turned * (s + friction * c)))
     add(jacobian, block, SPIN, turned * s * bend)
     add(jacobian, block, LOCAL + PHI, lever * (c - friction * s))
-    add(jacobian, block, LOCAL + theta, -(lever * (c - friction * s)))
+    add(jacobian, block, LOCAL + _AT_THETA, -(lever * (c - friction * s)))
     add(jacobian, block, LOCAL + SPIN, lever * c * bend)
     add(jacobian, block, 2 * LOCAL + SPIN, -(magnitude(force) * bend * (rollers.radius / rollers.inertia)))
     turned = present * force * (1.0 / cage.mass)
-    add(jacobian, block, _CAGE_ROWS + theta, turned * (friction * p_c - p_s))
-    add(jacobian, block, _CAGE_ROWS + SPIN, turned * p_s * bend)
-    add(jacobian, block, _CAGE_ROWS + LOCAL + theta, turned * (p_c + friction * p_s))
-    add(jacobian, block, _CAGE_ROWS + LOCAL + SPIN, -(turned * p_c * bend))
+    add(jacobian, block, CAGE_ROWS + BLOCK + 2, turned * (friction * p_c - p_s))
+    add(jacobian, block, CAGE_ROWS + SPIN, turned * p_s * bend)
+    add(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + BLOCK + 2, turned * (p_c + friction * p_s))
+    add(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + SPIN, -(turned * p_c * bend))
     slid = force * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius) + magnitude(force) * rollers.radius
-    add(jacobian, block, _CAGE_ROWS + 2 * LOCAL + SPIN, -(present * slid * bend * (1.0 / cage.inertia)))
+    add(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + SPIN, -(present * slid * bend * (1.0 / cage.inertia)))
 
 
 @kernel
@@ -478,7 +466,7 @@ def guide_jacobian(y, params, rows, jacobian):
     Parameters
     ----------
     y, params, rows : as of `guide_forces`.
-    jacobian : takes the derivatives, see `bearing_sim.levels.planar.state.JACOBIAN_ROWS`.
+    jacobian : takes the derivatives, see `bearing_sim.numerics.block_arrow`.
     """
     omega = y[OMEGA]
     for block in range(rows.shape[0]):
@@ -495,12 +483,12 @@ def guide_jacobian(y, params, rows, jacobian):
         _guide_by_variable(block, PHI, -(radius * s), rise, radius * c, params, rows, jacobian)
         _guide_by_variable(block, R_SPEED, none, c, none, params, rows, jacobian)
         _guide_by_variable(block, PHI_SPEED, none, -(radius * s), none, params, rows, jacobian)
-        _guide_by_variable(block, AT_POSITIONS + CAGE_Y, -p_c, omega * p_s, p_s, params, rows, jacobian)
-        _guide_by_variable(block, AT_POSITIONS + CAGE_Z, -p_s, -(omega * p_c), -p_c, params, rows, jacobian)
-        _guide_by_variable(block, AT_POSITIONS + THETA, offset, turned, -lever, params, rows, jacobian)
-        _guide_by_variable(block, AT_SPEEDS + CAGE_Y, none, -p_c, none, params, rows, jacobian)
-        _guide_by_variable(block, AT_SPEEDS + CAGE_Z, none, -p_s, none, params, rows, jacobian)
-        _guide_by_variable(block, AT_SPEEDS + THETA, none, offset, none, params, rows, jacobian)
+        _guide_by_variable(block, AT_CAGE, -p_c, omega * p_s, p_s, params, rows, jacobian)
+        _guide_by_variable(block, AT_CAGE + 1, -p_s, -(omega * p_c), -p_c, params, rows, jacobian)
+        _guide_by_variable(block, _AT_THETA, offset, turned, -lever, params, rows, jacobian)
+        _guide_by_variable(block, AT_CAGE + CAGE, none, -p_c, none, params, rows, jacobian)
+        _guide_by_variable(block, AT_CAGE + CAGE + 1, none, -p_s, none, params, rows, jacobian)
+        _guide_by_variable(block, _AT_OMEGA, none, offset, none, params, rows, jacobian)
         _guide_directions(block, params, rows, jacobian)
 
 
@@ -544,203 +532,3 @@ def react_on_ring(params, own, rate, with_jacobian):
     for axis in range(2):
         for column in range(2 * BORDER):
             own[RING_Y + axis, column] = fraction * own[CAGE_Y + axis, column]
-
-
-@kernel
-def react_on_support(params, rows, own, jacobian, support):
-    """Write what all bodies do to the outer ring that a support carries; see `bearing_sim.levels.common.support`.
-
-    Parameters
-    ----------
-    params : of the bearing.
-    rows : of the rollers; accelerations and derivatives as they are without the frame's acceleration.
-    own : derivatives of the border's accelerations by border positions and speeds.
-    jacobian : derivatives through each roller; changed by how the frame's acceleration turns with them.
-    support : memory of the support; changed.
-    """
-    count, per_mass = params.rollers.count, params.support[SUPPORT.outer_moves] / params.support[SUPPORT.outer_mass]
-    at = R, PHI, R_SPEED, PHI_SPEED, BLOCK, ROLLERS
-    react_by_rollers(ROLLER, at, LOCAL, count, per_mass * params.rollers.mass, rows, jacobian, support)
-    for m in range(2 * BORDER):
-        column = AT_POSITIONS + m
-        react_by_border(m, column, LOCAL, ROLLER.cosine, ROLLER.sine, ROLLER.radius, count, per_mass * params.rollers.mass, rows, jacobian, support)
-    for k in range(CAGE_Z + 1):
-        mass, reaction = per_mass * (params.ring.mass if k < RING else params.cage.mass), support[REACTION + k % 2]
-        for m in range(2 * BORDER):
-            reaction[m] -= mass * own[k, m]
-        for j in range(count):
-            block, lane, first = j // LANES, j % LANES, _PASSED + LOCAL * k
-            for m in range(BLOCK):
-                reaction[ROLLERS + m * count + j] -= mass * jacobian[block, first + m, lane]
-            for m in range(2 * BORDER):
-                reaction[m] -= mass * jacobian[block, first + AT_POSITIONS + m, lane]
-    for block in range(rows.shape[0]):
-        turn_frame(at, LOCAL, ROLLER, block, frame_of(support), rows, jacobian)
-
-
-@kernel
-def _shifted(jacobian, block, row, position, speed, s):
-    """Return s (d/d(speed) + s d/d(position)): what a speed does within an implicit step."""
-    return s * (load(jacobian, block, row + speed) + s * load(jacobian, block, row + position))
-
-
-@fused
-def _roller_blocks(block, jacobian, s, rows):
-    """Invert the 3x3 matrices I - s (dv'/dv + s dv'/dq) of a block of rollers by cofactors; return whether all are regular."""
-    a, b = 1.0 - _shifted(jacobian, block, 0, 0, 2, s), -_shifted(jacobian, block, 0, 1, 3, s)
-    d, e = -_shifted(jacobian, block, LOCAL, 0, 2, s), 1.0 - _shifted(jacobian, block, LOCAL, 1, 3, s)
-    g, h = -_shifted(jacobian, block, 2 * LOCAL, 0, 2, s), -_shifted(jacobian, block, 2 * LOCAL, 1, 3, s)
-    c, f, i = -(s * load(jacobian, block, 4)), -(s * load(jacobian, block, LOCAL + 4)), 1.0 - s * load(jacobian, block, 2 * LOCAL + 4)
-    m_0, m_1, m_2 = e * i - f * h, f * g - d * i, d * h - e * g
-    determinant = a * m_0 + b * m_1 + c * m_2
-    scale = 1.0 / determinant
-    store(rows, block, INVERSE, m_0 * scale)
-    store(rows, block, INVERSE + 1, (c * h - b * i) * scale)
-    store(rows, block, INVERSE + 2, (b * f - c * e) * scale)
-    store(rows, block, INVERSE + 3, m_1 * scale)
-    store(rows, block, INVERSE + 4, (a * i - c * g) * scale)
-    store(rows, block, INVERSE + 5, (c * d - a * f) * scale)
-    store(rows, block, INVERSE + 6, m_2 * scale)
-    store(rows, block, INVERSE + 7, (b * g - a * h) * scale)
-    store(rows, block, INVERSE + 8, (a * e - b * d) * scale)
-    return total(where_positive(magnitude(determinant), 1.0, 0.0)) == LANES
-
-
-@fused
-def _couplings(block, jacobian, s, rows):
-    """Write how a block of rollers and the border act on each other."""
-    for m in range(BORDER):
-        c_0 = _shifted(jacobian, block, m, AT_POSITIONS, AT_SPEEDS, s)
-        c_1 = _shifted(jacobian, block, LOCAL + m, AT_POSITIONS, AT_SPEEDS, s)
-        c_2 = _shifted(jacobian, block, 2 * LOCAL + m, AT_POSITIONS, AT_SPEEDS, s)
-        for k in range(3):
-            row = load(rows, block, 3 * k) * c_0 + load(rows, block, 3 * k + 1) * c_1 + load(rows, block, 3 * k + 2) * c_2
-            store(rows, block, RIGHT + BORDER * k + m, row)
-    for k in range(BORDER):
-        first = (3 + k) * LOCAL
-        store(rows, block, BELOW + 3 * k, _shifted(jacobian, block, first, 0, 2, s))
-        store(rows, block, BELOW + 3 * k + 1, _shifted(jacobian, block, first, 1, 3, s))
-        store(rows, block, BELOW + 3 * k + 2, s * load(jacobian, block, first + 4))
-
-
-@fused
-def _through_rollers(k, rows):
-    """Return what the border's five speeds do to a border equation through all rollers, which yield (lanes)."""
-    by_0, by_1, by_2, by_3, by_4 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    for block in range(rows.shape[0]):
-        for motion in range(3):
-            below, right = load(rows, block, BELOW + 3 * k + motion), RIGHT + BORDER * motion
-            by_0 += below * load(rows, block, right)
-            by_1 += below * load(rows, block, right + 1)
-            by_2 += below * load(rows, block, right + 2)
-            by_3 += below * load(rows, block, right + 3)
-            by_4 += below * load(rows, block, right + 4)
-    return total(by_0), total(by_1), total(by_2), total(by_3), total(by_4)
-
-
-@fused
-def _passed_by_rollers(k, m, jacobian):
-    """Return what a border position and its speed do to a border acceleration through all rollers, which are held."""
-    d_position, d_speed = spread(0.0), spread(0.0)
-    first = (3 + k) * LOCAL + m
-    for block in range(jacobian.shape[0]):
-        d_position += load(jacobian, block, first + AT_POSITIONS)
-        d_speed += load(jacobian, block, first + AT_SPEEDS)
-    return total(d_position), total(d_speed)
-
-
-@fused
-def factor(jacobian, border, s, factored):
-    """Factor I - s J.
-
-    Parameters
-    ----------
-    jacobian : derivatives through each roller, rows as `JACOBIAN_ROWS` says.
-    border : derivatives of the border's accelerations by its own positions and speeds, shape (5, 10).
-    s : gamma h [s].
-    factored : takes the factorisation.
-
-    Returns
-    -------
-    regular : False where a pivot is zero or not finite.
-    """
-    rows, corner = factored.rows, factored.schur
-    factored.shift[0] = s
-    regular = True
-    for block in range(jacobian.shape[0]):
-        regular = _roller_blocks(block, jacobian, s, rows) and regular
-        _couplings(block, jacobian, s, rows)
-    for k in range(BORDER):
-        corner[k, 0], corner[k, 1], corner[k, 2], corner[k, 3], corner[k, 4] = _through_rollers(k, rows)
-        for m in range(BORDER):
-            corner[k, m] = (1.0 if k == m else 0.0) - s * (border[k, BORDER + m] + s * border[k, m]) - corner[k, m]
-            factored.positions[k, m] = border[k, m]
-            if (k < RING) == (m < RING):  # ring and cage meet only in the rollers
-                d_position, d_speed = _passed_by_rollers(k, m, jacobian)
-                corner[k, m] -= s * (d_speed + s * d_position)
-                factored.positions[k, m] += d_position
-    return decompose(BORDER, corner, factored.order) and regular
-
-
-@fused
-def _eliminate(block, jacobian, s, x, factored):
-    """Reduce a block's right side to speeds, solve for them without the border, and take what they do to it from its own."""
-    rows, right = factored.rows, factored.right
-    radius, angle = load(right, block, 0), load(right, block, 1)
-    b_0 = load(jacobian, block, 0) * radius + load(jacobian, block, 1) * angle
-    b_1 = load(jacobian, block, LOCAL) * radius + load(jacobian, block, LOCAL + 1) * angle
-    b_2 = load(jacobian, block, 2 * LOCAL) * radius + load(jacobian, block, 2 * LOCAL + 1) * angle
-    for m in range(BORDER):
-        b_0 += x[m] * load(jacobian, block, AT_POSITIONS + m)
-        b_1 += x[m] * load(jacobian, block, LOCAL + AT_POSITIONS + m)
-        b_2 += x[m] * load(jacobian, block, 2 * LOCAL + AT_POSITIONS + m)
-    b_0, b_1, b_2 = load(right, block, 2) + s * b_0, load(right, block, 3) + s * b_1, load(right, block, 4) + s * b_2
-    v_0 = load(rows, block, 0) * b_0 + load(rows, block, 1) * b_1 + load(rows, block, 2) * b_2
-    v_1 = load(rows, block, 3) * b_0 + load(rows, block, 4) * b_1 + load(rows, block, 5) * b_2
-    v_2 = load(rows, block, 6) * b_0 + load(rows, block, 7) * b_1 + load(rows, block, 8) * b_2
-    store(right, block, 2, v_0)
-    store(right, block, 3, v_1)
-    store(right, block, 4, v_2)
-    for k in range(BORDER):
-        first, below = (3 + k) * LOCAL, BELOW + 3 * k
-        passed = s * (load(jacobian, block, first) * radius + load(jacobian, block, first + 1) * angle)
-        passed += load(rows, block, below) * v_0 + load(rows, block, below + 1) * v_1 + load(rows, block, below + 2) * v_2
-        x[BORDER + k] += total(passed)
-
-
-@fused
-def _substitute(block, s, x, factored):
-    """Complete a block's speeds by what the border does to them, and its positions."""
-    rows, right = factored.rows, factored.right
-    v_0, v_1, v_2 = load(right, block, 2), load(right, block, 3), load(right, block, 4)
-    for m in range(BORDER):
-        v_0 += x[BORDER + m] * load(rows, block, RIGHT + m)
-        v_1 += x[BORDER + m] * load(rows, block, RIGHT + BORDER + m)
-        v_2 += x[BORDER + m] * load(rows, block, RIGHT + 2 * BORDER + m)
-    store(right, block, 0, load(right, block, 0) + s * v_0)
-    store(right, block, 1, load(right, block, 1) + s * v_1)
-    store(right, block, 2, v_0)
-    store(right, block, 3, v_1)
-    store(right, block, 4, v_2)
-
-
-@fused
-def solve(jacobian, factored, x):
-    """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
-    s = factored.shift[0]
-    count = (x.shape[0] - 2 * BORDER) // BLOCK
-    spread_runs(x, 2 * BORDER, BLOCK, count, factored.right)
-    fill_lanes(factored.right, BLOCK, count)  # a NaN of an attempt that failed would stay there and reach the border
-    for k in range(BORDER):
-        through = 0.0
-        for m in range(BORDER):
-            through += factored.positions[k, m] * x[m]
-        x[BORDER + k] += s * through
-    for block in range(jacobian.shape[0]):
-        _eliminate(block, jacobian, s, x, factored)
-    back_substitute(BORDER, factored.schur, factored.order, x[BORDER : 2 * BORDER])
-    for block in range(jacobian.shape[0]):
-        _substitute(block, s, x, factored)
-    for k in range(BORDER):
-        x[k] += s * x[BORDER + k]
-    collect_runs(factored.right, 0, BLOCK, count, x, 2 * BORDER)

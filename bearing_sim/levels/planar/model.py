@@ -7,22 +7,22 @@ implicit steps: `bearing_sim.levels.planar.jacobian`.
 
 import math
 
-from bearing_sim.levels.common.flanges import observe_flanges
+from bearing_sim.levels.common.advance import advance_by
+from bearing_sim.levels.common.dynamic import average_step, observe_level
 from bearing_sim.levels.common.model import POSITION_WEIGHT, orbital_speed_tolerance, play_weight, ring_step, ring_weight, shaft_speed_at
-from bearing_sim.levels.common.observation import average_moments, count_damage, observe_course, observe_rest, oil_at_speed, turn_is_over
-from bearing_sim.levels.common.power import step_powers, write_powers
-from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
+from bearing_sim.levels.common.observation import count_damage, oil_at_speed, turn_is_over
+from bearing_sim.levels.common.rollers import restrain_rollers
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
-from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
-from bearing_sim.levels.planar import jacobian
+from bearing_sim.levels.common.support import factor_level, place_support, solve_level, support_change
 from bearing_sim.levels.planar import state as planar_state
 from bearing_sim.levels.planar.forces import carry_forces, equations
 from bearing_sim.levels.planar.power import planar_powers
+from bearing_sim.levels.planar.predictor import predict
 from bearing_sim.levels.planar.state import (
     BLOCK,
-    BORDER,
     CAGE_Y,
     CAGE_Z,
+    LAYOUT,
     OMEGA,
     RING_Y,
     RING_Z,
@@ -32,9 +32,9 @@ from bearing_sim.levels.planar.state import (
     THETA,
 )
 from bearing_sim.model.params import Params
-from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.simd import LANES, highest, larger, load_run, magnitude, spread, total
+from bearing_sim.numerics.time_stepping import Kernels
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.lamina_life import equivalent_loads
 
@@ -62,18 +62,13 @@ def rhs_and_jacobian(t, y, model, work, rate):
 @fused
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
-    if work.support.shape[0] > 0:
-        return factor_supported(jacobian.factor, jacobian.solve, BORDER, shift, work)
-    return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
+    return factor_level(LAYOUT, shift, work)
 
 
 @fused
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
-    if work.support.shape[0] > 0:
-        solve_supported(jacobian.solve, BORDER, work, x)
-    else:
-        jacobian.solve(work.jacobian, work.factored, x)
+    solve_level(LAYOUT, work, x)
 
 
 @fused
@@ -136,38 +131,27 @@ def step_limit(t, y, model, work):
 def sum_up(t, h, y, model, work):
     """Take the loads of a step of length ``h`` [s], and the stiffness at its end, into the running means over a cage turn, and count damage.
 
-    A step leaves the loads of its last iterate but one, and only a micrometre away a load may be another altogether.
+    After a step, ``work`` holds loads of the second-last iterate; they are carried to ``y``, because contact loads are stiff.
     """
-    count, turned = model.params.rollers.count, h * y[OMEGA]
-    carry_forces(y, count, work)
-    fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
-    average_moments(fraction, work.rollers, ROLLER.present, work.contacts, CONTACT.load, count, work.load_moments, work.last_moments, work.tally)
-    average_stiffness(ROLLER, CONTACT, fraction, work.rollers, work.contacts, work.ring_stiffness)
+    carry_forces(y, model.params.rollers.count, work)
+    average_step(ROLLER, CONTACT, h * y[OMEGA], model, work)
     if turn_is_over(t, h, model, work.tally):
         oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
         count_damage(t, equivalent_loads(work.load_moments, oil, model.params.life), oil, model, work.tally)
 
 
 @kernel
-def _powers(t, y, model, work, memory):
-    """Return the powers of the step that ended at ``t`` in state ``y`` (see `step_powers`)."""
-    return step_powers(rhs, planar_powers, t, y, model, work, memory)
+def observe(t, y, model, work, interval, previous, row, memory):
+    """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.model.observe`."""
+    oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
+    equivalent = equivalent_loads(work.load_moments, oil, model.params.life)
+    observe_level(LAYOUT, ROLLER, CONTACT, rhs, planar_powers, t, y, oil, equivalent, model, work, interval, previous, row, memory)
+
+
+KERNELS = Kernels(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, correction_norm, restrain, step_limit, sum_up, observe)
 
 
 @kernel
-def observe(t, y, model, work, interval, previous, row, memory):
-    """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.model.observe`."""
-    powers = _powers(t, y, model, work, memory)
-    rows, count = work.rollers, model.params.rollers.count
-    oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
-    equivalent = equivalent_loads(work.load_moments, oil, model.params.life)
-    observe_course(t, y[THETA], y[OMEGA], equivalent, oil, model, interval, previous, work.tally, row)
-    row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
-    row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
-    observe_support(y, y[RING_Y], y[RING_Z], model.params.support, row)
-    row[COLUMN.land_eccentricity] = land_eccentricity(y[RING_Y], y[RING_Z], y[CAGE_Y], y[CAGE_Z], model.params.cage)
-    write_powers(powers, row)
-    if model.params.flanges.on:
-        observe_flanges(ROLLER, CONTACT.load, count, model.params.flanges, rows, work.contacts, row)
-    observe_rollers(ROLLER, CONTACT.load, count, interval, rows, work.contacts, previous, row)
-    observe_rest(interval, previous, model.params, work.tally, row)
+def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    """Advance with error control, or ``fixed`` in steps of ``maximum_step`` [s]; see `bearing_sim.levels.common.advance.advance_by`."""
+    return advance_by(KERNELS, fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

@@ -11,30 +11,17 @@ is scalar and rises monotonically: a few Newton iterations for all rollers at on
 
 import math
 
+from bearing_sim.levels.common.dynamic import extrapolate, write_guess
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.rollers import follow_contour
-from bearing_sim.levels.common.support import extrapolate_support
 from bearing_sim.levels.planar.forces import normal_forces
-from bearing_sim.levels.planar.state import BLOCK, BORDER, PHI, PHI_SPEED, R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
+from bearing_sim.levels.planar.state import BORDER, LAYOUT, PHI, PHI_SPEED, R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
 from bearing_sim.numerics.compilation import fused
-from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, spread_run, square_root, store, store_run, where_positive
+from bearing_sim.numerics.simd import highest, larger, load, magnitude, spread, spread_run, square_root, store, where_positive
 from bearing_sim.physics.contact import CONTACT
 
 _ITERATIONS = 4
 _SETTLED = 0.2  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system
-
-
-@fused
-def _extrapolate(known, shift, slope, count, guess):
-    """Extrapolate speeds by their rates, and write the positions that belong to them."""
-    for k in range(BORDER):
-        guess[BORDER + k] = known[BORDER + k] + shift * slope[BORDER + k]
-        guess[k] = known[k] + shift * guess[BORDER + k]
-    for j in range(ROLLERS + 3 * count, ROLLERS + 5 * count):
-        guess[j] = known[j] + shift * slope[j]
-    for j in range(ROLLERS + count, ROLLERS + 2 * count):
-        guess[j] = known[j] + shift * guess[j + 2 * count]
-    extrapolate_support(known, shift, slope, ROLLERS + BLOCK * count, guess)
 
 
 @fused
@@ -102,18 +89,10 @@ def predict(known, shift, slope, model, work, guess):
     params, rows = model.params, work.rollers
     count = params.rollers.count
     inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # where the inputs start: a guess needs no more
-    _extrapolate(known, shift, slope, count, guess)
+    extrapolate(LAYOUT, known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
     enough = _SETTLED * model.tolerances.position
     for _ in range(_ITERATIONS):
         if _balance(guess, shift, enough, inner_radius, params, rows, work.contacts) < enough:
             break
-    per_shift, whole = 1.0 / shift, count // LANES
-    for block in range(whole):
-        radius, roller = load(rows, block, ROLLER.radius), ROLLERS + block * LANES
-        store_run(guess, roller + R * count, radius)
-        store_run(guess, roller + R_SPEED * count, (radius - load(rows, block, ROLLER.known_radius)) * per_shift)
-    for j in range(whole * LANES, count):
-        roller = ROLLERS + j
-        guess[roller] = rows[whole, ROLLER.radius, j - whole * LANES]
-        guess[roller + R_SPEED * count] = (guess[roller] - known[roller]) * per_shift
+    write_guess(LAYOUT, R, ROLLER.radius, ROLLER.known_radius, known, shift, count, rows, guess)

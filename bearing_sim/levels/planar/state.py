@@ -4,31 +4,29 @@
 State: y = (positions of the border, speeds of the border, r of all rollers, phi, r', phi', w); the border is inner ring y and
 z, cage y, z and angle.  With a support its `bearing_sim.levels.common.support.TAIL` states follow behind the rollers'.
 
-A roller sees 15 variables: its own five, the border's five positions and five speeds; all derivatives are rows over these.
+A roller sees 15 variables: its own five, the border's five positions and five speeds (`bearing_sim.numerics.block_arrow`).
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.levels.common.flanges import PLANE_ROWS
 from bearing_sim.levels.common.observation import Tally
-from bearing_sim.levels.common.rollers import StateRuns
+from bearing_sim.levels.common.rollers import StateRuns, new_rollers
 from bearing_sim.levels.common.support import new_support
-from bearing_sim.numerics.compilation import fused
-from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
+from bearing_sim.numerics.block_arrow import Factored, block_arrow, new_factored
+from bearing_sim.numerics.simd import new_blocks, new_rows
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.lamina_life import MOMENTS
 
-BORDER = 5  # positions of ring and cage, and as many speeds
-RING = 2  # of them the ring's
-BLOCK = 5  # states of a roller
-LOCAL = BLOCK + 2 * BORDER  # what a roller depends on
-AT_POSITIONS, AT_SPEEDS = BLOCK, BLOCK + BORDER  # where border positions and speeds stand among them
-JACOBIAN_ROWS = (3 + BORDER) * LOCAL  # rows of derivatives: of r'', phi'', w', then of the border's accelerations, each by `LOCAL` variables
-INVERSE, RIGHT, BELOW = 0, 9, 9 + 3 * BORDER  # rows of a factorisation
-_FACTORED = BELOW + 3 * BORDER
+RING, CAGE = 2, 3  # positions of ring and cage
+LAYOUT = block_arrow(2, 3, (RING, CAGE))  # of rollers that touch them
+BLOCK, BORDER, LOCAL = LAYOUT.block, LAYOUT.border, LAYOUT.local
+AT_RING, AT_CAGE = BLOCK, BLOCK + 2 * RING  # where positions of ring and cage, and their speeds, stand among what a roller depends on
+RING_COLUMNS, CAGE_COLUMNS = BLOCK + 2 * RING, BLOCK + 2 * CAGE
+RING_ROWS = 3 * LOCAL  # where the rows of the ring and the cage begin
+CAGE_ROWS = RING_ROWS + RING * RING_COLUMNS
 RING_Y, RING_Z, CAGE_Y, CAGE_Z, THETA = 0, 1, 2, 3, 4
 OMEGA = BORDER + THETA
 ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the five
@@ -36,26 +34,8 @@ R, PHI, R_SPEED, PHI_SPEED, SPIN = 0, 1, 2, 3, 4
 RUNS = StateRuns(ROLLERS, R, PHI, R_SPEED, PHI_SPEED, SPIN)
 
 
-class Factored(NamedTuple):
-    """A factorisation of I - s J."""
-
-    shift: np.ndarray  # s, shape (1,)
-    rows: np.ndarray  # by roller: inverse block (3x3), that times its coupling to the border's speeds (3x5), the border's to it (5x3)
-    right: np.ndarray  # right sides by roller: r, phi, and the three speeds
-    positions: np.ndarray  # d(border accelerations)/d(border positions), all rollers together, shape (5, 5)
-    schur: np.ndarray  # Schur complement as L U, shape (5, 5)
-    order: np.ndarray  # of its rows, shape (5,)
-
-
-def new_factored(count):
-    """Return a zeroed factorisation for ``count`` rollers."""
-    square = (BORDER, BORDER)
-    rows, right = new_rows(_FACTORED, count), new_rows(BLOCK, count)
-    return Factored(np.zeros(1), rows, right, np.zeros(square), np.zeros(square), np.zeros(BORDER, np.int64))
-
-
 class RollerRow(NamedTuple):
-    """Rows of the rollers array, see `bearing_sim.numerics.simd.new_rows`."""
+    """Indices of the rows of the rollers array, see `bearing_sim.numerics.simd.new_rows`."""
 
     radius: int = 0  # r [m]
     angle: int = 1  # phi [rad]
@@ -111,8 +91,8 @@ class Work(NamedTuple):
 
     rollers: np.ndarray  # rows `ROLLER`
     contacts: np.ndarray  # rows `bearing_sim.physics.contact.CONTACT`, those with the inner raceway first
-    jacobian: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.planar.state.JACOBIAN_ROWS`
-    border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (5, 10)
+    jacobian: np.ndarray  # derivatives through each roller, see `bearing_sim.numerics.block_arrow`
+    global_block: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (5, 10)
     factored: Factored  # of I - gamma h J
     support: np.ndarray  # memory of the support, see `bearing_sim.levels.common.support.new_support`
     evaluated_ring: np.ndarray  # position and velocity of the ring where forces were evaluated last [m, m/s], shape (4,)
@@ -126,17 +106,13 @@ class Work(NamedTuple):
 def new_work(params):
     """Return the level's workspace for a bearing."""
     count = params.rollers.count
-    rollers = new_rows(ROLLER_ROWS, count)
-    lanes = np.arange(rollers.shape[0] * LANES).reshape(-1, LANES)
-    rollers[:, ROLLER.present] = lanes < count
-    pitch = 2 * math.pi * np.minimum(lanes, count - 1) / count
-    rollers[:, ROLLER.pitch_cosine], rollers[:, ROLLER.pitch_sine] = np.cos(pitch), np.sin(pitch)
+    rollers = new_rollers(ROLLER, ROLLER_ROWS, count)
     return Work(
         rollers,
         new_blocks(2 * rollers.shape[0], len(CONTACT)),
-        new_rows(JACOBIAN_ROWS, count),
+        new_rows(LAYOUT.rows, count),
         np.zeros((BORDER, 2 * BORDER)),
-        new_factored(count),
+        new_factored(LAYOUT, count),
         new_support(params.support, 2 * BORDER + BLOCK * count),
         np.zeros(4),
         np.zeros(3),
@@ -144,18 +120,3 @@ def new_work(params):
         np.zeros((2, MOMENTS)),
         np.zeros(len(Tally._fields)),
     )
-
-
-@fused
-def spread_state(y, count, rollers):
-    """Copy the rollers' states from ``y`` into their lanes."""
-    spread_runs(y, ROLLERS, 5, count, rollers)
-    fill_lanes(rollers, 5, count)
-
-
-@fused
-def collect_rates(y, count, rollers, rate):
-    """Copy the rollers' speeds and accelerations from their lanes into ``rate``."""
-    for j in range(2 * count):
-        rate[ROLLERS + j] = y[ROLLERS + R_SPEED * count + j]
-    collect_runs(rollers, ROLLER.radial_acceleration, 3, count, rate, ROLLERS + R_SPEED * count)

@@ -351,7 +351,7 @@ def _rub_on_flanges(y, shaft_speed, friction, model, work, with_jacobian):
 
 
 @kernel
-def largest_axial_share(params, loads):
+def largest_flange_load(params, loads):
     """Return the largest axial force of a roller on a flange [N]; ``loads`` as in `bearing_sim.levels.slip.state.Work`."""
     carried, highest = 0.0, 0.0
     for j in range(params.rollers.count):

@@ -12,15 +12,17 @@ import math
 
 import numpy as np
 
+from bearing_sim.levels.common.advance import advance_by
 from bearing_sim.levels.common.model import HALF_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import TALLY, count_damage, fade_moment, observe_course, observe_rest, oil_at_speed, turn_is_over
 from bearing_sim.levels.common.power import write_powers
-from bearing_sim.levels.slip.forces import equations, largest_axial_share, up_to_rolling
+from bearing_sim.levels.slip.forces import equations, largest_flange_load, up_to_rolling
 from bearing_sim.levels.slip.power import slip_powers
 from bearing_sim.levels.slip.state import OMEGA, POCKET, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import factor_shifted, solve_factored
+from bearing_sim.numerics.time_stepping import Kernels
 from bearing_sim.physics.lamina_life import MOMENTS, add_load_moments, equivalent_loads
 from bearing_sim.physics.load_balance import LOAD
 
@@ -109,22 +111,30 @@ def observe(t, y, model, work, interval, previous, row, memory):
         for j in range(count):
             row[COLUMN.inner_flange_force] += work.flanges[0, j] / count
             row[COLUMN.outer_flange_force] += work.flanges[2, j] / count
-        row[COLUMN.flange_load] = largest_axial_share(params, loads)
-    row[COLUMN.ring_y] = work.ring[0]
-    row[COLUMN.ring_z] = work.ring[1]
+        row[COLUMN.flange_load] = largest_flange_load(params, loads)
+    observe_orbits(y[THETA], cage_speed, count, work, row)
     for j in range(count):
         first = SCALARS + j
-        row[first + COLUMN.roller_angle * count] = y[THETA] + 2.0 * math.pi * j / count
-        row[first + COLUMN.roller_radius * count] = loads[LOAD.radius, j]
         row[first + COLUMN.roller_spin * count] = y[SPIN + j]
         before = first + COLUMN.roller_rotation * count
         spin_before = previous[first + COLUMN.roller_spin * count]
         row[before] = previous[before] + 0.5 * (spin_before + y[SPIN + j]) * interval
+        row[first + COLUMN.pocket_force * count] = -work.pockets[POCKET.force, j]
+    observe_rest(interval, previous, params, work.tally, row)
+
+
+@kernel
+def observe_orbits(cage_angle, cage_speed, count, work, row):
+    """Write the inner ring, and the rollers that orbit with the cage in quasi-static balance, into a flat sample; ``work`` holds the balance."""
+    loads = work.loads
+    row[COLUMN.ring_y], row[COLUMN.ring_z] = work.ring[0], work.ring[1]
+    for j in range(count):
+        first = SCALARS + j
+        row[first + COLUMN.roller_angle * count] = cage_angle + 2.0 * math.pi * j / count
+        row[first + COLUMN.roller_radius * count] = loads[LOAD.radius, j]
         row[first + COLUMN.inner_load * count] = loads[LOAD.inner, j]
         row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
         row[first + COLUMN.orbital_speed * count] = cage_speed
-        row[first + COLUMN.pocket_force * count] = -work.pockets[POCKET.force, j]
-    observe_rest(interval, previous, params, work.tally, row)
 
 
 @kernel
@@ -173,3 +183,12 @@ def sum_up(t, h, y, model, work):
     if turn_is_over(t, h, model, tally):
         oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
         count_damage(t, equivalent_loads(work.load_moments, oil, model.params.life), oil, model, tally)
+
+
+KERNELS = Kernels(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, correction_norm, restrain, step_limit, sum_up, observe)
+
+
+@kernel
+def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    """Advance with error control, or ``fixed`` in steps of ``maximum_step`` [s]; see `bearing_sim.levels.common.advance.advance_by`."""
+    return advance_by(KERNELS, fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

@@ -28,12 +28,12 @@ import numpy as np
 
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, stop_skew_on_face, total_load
 from bearing_sim.levels.common.model import films_at, inner_growth, shaft_speed_at
-from bearing_sim.levels.common.rollers import add, carry_normal_forces, linear_churning, place_in_pockets, place_outwards, place_rollers
-from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
+from bearing_sim.levels.common.rollers import carry_normal_forces, linear_churning, place_in_pockets, place_outwards, place_rollers
+from bearing_sim.levels.common.support import carry, follow_frame, frame_of
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.forces import border_accelerations as planar_accelerations
 from bearing_sim.levels.planar.state import BORDER as PLANAR
-from bearing_sim.levels.spatial.jacobian import land_cage_jacobian, land_ring_jacobian, react_on_support, roller_jacobian
+from bearing_sim.levels.spatial.jacobian import follow_axes, land_cage_jacobian, land_ring_jacobian, roller_jacobian, turn_axes
 from bearing_sim.levels.spatial.slices import press_points, resist, sum_tractions
 from bearing_sim.levels.spatial.state import (
     BORDER,
@@ -41,6 +41,7 @@ from bearing_sim.levels.spatial.state import (
     CAGE_TILT_Z,
     CAGE_Y,
     CAGE_Z,
+    LAYOUT,
     OMEGA,
     RING_TILT_Y,
     RING_TILT_Z,
@@ -53,11 +54,10 @@ from bearing_sim.levels.spatial.state import (
     SLICED,
     THETA,
     TILT,
-    collect_rates,
-    spread_state,
 )
+from bearing_sim.numerics.block_arrow import collect_rates, spread_state
 from bearing_sim.numerics.compilation import fused, kernel
-from bearing_sim.numerics.simd import larger, load, magnitude, spread, spread_run, store, total, where_positive
+from bearing_sim.numerics.simd import add, larger, load, magnitude, spread, spread_run, store, total, where_positive
 from bearing_sim.physics.contact import damped_line_contact
 from bearing_sim.physics.flange import axial_share
 from bearing_sim.physics.pocket import pocket_friction_lanes
@@ -67,7 +67,7 @@ from bearing_sim.physics.traction import traction_along
 class LandWork(NamedTuple):
     """The part of the planar level's memory that a guide land needs."""
 
-    border_own: np.ndarray  # shape (5, 10)
+    global_block: np.ndarray  # shape (5, 10)
 
 
 @fused
@@ -80,16 +80,11 @@ def place_land(y, position, land):
     position : of the land along the axis [m].
     land : takes the planar border's positions and speeds, shape (10,) or longer.
     """
-    land[planar.RING_Y] = y[RING_Y] + position * y[RING_TILT_Y]
-    land[planar.RING_Z] = y[RING_Z] + position * y[RING_TILT_Z]
-    land[PLANAR + planar.RING_Y] = y[BORDER + RING_Y] + position * y[BORDER + RING_TILT_Y]
-    land[PLANAR + planar.RING_Z] = y[BORDER + RING_Z] + position * y[BORDER + RING_TILT_Z]
-    land[planar.CAGE_Y] = y[CAGE_Y] + position * y[CAGE_TILT_Y]
-    land[planar.CAGE_Z] = y[CAGE_Z] + position * y[CAGE_TILT_Z]
-    land[planar.THETA] = y[THETA]
-    land[PLANAR + planar.CAGE_Y] = y[BORDER + CAGE_Y] + position * y[BORDER + CAGE_TILT_Y]
-    land[PLANAR + planar.CAGE_Z] = y[BORDER + CAGE_Z] + position * y[BORDER + CAGE_TILT_Z]
-    land[planar.OMEGA] = y[OMEGA]
+    for first, to in ((0, 0), (BORDER, PLANAR)):
+        for axis in range(2):
+            land[to + planar.RING_Y + axis] = y[first + RING_Y + axis] + position * y[first + RING_TILT_Y + axis]
+            land[to + planar.CAGE_Y + axis] = y[first + CAGE_Y + axis] + position * y[first + CAGE_TILT_Y + axis]
+        land[to + planar.THETA] = y[first + THETA]
 
 
 @fused
@@ -101,10 +96,10 @@ def border_accelerations(t, y, model, work, rate, with_jacobian):
     place_land(y, -position, work.lands[1])
     planar_accelerations(t, work.lands[0], model, LandWork(work.land_own[0]), near, with_jacobian)
     planar_accelerations(t, work.lands[1], model, LandWork(work.land_own[1]), far, with_jacobian)
-    rate[BORDER + RING_Y] = 0.5 * (near[PLANAR + planar.RING_Y] + far[PLANAR + planar.RING_Y])
-    rate[BORDER + RING_Z] = 0.5 * (near[PLANAR + planar.RING_Z] + far[PLANAR + planar.RING_Z])
-    rate[BORDER + CAGE_Y] = 0.5 * (near[PLANAR + planar.CAGE_Y] + far[PLANAR + planar.CAGE_Y])
-    rate[BORDER + CAGE_Z] = 0.5 * (near[PLANAR + planar.CAGE_Z] + far[PLANAR + planar.CAGE_Z])
+    for axis in range(2):
+        ring, cage = PLANAR + planar.RING_Y + axis, PLANAR + planar.CAGE_Y + axis
+        rate[BORDER + RING_Y + axis] = 0.5 * (near[ring] + far[ring])
+        rate[BORDER + CAGE_Y + axis] = 0.5 * (near[cage] + far[cage])
     rate[OMEGA] = 0.5 * (near[planar.OMEGA] + far[planar.OMEGA])
     lever = 0.5 * position * params.cage.mass / tilts.cage_inertia
     # I x'' = M_y - J omega y', I y'' = M_z + J omega x' of an axis inclined by (x, y) that turns at omega
@@ -125,7 +120,7 @@ def border_accelerations(t, y, model, work, rate, with_jacobian):
         rate[BORDER + RING_TILT_Z] += ring_lever * (near[PLANAR + planar.RING_Z] - far[PLANAR + planar.RING_Z])
     if not with_jacobian:
         return
-    own = work.border_own
+    own = work.global_block
     land_cage_jacobian(position, lever, work.land_own, own)
     own[RING_TILT_Y, BORDER + RING_TILT_Z], own[RING_TILT_Z, BORDER + RING_TILT_Y] = 0.0, 0.0
     if on_ring:
@@ -384,7 +379,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     shaft_speed = shaft_speed_at(t, model.drive)
     films, churning = films_at(t, shaft_speed, model), linear_churning(y[OMEGA], shaft_speed, model)
     inner_radius, resistance = params.raceways.inner_radius + inner_growth(shaft_speed, model), model.lubrication.rolling_resistance.on
-    spread_state(y, params.rollers.count, rows)
+    spread_state(LAYOUT, y, params.rollers.count, rows)
     border_accelerations(t, y, model, work, rate, with_jacobian)
     for k in range(BORDER):
         rate[k] = y[BORDER + k]
@@ -416,22 +411,20 @@ def equations(t, y, model, work, rate, with_jacobian):
         roller_jacobian(y, inner_radius, churning, resistance, params, model.lubrication.viscosity, rows, contacts, work.chain, work.jacobian)
     if work.support.shape[0] > 0:
         _carry(t, y, model, work, rate, with_jacobian)
-    collect_rates(y, params.rollers.count, rows, rate)
+    collect_rates(LAYOUT, y, params.rollers.count, rows, rate)
     return True
 
 
 @kernel
 def _carry(t, y, model, work, rate, with_jacobian):
-    """Let the support move the outer ring and the shaft, and everything else with them; see `bearing_sim.levels.common.support`."""
-    params, rows, support = model.params, work.rollers, work.support
-    momentum_y, momentum_z = momentum_rate(ROLLER, params, rows)
-    momentum_y += params.ring.mass * rate[BORDER + RING_Y] + params.cage.mass * rate[BORDER + CAGE_Y]
-    momentum_z += params.ring.mass * rate[BORDER + RING_Z] + params.cage.mass * rate[BORDER + CAGE_Z]
-    support_accelerations(t, y, BORDER, CAGE_Y, momentum_y, momentum_z, model, rate, support)
+    """Let the support move everything, see `bearing_sim.levels.common.support`."""
+    rows, support = work.rollers, work.support
+    carry(LAYOUT, RUNS, ROLLER, t, y, model, work, rate, with_jacobian)
     if with_jacobian:
-        support_jacobian(y, BORDER, CAGE_Y, model, support)
-        react_on_support(params, rows, work.border_own, work.jacobian, support)
+        follow_axes(model.params.rollers.count, rows, support)
     for block in range(rows.shape[0]):
+        if with_jacobian:
+            turn_axes(block, frame_of(support), rows, work.jacobian)
         turned = load(rows, block, ROLLER.orbital_acceleration)
         follow_frame(ROLLER, block, frame_of(support), rows)
         turned = load(rows, block, ROLLER.orbital_acceleration) - turned

@@ -1,10 +1,10 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The Jacobian of level ``spatial``, and the solution of (I - s J) x = b; ``LANES`` rollers at a time (a block).
+"""The Jacobian of level ``spatial``; ``LANES`` rollers at a time (a block).
 
-Derivatives through a roller, rows of an array of `bearing_sim.numerics.simd.new_rows`: those of its r'', phi'', tilt'', skew'', w' by its own nine
-variables and the border's 18 first; then those of the ring's four accelerations by its own nine and the ring's eight, because the ring does
-not depend on the cage; then those of the cage's five by its own nine and the cage's ten.  The rows of a roller's accelerations collect forces,
-moments and the torque of the spin first, from contact to contact; at the end they become accelerations.
+Derivatives through a roller (`bearing_sim.numerics.block_arrow`): those of its r'', phi'', tilt'', skew'', w' by its own nine variables and the
+border's 18; those of the ring's four accelerations by its own nine and the ring's eight; those of the cage's five by its own nine and the cage's
+ten.  The rows of a roller's accelerations collect forces, moments and the torque of the spin first, from contact to contact; at the end they
+become accelerations.
 
 **Inner contact.** It depends on four pairs: the roller's position a and inclination b relative to the ring, and their rates a', b' in a frame that
 does not turn; each pair along the normal n and across it, along p.  v = a', h = 1/|a|, and n turns at h v_p as the roller passes by.  With delta =
@@ -18,23 +18,16 @@ variables follow as at level ``planar``.
 
 **Pocket.** Force and moment depend on four quantities: how far the roller stands off the pocket's middle, how it is skewed there, and both
 rates.  Their changes by the 18 variables of roller and cage are written once, in ``chain``; every row follows from them.
-
-**Linear algebra.** As at level ``planar`` the system is reduced to speeds: a 5x5 block for each roller and one 9x9 border.  Cost O(Z).
 """
 
 from bearing_sim.levels.common.flanges import FLANGE
-from bearing_sim.levels.common.rollers import add
-from bearing_sim.levels.common.support import FOLLOWING, REACTION, frame_of, react_by_border, react_by_rollers, turn_frame
+from bearing_sim.levels.common.support import FOLLOWING
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.state import BORDER as PLANAR
 from bearing_sim.levels.spatial.state import (
     AT_CAGE,
     AT_CAGE_SPEEDS,
-    AT_RING,
-    BELOW,
-    BLOCK,
     BORDER,
-    CAGE,
     CAGE_COLUMNS,
     CAGE_ROWS,
     CAGE_TILT_Y,
@@ -45,10 +38,7 @@ from bearing_sim.levels.spatial.state import (
     OMEGA,
     PHI,
     PHI_SPEED,
-    POSITIONS,
     R_SPEED,
-    RIGHT,
-    RING,
     RING_COLUMNS,
     RING_ROWS,
     RING_TILT_Y,
@@ -60,17 +50,14 @@ from bearing_sim.levels.spatial.state import (
     SKEW,
     SKEW_SPEED,
     SLICED,
-    SPEEDS,
     SPIN,
     THETA,
     TILT,
     TILT_SPEED,
     R,
 )
-from bearing_sim.model.params import SUPPORT
 from bearing_sim.numerics.compilation import fused, kernel
-from bearing_sim.numerics.linear_algebra import back_substitute, decompose
-from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, load, magnitude, spread, spread_runs, store, total, where_positive
+from bearing_sim.numerics.simd import LANES, add, load, magnitude, spread, store, where_positive
 
 # Rows of forces outwards and along, of moments outwards and along, of the spin's torque; in this order.
 _RADIAL, _ALONG, _TILTING, _SKEWING, _SPINNING = 0, LOCAL, 2 * LOCAL, 3 * LOCAL, 4 * LOCAL
@@ -531,98 +518,110 @@ def _pocket_variables(block, y, rows, chain):
     _put(chain, _AT_THETA + 5, _SKEW_RATE, lean_r - outwards)
 
 
-@fused
-def _pocket_rows(block, y, params, rows, chain, jacobian):
-    """Add to a roller's rows of forces and moments, and write those of the cage."""
+@kernel
+def _wall_columns(put, block, column, d_f, d_m, push, braking, jacobian):
+    """Put the change by one variable into the rows of a roller's forces and moments."""
+    put(jacobian, block, column, -(d_f * push[0]))
+    put(jacobian, block, LOCAL + column, -(d_f * push[1]))
+    put(jacobian, block, 2 * LOCAL + column, -(d_m * push[0]))
+    put(jacobian, block, 3 * LOCAL + column, -(d_m * push[1]))
+    put(jacobian, block, 4 * LOCAL + column, -(d_f * braking))
+
+
+@kernel
+def _wall_rows(put, block, force, moment, sums, push, arms, between, across, sign, rates, params, rows, chain, jacobian):
+    """Write what two opposite walls of the pockets do, to the rows of a roller's forces and moments and of the cage, as far as directions stay.
+
+    Parameters
+    ----------
+    put : `store` where nothing has written what the cage does yet, else `add`.
+    force, moment : of a block of rollers on the walls.
+    sums : rows of the sums over slices of the force's derivatives by the offset between the walls, and by its rate.
+    push : directions of the force on a roller outwards and along the orbit, on the cage along y and z, with friction (lanes).
+    arms : of force and moment about the bearing's axis (lanes).
+    between : kinds, in ``chain``, of offset and inclination between the walls; ``across`` of those along them, which change the arms with a ``sign``.
+    rates : where the rate of the offset stands in ``chain`` for the first variable, from variable to variable, and to that of the inclination.
+    """
     cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
-    force, moment, friction = (
-        -load(rows, block, ROLLER.pocket_force),
-        -load(rows, block, ROLLER.pocket_moment),
-        load(rows, block, ROLLER.pocket_friction),
-    )
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    k_0, k_1, k_2 = (
-        load(rows, block, ROLLER.pocket_stiffness),
-        load(rows, block, ROLLER.pocket_stiffness + 1),
-        load(rows, block, ROLLER.pocket_stiffness + 2),
-    )
-    d_0, d_1, d_2 = (
-        load(rows, block, ROLLER.pocket_damping),
-        load(rows, block, ROLLER.pocket_damping + 1),
-        load(rows, block, ROLLER.pocket_damping + 2),
-    )
-    push_r, push_t, push_y, push_z = s + friction * c, c - friction * s, friction * p_c - p_s, p_c + friction * p_s
-    reach = load(rows, block, ROLLER.radius) * c - (y[CAGE_Y] * p_c + y[CAGE_Z] * p_s)
-    side = where_positive(force, params.rollers.radius, -params.rollers.radius)
-    arm = reach - friction * (side + load(rows, block, ROLLER.pocket_offset))
-    lean = load(rows, block, ROLLER.pocket_lean) - friction * load(rows, block, ROLLER.pocket_skew)
+    k, d = sums
+    k_0, k_1, k_2 = load(rows, block, k), load(rows, block, k + 1), load(rows, block, k + 2)
+    d_0, d_1, d_2 = load(rows, block, d), load(rows, block, d + 1), load(rows, block, d + 2)
+    friction = load(rows, block, ROLLER.pocket_friction)
     braking = friction * where_positive(force, 1.0, -1.0)
     per_mass, per_tilt, per_turn = present * (1.0 / cage.mass), present * (1.0 / tilts.cage_inertia), present * (1.0 / cage.inertia)
     for k in range(_VARIABLES):
-        first = _CHAIN + _KINDS * k
-        offset, rate = load(chain, 0, first + _OFFSET), load(chain, 0, first + _RATE)
-        skew, skew_rate = load(chain, 0, first + _INCLINATION), load(chain, 0, first + _SKEW_RATE)
-        lever, leaning = load(chain, 0, first + _LEVER), load(chain, 0, first + _LEAN)
-        d_f = k_0 * offset + k_1 * skew + d_0 * rate + d_1 * skew_rate
-        d_m = k_1 * offset + k_2 * skew + d_1 * rate + d_2 * skew_rate
-        if k > SPIN:  # nothing else writes what the cage does
-            column = AT_CAGE + k - _AT_Y
-            store(jacobian, block, column, -(d_f * push_r))
-            store(jacobian, block, LOCAL + column, -(d_f * push_t))
-            store(jacobian, block, 2 * LOCAL + column, -(d_m * push_r))
-            store(jacobian, block, 3 * LOCAL + column, -(d_m * push_t))
-            store(jacobian, block, 4 * LOCAL + column, -(d_f * braking))
+        first, rate_row = _CHAIN + _KINDS * k, rates[0] + rates[1] * k
+        offset, inclination = load(chain, 0, first + between[0]), load(chain, 0, first + between[1])
+        lever, leaning = sign * load(chain, 0, first + across[0]), sign * load(chain, 0, first + across[1])
+        rate, inclining = load(chain, 0, rate_row), load(chain, 0, rate_row + rates[2])
+        d_f = k_0 * offset + k_1 * inclination + d_0 * rate + d_1 * inclining
+        d_m = k_1 * offset + k_2 * inclination + d_1 * rate + d_2 * inclining
+        if k > SPIN:
+            _wall_columns(put, block, AT_CAGE + k - _AT_Y, d_f, d_m, push, braking, jacobian)
         else:
-            add(jacobian, block, k, -(d_f * push_r))
-            add(jacobian, block, LOCAL + k, -(d_f * push_t))
-            add(jacobian, block, 2 * LOCAL + k, -(d_m * push_r))
-            add(jacobian, block, 3 * LOCAL + k, -(d_m * push_t))
-            add(jacobian, block, 4 * LOCAL + k, -(d_f * braking))
-        store(jacobian, block, CAGE_ROWS + k, per_mass * (d_f * push_y))
-        store(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + k, per_mass * (d_f * push_z))
-        store(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + k, per_tilt * (d_m * push_y))
-        store(jacobian, block, CAGE_ROWS + 3 * CAGE_COLUMNS + k, per_tilt * (d_m * push_z))
-        turned = d_f * arm + d_m * lean + force * (lever - friction * offset) + moment * (leaning - friction * skew)
-        store(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + k, per_turn * turned)
+            _wall_columns(add, block, k, d_f, d_m, push, braking, jacobian)
+        put(jacobian, block, CAGE_ROWS + k, per_mass * (d_f * push[2]))
+        put(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + k, per_mass * (d_f * push[3]))
+        put(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + k, per_tilt * (d_m * push[2]))
+        put(jacobian, block, CAGE_ROWS + 3 * CAGE_COLUMNS + k, per_tilt * (d_m * push[3]))
+        turned = d_f * arms[0] + d_m * arms[1] + force * (lever - friction * offset) + moment * (leaning - friction * inclination)
+        put(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + k, per_turn * turned)
 
 
-@fused
-def _pocket_directions(block, params, rows, jacobian):
-    """Add that forces and moments turn with pocket and roller, and that friction goes with the spin."""
+@kernel
+def _wall_directions(block, force, moment, push, bends, slid, params, rows, jacobian):
+    """Add that forces and moments turn with pocket and roller, and that friction goes with the spin.
+
+    Parameters
+    ----------
+    bends : derivatives of ``push`` by the coefficient of friction.
+    slid : by what the torque on the cage falls with it.
+    """
     cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
-    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    push_r, push_t, push_y, push_z = s + friction * c, c - friction * s, friction * p_c - p_s, p_c + friction * p_s
-    force, moment = -load(rows, block, ROLLER.pocket_force), -load(rows, block, ROLLER.pocket_moment)
-    theta = AT_CAGE + 4
+    bend, theta = load(rows, block, ROLLER.pocket_friction_d_spin), AT_CAGE + _AT_THETA - _AT_Y
     for kind in range(2):
-        push = force if kind == 0 else moment
+        pressed = force if kind == 0 else moment
         per = present * (1.0 / cage.mass if kind == 0 else 1.0 / tilts.cage_inertia)
         first, to = 2 * kind * LOCAL, CAGE_ROWS + 2 * kind * CAGE_COLUMNS
-        add(jacobian, block, first + PHI, -(push * push_t))
-        add(jacobian, block, first + theta, push * push_t)
-        add(jacobian, block, first + LOCAL + PHI, push * push_r)
-        add(jacobian, block, first + LOCAL + theta, -(push * push_r))
-        add(jacobian, block, first + SPIN, -(push * c * bend))
-        add(jacobian, block, first + LOCAL + SPIN, push * s * bend)
-        add(jacobian, block, to + _AT_THETA, -(per * push * push_z))
-        add(jacobian, block, to + CAGE_COLUMNS + _AT_THETA, per * push * push_y)
-        add(jacobian, block, to + SPIN, per * push * p_c * bend)
-        add(jacobian, block, to + CAGE_COLUMNS + SPIN, per * push * p_s * bend)
-    size = magnitude(force)
-    add(jacobian, block, 4 * LOCAL + SPIN, -(size * bend))
-    slid = size * params.rollers.radius + load(rows, block, ROLLER.pocket_offset) * force + load(rows, block, ROLLER.pocket_skew) * moment
+        add(jacobian, block, first + PHI, -(pressed * push[1]))
+        add(jacobian, block, first + theta, pressed * push[1])
+        add(jacobian, block, first + LOCAL + PHI, pressed * push[0])
+        add(jacobian, block, first + LOCAL + theta, -(pressed * push[0]))
+        add(jacobian, block, first + SPIN, -(pressed * bends[0] * bend))
+        add(jacobian, block, first + LOCAL + SPIN, -(pressed * bends[1] * bend))
+        add(jacobian, block, to + _AT_THETA, -(per * pressed * push[3]))
+        add(jacobian, block, to + CAGE_COLUMNS + _AT_THETA, per * pressed * push[2])
+        add(jacobian, block, to + SPIN, per * pressed * bends[2] * bend)
+        add(jacobian, block, to + CAGE_COLUMNS + SPIN, per * pressed * bends[3] * bend)
+    add(jacobian, block, 4 * LOCAL + SPIN, -(magnitude(force) * bend))
     add(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + SPIN, -(present * (1.0 / cage.inertia) * slid * bend))
+
+
+@kernel
+def _frames(block, rows):
+    """Return cosine and sine of the pocket's azimuth and of the angle from the pocket to the roller, and the coefficient of friction."""
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    return p_c, p_s, load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine), load(rows, block, ROLLER.pocket_friction)
 
 
 @fused
 def _pocket_jacobian(block, y, params, rows, chain, jacobian):
-    """Add the pockets to the rows of a block of rollers and write those of the cage; parameters as of `spatial_jacobian.roller_jacobian`."""
+    """Add the pockets to the rows of a block of rollers and write those of the cage; parameters as of `roller_jacobian`."""
     _pocket_variables(block, y, rows, chain)
-    _pocket_rows(block, y, params, rows, chain, jacobian)
-    _pocket_directions(block, params, rows, jacobian)
+    p_c, p_s, c, s, friction = _frames(block, rows)
+    force, moment = -load(rows, block, ROLLER.pocket_force), -load(rows, block, ROLLER.pocket_moment)
+    offset, skew, radius = load(rows, block, ROLLER.pocket_offset), load(rows, block, ROLLER.pocket_skew), params.rollers.radius
+    push = s + friction * c, c - friction * s, friction * p_c - p_s, p_c + friction * p_s
+    reach = load(rows, block, ROLLER.radius) * c - (y[CAGE_Y] * p_c + y[CAGE_Z] * p_s)
+    arms = (
+        reach - friction * (where_positive(force, radius, -radius) + offset),
+        load(rows, block, ROLLER.pocket_lean) - friction * skew,
+    )
+    sums, rates = (ROLLER.pocket_stiffness, ROLLER.pocket_damping), (_CHAIN + _RATE, _KINDS, _SKEW_RATE - _RATE)
+    between, across = (_OFFSET, _INCLINATION), (_LEVER, _LEAN)
+    _wall_rows(store, block, force, moment, sums, push, arms, between, across, 1.0, rates, params, rows, chain, jacobian)
+    slid = magnitude(force) * radius + offset * force + skew * moment
+    _wall_directions(block, force, moment, push, (c, -s, p_c, p_s), slid, params, rows, jacobian)
 
 
 @kernel
@@ -668,83 +667,21 @@ def _guide_rates(block, y, params, rows, chain):
 
 
 @kernel
-def _guide_rows(block, params, rows, chain, jacobian):
-    """Add to the rows of a roller's forces and moments and to those of the cage, as far as the directions stay."""
-    cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    force, moment, friction = (
-        -load(rows, block, ROLLER.guide_force),
-        -load(rows, block, ROLLER.guide_moment),
-        load(rows, block, ROLLER.pocket_friction),
-    )
-    k, d = ROLLER.guide_stiffness, ROLLER.guide_damping
-    k_0, k_1, k_2 = load(rows, block, k), load(rows, block, k + 1), load(rows, block, k + 2)
-    d_0, d_1, d_2 = load(rows, block, d), load(rows, block, d + 1), load(rows, block, d + 2)
-    push_r, push_t = c - friction * s, s + friction * c
-    push_y, push_z = p_c + friction * p_s, p_s - friction * p_c
-    braking = friction * where_positive(force, 1.0, -1.0)
-    arm = load(rows, block, ROLLER.pocket_offset) + braking * params.rollers.radius
-    arm += friction * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius)
-    skewed = load(rows, block, ROLLER.pocket_skew) + friction * load(rows, block, ROLLER.pocket_lean)
-    per_mass, per_tilt, per_turn = present * (1.0 / cage.mass), present * (1.0 / tilts.cage_inertia), present * (1.0 / cage.inertia)
-    for k in range(_VARIABLES):
-        first, rates = _CHAIN + _KINDS * k, _RATES + 2 * k
-        position, skew = load(chain, 0, first + _OFFSET), load(chain, 0, first + _INCLINATION)
-        outwards, lean = load(chain, 0, first + _LEVER), load(chain, 0, first + _LEAN)
-        rate, lean_rate = load(chain, 0, rates), load(chain, 0, rates + 1)
-        d_f = k_0 * outwards + k_1 * lean + d_0 * rate + d_1 * lean_rate
-        d_m = k_1 * outwards + k_2 * lean + d_1 * rate + d_2 * lean_rate
-        column = k if k <= SPIN else AT_CAGE + k - _AT_Y
-        add(jacobian, block, column, -(d_f * push_r))
-        add(jacobian, block, LOCAL + column, d_f * push_t)
-        add(jacobian, block, 2 * LOCAL + column, -(d_m * push_r))
-        add(jacobian, block, 3 * LOCAL + column, d_m * push_t)
-        add(jacobian, block, 4 * LOCAL + column, -(d_f * braking))
-        add(jacobian, block, CAGE_ROWS + k, per_mass * (d_f * push_y))
-        add(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + k, per_mass * (d_f * push_z))
-        add(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + k, per_tilt * (d_m * push_y))
-        add(jacobian, block, CAGE_ROWS + 3 * CAGE_COLUMNS + k, per_tilt * (d_m * push_z))
-        turned = d_f * arm + d_m * skewed + force * (position + friction * outwards) + moment * (skew + friction * lean)
-        add(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + k, -(per_turn * turned))
-
-
-@kernel
-def _guide_directions(block, params, rows, jacobian):
-    """Add that forces and moments turn with pocket and roller, and that friction goes with the spin."""
-    cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
-    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    push_r, push_t = c - friction * s, s + friction * c
-    force, moment = -load(rows, block, ROLLER.guide_force), -load(rows, block, ROLLER.guide_moment)
-    theta = AT_CAGE + _AT_THETA - _AT_Y
-    for kind in range(2):
-        push = force if kind == 0 else moment
-        per = present * (1.0 / cage.mass if kind == 0 else 1.0 / tilts.cage_inertia)
-        first, to = 2 * kind * LOCAL, CAGE_ROWS + 2 * kind * CAGE_COLUMNS
-        add(jacobian, block, first + PHI, push * push_t)
-        add(jacobian, block, first + theta, -(push * push_t))
-        add(jacobian, block, first + SPIN, push * s * bend)
-        add(jacobian, block, first + LOCAL + PHI, push * push_r)
-        add(jacobian, block, first + LOCAL + theta, -(push * push_r))
-        add(jacobian, block, first + LOCAL + SPIN, push * c * bend)
-        add(jacobian, block, to + _AT_THETA, per * push * (friction * p_c - p_s))
-        add(jacobian, block, to + SPIN, per * push * p_s * bend)
-        add(jacobian, block, to + CAGE_COLUMNS + _AT_THETA, per * push * (p_c + friction * p_s))
-        add(jacobian, block, to + CAGE_COLUMNS + SPIN, -(per * push * p_c * bend))
-    add(jacobian, block, 4 * LOCAL + SPIN, -(magnitude(force) * bend))
-    slid = force * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius) + magnitude(force) * params.rollers.radius
-    slid += moment * load(rows, block, ROLLER.pocket_lean)
-    add(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + SPIN, -(present * (1.0 / cage.inertia) * slid * bend))
-
-
-@kernel
 def _guide_jacobian(block, y, params, rows, chain, jacobian):
-    """Add the derivatives of what guiding pockets do, after `pocket_jacobian`; parameters as of `spatial_jacobian.roller_jacobian`."""
+    """Add the derivatives of what guiding pockets do, after `_pocket_jacobian`: its walls turned by a right angle."""
     _guide_rates(block, y, params, rows, chain)
-    _guide_rows(block, params, rows, chain, jacobian)
-    _guide_directions(block, params, rows, jacobian)
+    p_c, p_s, c, s, friction = _frames(block, rows)
+    force, moment = -load(rows, block, ROLLER.guide_force), -load(rows, block, ROLLER.guide_moment)
+    lean, radius = load(rows, block, ROLLER.pocket_lean), params.rollers.radius
+    push = c - friction * s, -(s + friction * c), p_c + friction * p_s, p_s - friction * p_c
+    reach = load(rows, block, ROLLER.guide_offset) + params.cage.guidance.pocket_radius
+    arm = load(rows, block, ROLLER.pocket_offset) + friction * where_positive(force, 1.0, -1.0) * radius
+    arms = -(arm + friction * reach), -(load(rows, block, ROLLER.pocket_skew) + friction * lean)
+    sums, rates = (ROLLER.guide_stiffness, ROLLER.guide_damping), (_RATES, 2, 1)
+    between, across = (_LEVER, _LEAN), (_OFFSET, _INCLINATION)
+    _wall_rows(add, block, force, moment, sums, push, arms, between, across, -1.0, rates, params, rows, chain, jacobian)
+    slid = force * reach + magnitude(force) * radius + moment * lean
+    _wall_directions(block, force, moment, push, (-s, -c, p_s, -p_c), slid, params, rows, jacobian)
 
 
 @fused
@@ -777,42 +714,11 @@ def land_ring_jacobian(position, lever, ring_lever, lands, own):
         first, planar_first = which * BORDER, which * PLANAR
         for axis in range(2):
             for other in range(2):
-                _land_pair(
-                    CAGE_Y + axis,
-                    CAGE_TILT_Y + axis,
-                    planar.CAGE_Y + axis,
-                    lever,
-                    first + RING_Y + other,
-                    first + RING_TILT_Y + other,
-                    planar_first + planar.RING_Y + other,
-                    position,
-                    lands,
-                    own,
-                )
-                _land_pair(
-                    RING_Y + axis,
-                    RING_TILT_Y + axis,
-                    planar.RING_Y + axis,
-                    ring_lever,
-                    first + RING_Y + other,
-                    first + RING_TILT_Y + other,
-                    planar_first + planar.RING_Y + other,
-                    position,
-                    lands,
-                    own,
-                )
-                _land_pair(
-                    RING_Y + axis,
-                    RING_TILT_Y + axis,
-                    planar.RING_Y + axis,
-                    ring_lever,
-                    first + CAGE_Y + other,
-                    first + CAGE_TILT_Y + other,
-                    planar_first + planar.CAGE_Y + other,
-                    position,
-                    lands,
-                    own,
-                )
+                to_ring, to_cage = first + RING_Y + other, first + CAGE_Y + other
+                by_ring, by_cage = planar_first + planar.RING_Y + other, planar_first + planar.CAGE_Y + other
+                _land_pair(CAGE_Y + axis, planar.CAGE_Y + axis, lever, to_ring, by_ring, position, lands, own)
+                _land_pair(RING_Y + axis, planar.RING_Y + axis, ring_lever, to_ring, by_ring, position, lands, own)
+                _land_pair(RING_Y + axis, planar.RING_Y + axis, ring_lever, to_cage, by_cage, position, lands, own)
             near, far = lands[0, planar.THETA, planar_first + axis], lands[1, planar.THETA, planar_first + axis]
             own[THETA, first + RING_Y + axis] = 0.5 * (near + far)
             own[THETA, first + RING_TILT_Y + axis] = 0.5 * position * (near - far)
@@ -823,62 +729,30 @@ def land_ring_jacobian(position, lever, ring_lever, lands, own):
 
 
 @kernel
-def _land_pair(row, tilt_row, planar_row, lever, column, tilt_column, planar_column, position, lands, own):
-    """Write the derivatives of a body's acceleration and tilting by a body's position and tilt, from those of both lands."""
+def _land_pair(row, planar_row, lever, column, planar_column, position, lands, own):
+    """Write the derivatives of a body's acceleration and tilting by a body's position and tilt, two rows and columns on, from those of both lands."""
     near, far = lands[0, planar_row, planar_column], lands[1, planar_row, planar_column]
     own[row, column] = 0.5 * (near + far)
-    own[row, tilt_column] = 0.5 * position * (near - far)
-    own[tilt_row, column] = lever * (near - far)
-    own[tilt_row, tilt_column] = lever * position * (near + far)
+    own[row, column + 2] = 0.5 * position * (near - far)
+    own[row + 2, column] = lever * (near - far)
+    own[row + 2, column + 2] = lever * position * (near + far)
 
 
 @kernel
-def _border_state(m):
-    """Return which state of the border the m-th of the border's columns of a roller's rows belongs to."""
-    if m < 2 * RING:
-        return m if m < RING else BORDER + m - RING
-    at_cage = m - 2 * RING
-    return RING + at_cage if at_cage < CAGE else BORDER + RING + at_cage - CAGE
-
-
-@kernel
-def react_on_support(params, rows, own, jacobian, support):
-    """Write what all bodies do to the outer ring that a support carries, as `bearing_sim.levels.planar.jacobian.react_on_support`."""
-    count, per_mass = params.rollers.count, params.support[SUPPORT.outer_moves] / params.support[SUPPORT.outer_mass]
-    at = R, PHI, R_SPEED, PHI_SPEED, BLOCK, ROLLERS
-    react_by_rollers(ROLLER, at, LOCAL, count, per_mass * params.rollers.mass, rows, jacobian, support)
-    for m in range(2 * BORDER):
-        state, per_roller = _border_state(m), per_mass * params.rollers.mass
-        react_by_border(state, BLOCK + m, LOCAL, ROLLER.cosine, ROLLER.sine, ROLLER.radius, count, per_roller, rows, jacobian, support)
-    for body in range(2):
-        mass, columns = per_mass * (params.ring.mass if body == 0 else params.cage.mass), 2 * (RING if body == 0 else CAGE)
-        for axis in range(2):
-            reaction, row = support[REACTION + axis], (RING_Y if body == 0 else CAGE_Y) + axis
-            first = RING_ROWS + axis * RING_COLUMNS if body == 0 else CAGE_ROWS + axis * CAGE_COLUMNS
-            for m in range(2 * BORDER):
-                reaction[m] -= mass * own[row, m]
-            for j in range(count):
-                block, lane = j // LANES, j % LANES
-                for m in range(BLOCK):
-                    reaction[ROLLERS + m * count + j] -= mass * jacobian[block, first + m, lane]
-                for m in range(columns):
-                    state = _border_state(m if body == 0 else 2 * RING + m)
-                    reaction[state] -= mass * jacobian[block, first + BLOCK + m, lane]
-    for j in range(count):  # a roller's axis is described in the frame that turns with the orbit
+def follow_axes(count, rows, support):
+    """Write what a unit of a_O does to the axes of the rollers, which are described in the frame that turns with the orbit."""
+    for j in range(count):
         block, lane = j // LANES, j % LANES
         tilt, skew = rows[block, ROLLER.tilt, lane], rows[block, ROLLER.skew, lane]
         for axis in range(2):
             turned = support[FOLLOWING + axis, ROLLERS + PHI_SPEED * count + j]
             support[FOLLOWING + axis, ROLLERS + TILT_SPEED * count + j] = turned * skew
             support[FOLLOWING + axis, ROLLERS + SKEW_SPEED * count + j] = -(turned * tilt)
-    for block in range(rows.shape[0]):
-        _turn_frame(block, frame_of(support), rows, jacobian)
 
 
 @kernel
-def _turn_frame(block, frame, rows, jacobian):
-    """Add to a block's rows how the frame's acceleration turns with a roller's azimuth."""
-    turn_frame((R, PHI), LOCAL, ROLLER, block, frame, rows, jacobian)
+def turn_axes(block, frame, rows, jacobian):
+    """Add to a block's rows of tilt'' and skew'' how the frame's acceleration turns with a roller's azimuth."""
     cosine, sine, inverse = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine), 1.0 / load(rows, block, ROLLER.radius)
     outwards, along = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
     tilt, skew, turned = load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.skew), -(along * inverse)
@@ -888,196 +762,3 @@ def _turn_frame(block, frame, rows, jacobian):
     add(jacobian, block, _SKEWING + TILT, -turned)
     add(jacobian, block, _SKEWING + PHI, -(tilt * outwards * inverse))
     add(jacobian, block, _SKEWING + R, tilt * turned * inverse)
-
-
-@kernel
-def _shifted(jacobian, block, position, speed, s):
-    """Return s (d/d(speed) + s d/d(position)): what a speed does within an implicit step."""
-    return s * (load(jacobian, block, speed) + s * load(jacobian, block, position))
-
-
-@kernel
-def _own(jacobian, block, first, k, s):
-    """Return what a roller's own k-th speed does to a row within an implicit step."""
-    if k == POSITIONS:
-        return s * load(jacobian, block, first + 2 * POSITIONS)
-    return _shifted(jacobian, block, first + k, first + POSITIONS + k, s)
-
-
-@fused
-def _invert_blocks(block, jacobian, s, rows, matrix):
-    """Invert I - s (dv'/dv + s dv'/dq) of a block of rollers; return whether all are regular.
-
-    Gauss and Jordan without pivoting: springs, dampers and inertia keep the diagonal above what else is in the matrix.
-    """
-    n = SPEEDS
-    for i in range(n):
-        for j in range(n):
-            store(matrix, 0, n * i + j, (1.0 if i == j else 0.0) - _own(jacobian, block, i * LOCAL, j, s))
-            store(rows, block, n * i + j, 1.0 if i == j else 0.0)
-    regular = True
-    for k in range(n):
-        pivot = load(matrix, 0, n * k + k)
-        regular = regular and total(where_positive(magnitude(pivot), 1.0, 0.0)) == LANES
-        inverse = 1.0 / pivot
-        for j in range(k + 1, n):
-            store(matrix, 0, n * k + j, inverse * load(matrix, 0, n * k + j))
-        for j in range(k + 1):
-            store(rows, block, n * k + j, inverse * load(rows, block, n * k + j))
-        for i in range(n):
-            if i != k:
-                factor = load(matrix, 0, n * i + k)
-                for j in range(k + 1, n):
-                    store(matrix, 0, n * i + j, load(matrix, 0, n * i + j) - factor * load(matrix, 0, n * k + j))
-                for j in range(k + 1):
-                    store(rows, block, n * i + j, load(rows, block, n * i + j) - factor * load(rows, block, n * k + j))
-    return regular
-
-
-@fused
-def _couplings(block, jacobian, s, rows):
-    """Write how a block of rollers and the border act on each other."""
-    for m in range(BORDER):
-        position = AT_RING + m if m < RING else AT_CAGE + m - RING
-        speed = position + (RING if m < RING else CAGE)
-        c_0, c_1 = _shifted(jacobian, block, position, speed, s), _shifted(jacobian, block, LOCAL + position, LOCAL + speed, s)
-        c_2 = _shifted(jacobian, block, 2 * LOCAL + position, 2 * LOCAL + speed, s)
-        c_3 = _shifted(jacobian, block, 3 * LOCAL + position, 3 * LOCAL + speed, s)
-        c_4 = _shifted(jacobian, block, 4 * LOCAL + position, 4 * LOCAL + speed, s)
-        for k in range(SPEEDS):
-            row = SPEEDS * k
-            value = load(rows, block, row) * c_0 + load(rows, block, row + 1) * c_1 + load(rows, block, row + 2) * c_2
-            value += load(rows, block, row + 3) * c_3 + load(rows, block, row + 4) * c_4
-            store(rows, block, RIGHT + BORDER * k + m, value)
-    for k in range(BORDER):
-        first = RING_ROWS + k * RING_COLUMNS if k < RING else CAGE_ROWS + (k - RING) * CAGE_COLUMNS
-        for m in range(SPEEDS):
-            store(rows, block, BELOW + SPEEDS * k + m, _own(jacobian, block, first, m, s))
-
-
-@fused
-def _reduce(block, jacobian, s, rows, sums):
-    """Add what a block of rollers does to the border's system.
-
-    Parameters
-    ----------
-    sums : sums over blocks of what is taken from the border's matrix and, behind that, of derivatives by its positions, shape (1, 162, LANES).
-    """
-    for k in range(BORDER):
-        below = BELOW + SPEEDS * k
-        b_0, b_1, b_2 = load(rows, block, below), load(rows, block, below + 1), load(rows, block, below + 2)
-        b_3, b_4 = load(rows, block, below + 3), load(rows, block, below + 4)
-        on_ring = k < RING
-        first = RING_ROWS + k * RING_COLUMNS if on_ring else CAGE_ROWS + (k - RING) * CAGE_COLUMNS
-        for m in range(BORDER):
-            right = RIGHT + m
-            through = b_0 * load(rows, block, right) + b_1 * load(rows, block, right + BORDER) + b_2 * load(rows, block, right + 2 * BORDER)
-            through += b_3 * load(rows, block, right + 3 * BORDER) + b_4 * load(rows, block, right + 4 * BORDER)
-            if on_ring == (m < RING):
-                column = first + BLOCK + (m if on_ring else m - RING)
-                d_position = load(jacobian, block, column)
-                through += s * (load(jacobian, block, column + (RING if on_ring else CAGE)) + s * d_position)
-                add(sums, 0, BORDER * (BORDER + k) + m, d_position)
-            add(sums, 0, BORDER * k + m, through)
-
-
-@fused
-def factor(jacobian, border, s, factored):
-    """Factor I - s J.
-
-    Parameters
-    ----------
-    jacobian : derivatives through each roller.
-    border : derivatives of the border's accelerations by its own positions and speeds, shape (9, 18).
-    s : gamma h [s].
-    factored : takes the factorisation.
-
-    Returns
-    -------
-    regular : False where a pivot is zero or not finite.
-    """
-    rows, positions, corner = factored.rows, factored.positions, factored.schur
-    factored.shift[0] = s
-    for k in range(BORDER):
-        for m in range(BORDER):
-            positions[k, m] = border[k, m]
-            corner[k, m] = (1.0 if k == m else 0.0) - s * (border[k, BORDER + m] + s * border[k, m])
-    for m in range(2 * BORDER * BORDER):
-        store(factored.sums, 0, m, 0.0)
-    regular = True
-    for block in range(jacobian.shape[0]):
-        regular = _invert_blocks(block, jacobian, s, rows, factored.block) and regular
-        _couplings(block, jacobian, s, rows)
-        _reduce(block, jacobian, s, rows, factored.sums)
-    for k in range(BORDER):
-        for m in range(BORDER):
-            corner[k, m] -= total(load(factored.sums, 0, BORDER * k + m))
-            if (k < RING) == (m < RING):
-                positions[k, m] += total(load(factored.sums, 0, BORDER * (BORDER + k) + m))
-    return decompose(BORDER, corner, factored.order) and regular
-
-
-@fused
-def _eliminate(block, jacobian, s, x, factored):
-    """Reduce a block's right side to speeds, solve for them without the border, and take what they do to it from its own."""
-    rows, right, reduced = factored.rows, factored.right, factored.block
-    q_0, q_1, q_2, q_3 = load(right, block, 0), load(right, block, 1), load(right, block, 2), load(right, block, 3)
-    for k in range(SPEEDS):
-        first = k * LOCAL
-        value = load(jacobian, block, first) * q_0 + load(jacobian, block, first + 1) * q_1
-        value += load(jacobian, block, first + 2) * q_2 + load(jacobian, block, first + 3) * q_3
-        for m in range(RING):
-            value += x[m] * load(jacobian, block, first + AT_RING + m)
-        for m in range(CAGE):
-            value += x[RING + m] * load(jacobian, block, first + AT_CAGE + m)
-        store(reduced, 0, k, load(right, block, POSITIONS + k) + s * value)
-    b_0, b_1, b_2 = load(reduced, 0, 0), load(reduced, 0, 1), load(reduced, 0, 2)
-    b_3, b_4 = load(reduced, 0, 3), load(reduced, 0, 4)
-    for k in range(SPEEDS):
-        row = SPEEDS * k
-        value = load(rows, block, row) * b_0 + load(rows, block, row + 1) * b_1 + load(rows, block, row + 2) * b_2
-        store(right, block, POSITIONS + k, value + load(rows, block, row + 3) * b_3 + load(rows, block, row + 4) * b_4)
-    v_0, v_1, v_2 = load(right, block, 4), load(right, block, 5), load(right, block, 6)
-    v_3, v_4 = load(right, block, 7), load(right, block, 8)
-    for k in range(BORDER):
-        below = BELOW + SPEEDS * k
-        first = RING_ROWS + k * RING_COLUMNS if k < RING else CAGE_ROWS + (k - RING) * CAGE_COLUMNS
-        passed = load(jacobian, block, first) * q_0 + load(jacobian, block, first + 1) * q_1
-        passed = s * (passed + load(jacobian, block, first + 2) * q_2 + load(jacobian, block, first + 3) * q_3)
-        passed += load(rows, block, below) * v_0 + load(rows, block, below + 1) * v_1 + load(rows, block, below + 2) * v_2
-        x[BORDER + k] += total(passed + load(rows, block, below + 3) * v_3 + load(rows, block, below + 4) * v_4)
-
-
-@fused
-def _substitute(block, s, x, factored):
-    """Complete a block's speeds by what the border does to them, and its positions."""
-    rows, right = factored.rows, factored.right
-    for k in range(SPEEDS):
-        value = load(right, block, POSITIONS + k)
-        for m in range(BORDER):
-            value += x[BORDER + m] * load(rows, block, RIGHT + BORDER * k + m)
-        store(right, block, POSITIONS + k, value)
-        if k < POSITIONS:
-            store(right, block, k, load(right, block, k) + s * value)
-
-
-@fused
-def solve(jacobian, factored, x):
-    """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
-    s = factored.shift[0]
-    count = (x.shape[0] - 2 * BORDER) // BLOCK
-    spread_runs(x, 2 * BORDER, BLOCK, count, factored.right)
-    fill_lanes(factored.right, BLOCK, count)  # a NaN of an attempt that failed would stay there and reach the border
-    for k in range(BORDER):
-        through = 0.0
-        for m in range(BORDER):
-            through += factored.positions[k, m] * x[m]
-        x[BORDER + k] += s * through
-    for block in range(jacobian.shape[0]):
-        _eliminate(block, jacobian, s, x, factored)
-    back_substitute(BORDER, factored.schur, factored.order, x[BORDER : 2 * BORDER])
-    for block in range(jacobian.shape[0]):
-        _substitute(block, s, x, factored)
-    for k in range(BORDER):
-        x[k] += s * x[BORDER + k]
-    collect_runs(factored.right, 0, BLOCK, count, x, 2 * BORDER)

@@ -10,26 +10,27 @@ import math
 
 import numpy as np
 
-from bearing_sim.levels.common.flanges import largest_corner, observe_flanges
+from bearing_sim.levels.common.advance import advance_by
+from bearing_sim.levels.common.dynamic import average_step, observe_level
+from bearing_sim.levels.common.flanges import largest_corner
 from bearing_sim.levels.common.model import FIFTH_PITCH, POSITION_WEIGHT, orbital_speed_tolerance, play_weight, ring_step, ring_weight, shaft_speed_at
-from bearing_sim.levels.common.observation import average_moments, count_damage, observe_course, observe_rest, oil_at_speed, turn_is_over
-from bearing_sim.levels.common.power import step_powers, write_powers
-from bearing_sim.levels.common.rollers import average_stiffness, land_eccentricity, observe_rollers, restrain_rollers
+from bearing_sim.levels.common.observation import count_damage, oil_at_speed, turn_is_over
+from bearing_sim.levels.common.rollers import restrain_rollers
 from bearing_sim.levels.common.slice_balance import balance, roller_tilts
 from bearing_sim.levels.common.state_transfer import FIRST_CAGE_TILT, first_cage_centre, rolling_state
-from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
-from bearing_sim.levels.spatial import jacobian
+from bearing_sim.levels.common.support import factor_level, place_support, solve_level, support_change
 from bearing_sim.levels.spatial import state as spatial_state
 from bearing_sim.levels.spatial.forces import carry_forces, equations
 from bearing_sim.levels.spatial.power import spatial_powers
+from bearing_sim.levels.spatial.predictor import predict
 from bearing_sim.levels.spatial.slices import average_laminae, lamina_pressures, sum_lamina_powers
 from bearing_sim.levels.spatial.state import (
     BLOCK,
-    BORDER,
     CAGE_TILT_Y,
     CAGE_TILT_Z,
     CAGE_Y,
     CAGE_Z,
+    LAYOUT,
     OMEGA,
     PHI,
     PHI_SPEED,
@@ -53,6 +54,7 @@ from bearing_sim.model.params import Params
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.simd import LANES, highest, larger, load_run, magnitude, spread, total
+from bearing_sim.numerics.time_stepping import Kernels
 from bearing_sim.physics.lamina import ROLLER_ROW
 from bearing_sim.physics.lamina_life import equivalent_lamina_loads
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
@@ -124,7 +126,7 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     return state
 
 
-@fused
+@kernel
 def rhs(t, y, model, work, rate):
     """Write dy/dt into ``rate``."""
     return equations(t, y, model, work, rate, False)
@@ -139,18 +141,13 @@ def rhs_and_jacobian(t, y, model, work, rate):
 @fused
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
-    if work.support.shape[0] > 0:
-        return factor_supported(jacobian.factor, jacobian.solve, BORDER, shift, work)
-    return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
+    return factor_level(LAYOUT, shift, work)
 
 
 @fused
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
-    if work.support.shape[0] > 0:
-        solve_supported(jacobian.solve, BORDER, work, x)
-    else:
-        jacobian.solve(work.jacobian, work.factored, x)
+    solve_level(LAYOUT, work, x)
 
 
 @fused
@@ -219,13 +216,11 @@ def step_limit(t, y, model, work):
 def sum_up(t, h, y, model, work):
     """Take the loads of a step of length ``h`` [s], and the stiffness at its end, into the running means over a cage turn, and count damage.
 
-    A step leaves the loads of its last iterate but one, and only a micrometre away a load may be another altogether.
+    After a step, ``work`` holds loads of the second-last iterate; they are carried to ``y``, because contact loads are stiff.
     """
     count, turned = model.params.rollers.count, h * y[OMEGA]
     carry_forces(y, count, work)
-    fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
-    average_moments(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_moments, work.last_moments, work.tally)
-    average_stiffness(ROLLER, SLICED, fraction, work.rollers, work.contacts, work.ring_stiffness)
+    average_step(ROLLER, SLICED, turned, model, work)
     average_laminae(abs(turned), _LAMINA_INTERVAL * 2.0 * math.pi / count, model.params, work)
     if turn_is_over(t, h, model, work.tally):
         oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
@@ -241,40 +236,28 @@ def _equivalent_loads(oil, life, work):
 
 
 @kernel
-def _observed_rhs(t, y, model, work, rate):
-    """Write dy/dt into ``rate``: one text of the equations for all calls of `step_powers`."""
-    return rhs(t, y, model, work, rate)
-
-
-@kernel
-def _powers(t, y, model, work, memory):
-    """Return the powers of the step that ended at ``t`` in state ``y`` (see `step_powers`)."""
-    return step_powers(_observed_rhs, spatial_powers, t, y, model, work, memory)
-
-
-@kernel
 def observe(t, y, model, work, interval, previous, row, memory):
     """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.model.observe`."""
-    powers = _powers(t, y, model, work, memory)
     rows, count = work.rollers, model.params.rollers.count
     oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
     equivalent = _equivalent_loads(oil, model.params.life, work)
-    observe_course(t, y[THETA], y[OMEGA], equivalent, oil, model, interval, previous, work.tally, row)
-    row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
-    row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
-    observe_support(y, y[RING_Y], y[RING_Z], model.params.support, row)
+    observe_level(LAYOUT, ROLLER, SLICED, rhs, spatial_powers, t, y, oil, equivalent, model, work, interval, previous, row, memory)
     row[COLUMN.ring_tilt_y], row[COLUMN.ring_tilt_z] = y[RING_TILT_Y], y[RING_TILT_Z]
     row[COLUMN.cage_tilt_y], row[COLUMN.cage_tilt_z] = y[CAGE_TILT_Y], y[CAGE_TILT_Z]
     pressures = lamina_pressures(model.params, work)
     row[COLUMN.inner_pressure], row[COLUMN.outer_pressure], row[COLUMN.inner_edge_pressure], row[COLUMN.outer_edge_pressure] = pressures
-    row[COLUMN.land_eccentricity] = land_eccentricity(y[RING_Y], y[RING_Z], y[CAGE_Y], y[CAGE_Z], model.params.cage)
-    write_powers(powers, row)
     if model.params.flanges.on:
-        observe_flanges(ROLLER, SLICED.load, count, model.params.flanges, rows, work.contacts, row)
         row[COLUMN.flange_load] += largest_corner(ROLLER, rows)
-    observe_rollers(ROLLER, SLICED.load, count, interval, rows, work.contacts, previous, row)
     for j in range(count):
         first, block, lane = SCALARS + j, j // LANES, j % LANES
         row[first + COLUMN.roller_tilt * count] = rows[block, ROLLER.tilt, lane]
         row[first + COLUMN.roller_skew * count] = rows[block, ROLLER.skew, lane]
-    observe_rest(interval, previous, model.params, work.tally, row)
+
+
+KERNELS = Kernels(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, correction_norm, restrain, step_limit, sum_up, observe)
+
+
+@kernel
+def advance(fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    """Advance with error control, or ``fixed`` in steps of ``maximum_step`` [s]; see `bearing_sim.levels.common.advance.advance_by`."""
+    return advance_by(KERNELS, fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

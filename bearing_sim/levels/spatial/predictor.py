@@ -7,14 +7,14 @@ own normal contacts: a few Newton iterations of all rollers at once.
 
 import math
 
+from bearing_sim.levels.common.dynamic import extrapolate, write_guess
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.rollers import follow_contour
-from bearing_sim.levels.common.support import extrapolate_support
 from bearing_sim.levels.spatial.forces import press_axially
 from bearing_sim.levels.spatial.slices import press_normally
 from bearing_sim.levels.spatial.state import (
-    BLOCK,
     BORDER,
+    LAYOUT,
     PHI,
     PHI_SPEED,
     R_SPEED,
@@ -33,23 +33,10 @@ from bearing_sim.levels.spatial.state import (
     R,
 )
 from bearing_sim.numerics.compilation import fused
-from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread_run, square_root, store, store_run, where_positive
+from bearing_sim.numerics.simd import highest, larger, load, magnitude, spread_run, square_root, store, where_positive
 
 _ITERATIONS = 4
 _SETTLED = 0.2  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system
-
-
-@fused
-def _extrapolate(known, shift, slope, count, guess):
-    """Extrapolate speeds by their rates, and write the positions that belong to them."""
-    for k in range(BORDER):
-        guess[BORDER + k] = known[BORDER + k] + shift * slope[BORDER + k]
-        guess[k] = known[k] + shift * guess[BORDER + k]
-    for j in range(ROLLERS + PHI_SPEED * count, ROLLERS + (SPIN + 1) * count):
-        guess[j] = known[j] + shift * slope[j]
-    for j in range(ROLLERS + PHI * count, ROLLERS + (SKEW + 1) * count):
-        guess[j] = known[j] + shift * guess[j + (PHI_SPEED - PHI) * count]
-    extrapolate_support(known, shift, slope, ROLLERS + BLOCK * count, guess)
 
 
 @fused
@@ -143,7 +130,7 @@ def predict(known, shift, slope, model, work, guess):
     count, blocks = params.rollers.count, work.rollers.shape[0]
     inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # as at level `planar`
     enough = _SETTLED * model.tolerances.position
-    _extrapolate(known, shift, slope, count, guess)
+    extrapolate(LAYOUT, known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
     for _ in range(_ITERATIONS):
         settled = True
@@ -160,15 +147,5 @@ def predict(known, shift, slope, model, work, guess):
                 settled = _balance(block, shift, enough, params, rows, contacts) < enough and settled
         if settled:
             break
-    per_shift, whole = 1.0 / shift, count // LANES
-    for k in range(2):
-        first, row, before = ROLLERS + (R if k == 0 else TILT) * count, ROLLER.radius, ROLLER.known_radius
-        if k == 1:
-            row, before = ROLLER.tilt, ROLLER.known_tilt
-        for block in range(whole):
-            position, at = load(rows, block, row), first + block * LANES
-            store_run(guess, at, position)
-            store_run(guess, at + R_SPEED * count, (position - load(rows, block, before)) * per_shift)
-        for j in range(whole * LANES, count):
-            guess[first + j] = rows[whole, row, j - whole * LANES]
-            guess[first + j + R_SPEED * count] = (guess[first + j] - known[first + j]) * per_shift
+    write_guess(LAYOUT, R, ROLLER.radius, ROLLER.known_radius, known, shift, count, rows, guess)
+    write_guess(LAYOUT, TILT, ROLLER.tilt, ROLLER.known_tilt, known, shift, count, rows, guess)

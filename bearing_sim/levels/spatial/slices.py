@@ -15,12 +15,11 @@ Left out: sliding along the axis of a skewed roller, and the difference of circu
 
 import math
 
-from bearing_sim.levels.common.rollers import add
 from bearing_sim.levels.spatial.state import D_DEPTH, D_RATE, DROP, FRACTION, INNER, OUTER, POSITION, ROLLER, SLICED, SLICED_ROWS
 from bearing_sim.model.params import LOGARITHMIC, SLICED_EQUALLY, STRAIGHT
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import exponential, logarithm, ninth_root
-from bearing_sim.numerics.simd import highest, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
+from bearing_sim.numerics.simd import add, highest, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, TINY, damped_line_contact, damping_factor, elastic_line_contact, hertz_pressure
 from bearing_sim.physics.film import resist_rolling_by_rows
 

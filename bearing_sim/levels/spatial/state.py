@@ -9,35 +9,27 @@ Every tilt is the inclination of an axis, so that the middle of a slice at x sta
 skew of a roller incline its axis outwards and along the orbit, those of ring and cage incline theirs towards y and z.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.levels.common.flanges import ROWS as FLANGE_ROWS
 from bearing_sim.levels.common.observation import Tally
-from bearing_sim.levels.common.rollers import StateRuns
+from bearing_sim.levels.common.rollers import StateRuns, new_rollers
 from bearing_sim.levels.common.support import new_support
-from bearing_sim.numerics.compilation import fused
-from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
+from bearing_sim.numerics.block_arrow import Factored, block_arrow, new_factored
+from bearing_sim.numerics.simd import new_blocks, new_rows
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.lamina_life import MOMENTS
 
-RING, CAGE = 4, 5
-BORDER = RING + CAGE  # positions of ring and cage, and as many speeds
-BLOCK = 9  # states of a roller: four positions, their speeds, and the spin
-SPEEDS, POSITIONS = 5, 4
-AT_RING = BLOCK  # where border positions and speeds stand among what a roller depends on
-AT_CAGE = BLOCK + 2 * RING
+RING, CAGE = 4, 5  # positions of ring and cage
+LAYOUT = block_arrow(4, 5, (RING, CAGE))  # of rollers that touch ring and cage: four positions, their speeds, and the spin
+BLOCK, BORDER, LOCAL = LAYOUT.block, LAYOUT.border, LAYOUT.local
+AT_CAGE = BLOCK + 2 * RING  # where the cage's positions and speeds stand among what a roller depends on
 AT_CAGE_SPEEDS = AT_CAGE + CAGE
-LOCAL = AT_CAGE + 2 * CAGE
 RING_COLUMNS, CAGE_COLUMNS = BLOCK + 2 * RING, BLOCK + 2 * CAGE
-RING_ROWS = SPEEDS * LOCAL  # where the rows of the ring and the cage begin
+RING_ROWS = 5 * LOCAL  # where the rows of the ring and the cage begin
 CAGE_ROWS = RING_ROWS + RING * RING_COLUMNS
-JACOBIAN_ROWS = CAGE_ROWS + CAGE * CAGE_COLUMNS
-RIGHT = SPEEDS * SPEEDS  # rows of a factorisation
-BELOW = RIGHT + SPEEDS * BORDER
-_FACTORED = BELOW + BORDER * SPEEDS
 # rows of points behind those of a contact: derivatives of the normal force that a point adds, where it is along the roller [m], the fraction of the
 # roller's length that it stands for, and the drop of the profile there [m]
 D_DEPTH, D_RATE, POSITION, FRACTION, DROP = range(len(CONTACT), len(CONTACT) + 5)
@@ -53,36 +45,8 @@ _PLAIN_ROWS = 67  # of a roller without flanges
 ROLLER_ROWS = _PLAIN_ROWS + 2 * FLANGE_ROWS
 
 
-class Factored(NamedTuple):
-    """A factorisation of I - s J."""
-
-    shift: np.ndarray  # s, shape (1,)
-    rows: np.ndarray  # by roller: inverse block (5x5), that times its coupling to the border's speeds (5x9), the border's to it (9x5)
-    right: np.ndarray  # right sides by roller: four positions and five speeds
-    positions: np.ndarray  # d(border accelerations)/d(border positions), all rollers together, shape (9, 9)
-    schur: np.ndarray  # factors of the Schur complement, shape (9, 9)
-    order: np.ndarray  # its pivots, int64, shape (9,)
-    block: np.ndarray  # scratch, shape (1, 25, LANES)
-    sums: np.ndarray  # scratch, shape (1, 162, LANES)
-
-
-def new_factored(count):
-    """Return a zeroed factorisation for ``count`` rollers."""
-    square = (BORDER, BORDER)
-    return Factored(
-        np.zeros(1),
-        new_rows(_FACTORED, count),
-        new_rows(BLOCK, count),
-        np.zeros(square),
-        np.zeros(square),
-        np.zeros(BORDER, np.int64),
-        new_blocks(1, SPEEDS * SPEEDS),
-        new_blocks(1, 2 * BORDER * BORDER),
-    )
-
-
 class SlicedRow(NamedTuple):
-    """Rows of a sliced contacts array: all blocks of inner contacts, then all of outer ones.  Moments are sums of forces times x."""
+    """Indices of the rows of a sliced contacts array: all blocks of inner contacts, then all of outer ones.  Moments are sums of forces times x."""
 
     load: int = 0  # normal force Q [N]
     rolling: int = 1  # mean speed u of both surfaces relative to the contact [m/s]
@@ -115,7 +79,7 @@ SLICED = SlicedRow()
 
 
 class RollerRow(NamedTuple):
-    """Rows of the rollers array, see `bearing_sim.numerics.simd.new_rows`; frame: outwards, along the orbit."""
+    """Indices of the rows of the rollers array, see `bearing_sim.numerics.simd.new_rows`; frame: outwards, along the orbit."""
 
     radius: int = 0  # r [m]
     angle: int = 1  # phi [rad]
@@ -190,9 +154,9 @@ class Work(NamedTuple):
     contacts: np.ndarray  # rows `bearing_sim.levels.spatial.state.SLICED`, those with the inner raceway first
     points: np.ndarray  # of contacts, see `bearing_sim.levels.spatial.slices.press_points`
     first_points: np.ndarray  # by block of contacts, see there, int64
-    jacobian: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.spatial.state`
+    jacobian: np.ndarray  # derivatives through each roller, see `bearing_sim.numerics.block_arrow`
     chain: np.ndarray  # scratch for derivatives of one block of rollers, shape (1, 208, LANES)
-    border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (9, 18)
+    global_block: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (9, 18)
     lands: np.ndarray  # scratch of the guide lands, shape (4, 18)
     land_own: np.ndarray  # scratch of the guide lands, shape (2, 5, 10)
     factored: Factored  # of I - gamma h J
@@ -212,22 +176,18 @@ class Work(NamedTuple):
 def new_work(params):
     """Return the level's workspace for a bearing."""
     count = params.rollers.count
-    rollers = new_rows(ROLLER_ROWS, count)
-    lanes = np.arange(rollers.shape[0] * LANES).reshape(-1, LANES)
-    rollers[:, ROLLER.present] = lanes < count
-    pitch = 2 * math.pi * np.minimum(lanes, count - 1) / count
-    rollers[:, ROLLER.pitch_cosine], rollers[:, ROLLER.pitch_sine] = np.cos(pitch), np.sin(pitch)
+    rollers = new_rollers(ROLLER, ROLLER_ROWS, count)
     return Work(
         rollers=rollers,
         contacts=new_blocks(2 * rollers.shape[0], SLICED_ROWS),
         points=new_blocks(2 * rollers.shape[0] * params.slices.points, POINT_ROWS),
         first_points=np.full(2 * rollers.shape[0], -1, np.int64),
-        jacobian=new_rows(JACOBIAN_ROWS, count),
+        jacobian=new_rows(LAYOUT.rows, count),
         chain=new_blocks(1, 208),
-        border_own=np.zeros((BORDER, 2 * BORDER)),
+        global_block=np.zeros((BORDER, 2 * BORDER)),
         lands=np.zeros((4, 2 * BORDER)),
         land_own=np.zeros((2, 5, 10)),
-        factored=new_factored(count),
+        factored=new_factored(LAYOUT, count),
         support=new_support(params.support, 2 * BORDER + BLOCK * count),
         evaluated_ring=np.zeros(6),
         ring_stiffness=np.zeros(3),
@@ -240,18 +200,3 @@ def new_work(params):
         lamina_turn=np.zeros(1),
         lamina_means=np.zeros((2, len(params.life.laminae.positions))),
     )
-
-
-@fused
-def spread_state(y, count, rollers):
-    """Copy the rollers' states from ``y`` into their lanes."""
-    spread_runs(y, ROLLERS, BLOCK, count, rollers)
-    fill_lanes(rollers, BLOCK, count)
-
-
-@fused
-def collect_rates(y, count, rollers, rate):
-    """Copy the rollers' speeds and accelerations from their lanes into ``rate``."""
-    for j in range(4 * count):
-        rate[ROLLERS + j] = y[ROLLERS + R_SPEED * count + j]
-    collect_runs(rollers, ROLLER.radial_acceleration, 5, count, rate, ROLLERS + R_SPEED * count)

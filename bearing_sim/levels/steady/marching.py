@@ -11,7 +11,7 @@ import numpy as np
 
 from bearing_sim.levels.common.state_transfer import start_means
 from bearing_sim.levels.slip import state as slip_state
-from bearing_sim.levels.slip.methods import advance
+from bearing_sim.levels.slip.model import advance
 from bearing_sim.levels.slip.state import OMEGA, THETA
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.model.sample import OBSERVABLES, flat, new_block

@@ -20,6 +20,7 @@ from bearing_sim.levels.common.model import Drive, Model, inner_growth, load_at,
 from bearing_sim.levels.common.observation import TALLY, Tally, damage_rate, mean_rate, observe_course, observe_rest, oil_at_speed
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
+from bearing_sim.levels.slip.model import observe_orbits
 from bearing_sim.levels.slip.state import OMEGA, THETA
 from bearing_sim.levels.steady.marching import march
 from bearing_sim.levels.steady.operating_point import (
@@ -42,7 +43,6 @@ from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.time_stepping import COUNT, NEEDS_POINT, OK, STEP_BUDGET
 from bearing_sim.physics.growth import Temperatures, excess_growth, growth_at, seats_at
 from bearing_sim.physics.lamina_life import EquivalentLoads
-from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs, oil_properties, step
 
 _NEAR, _EVEN = 0.02, 0.02  # slip, and fraction of the lag; as near, and where the lag changes by less, one step follows exactly
@@ -206,7 +206,7 @@ def _answer_to(condition, y, model, work):
 @kernel
 def _write_sample(t, y, model, work, interval, previous, row):
     """Write the sample of a state; ``work.answer`` is that of the inputs at the time."""
-    params, loads, answer = model.params, work.bearing.loads, work.answer
+    params, answer = model.params, work.answer
     count, cage_angle, cage_speed = params.rollers.count, y[THETA], y[OMEGA]
     equivalent = EquivalentLoads(
         answer[ANSWER.inner_equivalent_load],
@@ -229,18 +229,9 @@ def _write_sample(t, y, model, work, interval, previous, row):
     load_y, load_z = load_at(t, model.drive)
     work.bearing.growth[0] = inner_growth(shaft_speed_at(t, model.drive), model)
     balance_loads(cage_angle, cage_speed, load_y, load_z, params, work.bearing)
-    row[COLUMN.ring_y] = work.bearing.ring[0]
-    row[COLUMN.ring_z] = work.bearing.ring[1]
-    for j in range(count):
-        first = SCALARS + j
-        row[first + COLUMN.roller_angle * count] = cage_angle + 2.0 * math.pi * j / count
-        row[first + COLUMN.roller_radius * count] = loads[LOAD.radius, j]
-        row[first + COLUMN.roller_spin * count] = math.nan
-        row[first + COLUMN.roller_rotation * count] = math.nan
-        row[first + COLUMN.inner_load * count] = loads[LOAD.inner, j]
-        row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
-        row[first + COLUMN.orbital_speed * count] = cage_speed
-        row[first + COLUMN.pocket_force * count] = math.nan
+    observe_orbits(cage_angle, cage_speed, count, work.bearing, row)
+    for column in (COLUMN.roller_spin, COLUMN.roller_rotation, COLUMN.pocket_force):
+        row[SCALARS + column * count : SCALARS + (column + 1) * count] = math.nan
     observe_rest(interval, previous, params, tally, row)
 
 

@@ -882,8 +882,7 @@ def _write_way(slip, ideal, sense, model, work, orbit, answer):
 def _write_means(sense, model, work, orbit, answer):
     """Write powers and equivalent loads, means in time over a pitch; return the power left to drive the cage [W]."""
     angles, rate, params, moments = orbit.accelerations.shape[0], orbit.rate, model.params, work.load_moments
-    for column in range(ANSWER.shaft_power, ANSWER.flange_power + 1):
-        answer[column] = 0.0
+    answer[ANSWER.shaft_power : ANSWER.flange_power + 1] = 0.0
     moments[:] = 0.0
     answer[ANSWER.inner_load_maximum] = answer[ANSWER.outer_load_maximum] = 0.0
     left, count = 0.0, params.rollers.count
@@ -893,17 +892,8 @@ def _write_means(sense, model, work, orbit, answer):
         part = orbit.speed[0] / (cage_speed * angles)  # of the time
         powers = slip_powers(cage_speed, orbit.state[SPIN:], model.drive.shaft_speed, model, work)
         answer[ANSWER.shaft_power] += part * (powers.shaft - kinetic_power(orbit.state, rate, model, work))
-        answer[ANSWER.inner_sliding_power] += part * powers.inner_sliding
-        answer[ANSWER.outer_sliding_power] += part * powers.outer_sliding
-        answer[ANSWER.inner_rolling_power] += part * powers.inner_rolling
-        answer[ANSWER.outer_rolling_power] += part * powers.outer_rolling
-        answer[ANSWER.churning_power] += part * powers.churning
-        answer[ANSWER.windage_power] += part * powers.windage
-        answer[ANSWER.land_power] += part * powers.land
-        answer[ANSWER.pocket_power] += part * powers.pocket
-        answer[ANSWER.damping_power] += part * powers.damping
-        answer[ANSWER.seal_power] += part * powers.seal
-        answer[ANSWER.flange_power] += part * powers.flange
+        for cause in range(1, ANSWER.flange_power - ANSWER.shaft_power + 1):
+            answer[ANSWER.shaft_power + cause] += part * powers[cause]
         left += part * rate[OMEGA]
         for j in range(count):
             inner, outer = work.loads[LOAD.inner, j], work.loads[LOAD.outer, j]
@@ -997,8 +987,7 @@ def solve_point(start, to_standstill, model, work, orbit, answer):
     orbit.before[:] = math.nan
     while True:
         view = at_angles(angles, count, orbit)
-        for column in range(answer.shape[0]):
-            answer[column] = math.nan
+        answer[:] = math.nan
         if status == SETTLED and not _ripple(1.0, 0, sense, model, work, view):
             status = FAILED
         elif status == SETTLED:
@@ -1027,8 +1016,7 @@ def solve_point(start, to_standstill, model, work, orbit, answer):
             angles *= 2
             continue
         if status == FAILED:
-            for column in range(answer.shape[0]):
-                answer[column] = math.nan
+            answer[:] = math.nan
             return FAILED
         resolution[RESOLUTION.angles] = angles
         enough = _changes(orbit, answer, params.life) <= allowed
