@@ -40,7 +40,7 @@ setup(
             "py.typed",
             "__init__.pyi",
             "scene/catalog/*/*.yaml",
-            "scene/catalog/designations/*.csv",
+            "scene/catalog/*/*.csv",
             "scene/scenes/*.bands.npz",
             "scene/scenes/*.yaml",
             "ros/dds/*.xml",
