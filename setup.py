@@ -42,7 +42,7 @@ setup(
             "__init__.pyi",
             "model/names.pyi",
             "scene/catalog/*/*.yaml",
-            "scene/catalog/designations/*.csv",
+            "scene/catalog/*/*.csv",
             "scene/scenes/*.bands.npz",
             "scene/scenes/*.yaml",
             "physics/limits.toml",

@@ -167,7 +167,7 @@ REFUSED = {  # what it is, and what is near
     "6210-2RS": ("deep groove ball bearing", "NU 210"),
     "NU 210 ECP F7 QX": ("unknown suffix 'F7', 'QX'", "NU 210 ECP"),
     "NU 210 PHA": ("PEEK, guided by the outer ring",),
-    "NU 203 CM": ("above 24 to 200 mm",),
+    "NU 203 CM": ("above 24 up to 200 mm",),
     "NU 210 CM C3": ("two clearance groups",),
     "F-554377": ("drawing number",),
 }

@@ -6,7 +6,6 @@ rollers), ``types.csv`` and ``suffixes.csv`` (what letters mean); each says wher
 (types of GOST 8328).  `bearing_tree` turns a designation into the block that a preset file would hold.
 """
 
-import csv
 import difflib
 import math
 import re
@@ -15,8 +14,8 @@ import unicodedata
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
-from importlib import resources
 
+from bearing_sim.scene.bundled import catalog_table
 from bearing_sim.scene.mounting import CLEARANCE_GROUPS, CLEARANCE_PARTS, OTHER_CLEARANCES, clearance_limits
 from bearing_sim.scene.ratings import Ratings
 
@@ -202,11 +201,6 @@ class CatalogueBearing:
     maker: str
 
 
-def _table(name: str) -> list[dict[str, str]]:
-    text = resources.files("bearing_sim.scene").joinpath("catalog/designations", f"{name}.csv").read_text(encoding="utf-8")
-    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
-
-
 def _millimetres(diameter: float) -> int:
     return round(1e3 * diameter)
 
@@ -223,7 +217,7 @@ def _scaled(cell: str, scale: float) -> float | None:
 def boundaries() -> Mapping[tuple[str, int], Boundary]:
     """Return boundary dimensions by series and bore [mm]."""
     found = {}
-    for row in _table("boundary"):
+    for row in catalog_table("designations/boundary"):
         bore, outside, width, corner = (_metres(row[name]) for name in ("bore", "outside", "width", "corner"))
         found[row["series"], int(row["bore"])] = Boundary(bore, outside, width, corner, row["sources"])
     return types.MappingProxyType(found)
@@ -234,7 +228,7 @@ def makers_rows() -> Mapping[tuple[str, int, bool], tuple[MakersRow, ...]]:
     """Return what makers print by series, bore [mm] and whether the bearing has a full complement; the maker to prefer comes first."""
     found: dict[tuple[str, int, bool], list[MakersRow]] = {}
     rpm = math.pi / 30
-    for row in _table("ratings"):
+    for row in catalog_table("designations/ratings"):
         ratings = Ratings(
             dynamic=_scaled(row["dynamic"], 1e3),
             static=_scaled(row["static"], 1e3),
@@ -264,20 +258,20 @@ def roller_counts() -> tuple[RollerCount, ...]:
             row["basis"] == "unique",
             row["published"],
         )
-        for row in _table("rollers")
+        for row in catalog_table("designations/rollers")
     )
 
 
 @cache
 def _suffixes() -> tuple[tuple[re.Pattern, str, str, str], ...]:
     """Return pattern, kind, value and meaning of the suffixes of ``suffixes.csv``."""
-    return tuple((re.compile(rf"(?:{row['pattern']})$"), row["kind"], row["value"], row["meaning"]) for row in _table("suffixes"))
+    return tuple((re.compile(rf"(?:{row['pattern']})$"), row["kind"], row["value"], row["meaning"]) for row in catalog_table("designations/suffixes"))
 
 
 @cache
 def _other_types() -> Mapping[str, tuple[str, str]]:
     """Return what bearings are whose type is not of `TYPES`, and the nearest of `TYPES`, by the letters of the type."""
-    return types.MappingProxyType({row["type"]: (row["what"], row["nearest"]) for row in _table("types")})
+    return types.MappingProxyType({row["type"]: (row["what"], row["nearest"]) for row in catalog_table("designations/types")})
 
 
 def _plain(text: object) -> str:

@@ -8,6 +8,8 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from bearing_sim.scene.bundled import catalog_table
+
 RPM = 30.0 / math.pi  # 1/min over rad/s
 ZERO_CELSIUS = 273.15  # [K]
 LONGEST_LIFE = 1e9  # h; a longer life is that of a bearing without load
@@ -37,109 +39,17 @@ class Shown(NamedTuple):
     is_logarithmic: bool = False
 
 
-def _life(name: str, symbol: str = "") -> Shown:
-    return Shown(name, "h", symbol, is_logarithmic=True)
-
-
-def _temperature(name: str) -> Shown:
-    return Shown(name, "°C", offset=-ZERO_CELSIUS, digits=3)
-
-
-def _power(name: str) -> Shown:
-    return Shown(name, "W", digits=4)
-
-
-def _length(name: str, symbol: str = "") -> Shown:
-    return Shown(name, "µm", symbol, 1e6, digits=3)
-
-
 SHOWN = {
-    "time": Shown("time", "s", "t"),
-    "shaft_speed": Shown("shaft speed", "rpm", "n", RPM, digits=5),
-    "cage_speed": Shown("cage speed", "rpm", "", RPM, digits=5),
-    "ideal_cage_speed": Shown("cage speed without slip", "rpm", "", RPM, digits=5),
-    "reference_speed": Shown("reference speed", "rpm", "n_r", RPM, digits=5),
-    "limiting_speed": Shown("limiting speed", "rpm", "n_lim", RPM, digits=5),
-    "radial_load": Shown("radial load", "N", "F_r"),
-    "axial_load": Shown("axial load", "N", "F_a"),
-    "load_y": Shown("load along y", "N"),
-    "load_z": Shown("load along z", "N"),
-    "load_angle": Shown("load direction", "°", "", 180.0 / math.pi),
-    "installation_angle": Shown("installation angle", "°", "", 180.0 / math.pi),
-    "oil_temperature": _temperature("oil temperature"),
-    "temperature": _temperature("oil temperature"),
-    "inner_ring_temperature": _temperature("inner ring temperature"),
-    "outer_ring_temperature": _temperature("outer ring temperature"),
-    "roller_temperature": _temperature("roller temperature"),
-    "shaft_temperature": _temperature("shaft temperature"),
-    "housing_temperature": _temperature("housing temperature"),
-    "oil_outlet_temperature": _temperature("temperature of the oil that leaves"),
-    "ambient_temperature": _temperature("ambient temperature"),
-    "cage_slip": Shown("cage slip", "%", "", 100.0, digits=3, is_logarithmic=True),
-    "cage_slip_minimum": Shown("least cage slip", "%", "", 100.0, digits=3),
-    "cage_slip_maximum": Shown("largest cage slip", "%", "", 100.0, digits=3),
-    "other_slip": Shown("cage slip of another state", "%", "", 100.0, digits=3),
-    "life": _life("life"),
-    "rating_life": _life("rating life"),
-    "modified_rating_life": _life("modified rating life"),
-    "other_rating_life": _life("rating life of another state"),
-    "l10": _life("life by ISO 281", "L10"),
-    "lnm": _life("modified life by ISO 281", "L_nm"),
-    "l10r": _life("life by ISO/TS 16281", "L10r"),
-    "lnmr": _life("modified life by ISO/TS 16281", "L_nmr"),
-    "damage": Shown("life used", "%", "", 100.0, digits=3),
-    "equivalent_load": Shown("equivalent load", "N", "P"),
-    "reference_load": Shown("equivalent reference load", "N", "P_ref"),
-    "inner_equivalent_load": Shown("equivalent roller load, inner ring", "N"),
-    "outer_equivalent_load": Shown("equivalent roller load, outer ring", "N"),
-    "inner_lamina_load": Shown("equivalent lamina load, inner ring", "N"),
-    "outer_lamina_load": Shown("equivalent lamina load, outer ring", "N"),
-    "inner_load_maximum": Shown("largest roller load, inner raceway", "N"),
-    "outer_load_maximum": Shown("largest roller load, outer raceway", "N"),
-    "inner_pressure": Shown("largest pressure, inner raceway", "MPa", "", 1e-6),
-    "outer_pressure": Shown("largest pressure, outer raceway", "MPa", "", 1e-6),
-    "inner_edge_pressure": Shown("edge pressure, inner raceway", "MPa", "", 1e-6),
-    "outer_edge_pressure": Shown("edge pressure, outer raceway", "MPa", "", 1e-6),
-    "loaded_rollers": Shown("rollers under load", digits=3),
-    "viscosity_ratio": Shown("viscosity ratio", "", "kappa", digits=3),
-    "contamination_factor": Shown("contamination factor", "", "e_C", digits=3),
-    "modification_factor": Shown("life modification factor", "", "a_ISO", digits=3),
-    "reference_modification_factor": Shown("life modification factor of all laminae", "", "a_ISO", digits=3),
-    "static_safety": Shown("static safety", "", "S_0", digits=3),
-    "film": Shown("film", "µm", "h", 1e6, digits=3),
-    "film_ratio": Shown("film over roughness", "", "lambda", digits=3),
-    "friction_moment": Shown("friction moment", "N m", "M", digits=4),
-    "land_eccentricity": Shown("cage eccentricity", digits=3),
-    "running_clearance": _length("running clearance"),
-    "initial_clearance": _length("initial clearance"),
-    "fit_clearance": _length("clearance by fits"),
-    "rotation_clearance": _length("clearance by rotation"),
-    "heat_clearance": _length("clearance by heat"),
-    "contour_clearance": _length("clearance by the contour"),
-    "clearance": _length("radial internal clearance"),
-    "roundness": _length("roundness of the low points", "e"),
-    "viscosity_40": Shown("oil viscosity at 40 °C", "mm²/s", "", 1e6),
-    "viscosity_100": Shown("oil viscosity at 100 °C", "mm²/s", "", 1e6),
-    "low_radius": Shown("low-point radius", "mm", "R_low", 1e3, digits=7),
-    "d_value": Shown("D value", "mm", "D", 1e3),
-    "shaft_power": _power("power loss"),
-    "inner_sliding_power": _power("sliding, inner raceway"),
-    "outer_sliding_power": _power("sliding, outer raceway"),
-    "inner_rolling_power": _power("rolling, inner raceway"),
-    "outer_rolling_power": _power("rolling, outer raceway"),
-    "churning_power": _power("drag of rollers"),
-    "windage_power": _power("drag of the cage"),
-    "land_power": _power("guide lands"),
-    "pocket_power": _power("pockets"),
-    "damping_power": _power("damping of contacts"),
-    "seal_power": _power("seals"),
-    "flange_power": _power("flanges"),
-    "support_power": _power("dampers of supports"),
-    "heat_to_oil": _power("heat to the oil"),
-    "heat_to_ambient": _power("heat to the air"),
-    "dynamic_rating": Shown("dynamic load rating", "N", "C"),
-    "static_rating": Shown("static load rating", "N", "C_0"),
-    "fatigue_limit": Shown("fatigue load limit", "N", "C_u"),
+    row["key"]: Shown(
+        row["name"],
+        row["unit"],
+        row["symbol"],
+        float(row["scale"] or 1.0),
+        float(row["offset"] or 0.0),
+        int(row["digits"]),
+        row["logarithmic"] == "yes",
+    )
+    for row in catalog_table("tables/shown")
 }
 """How results and inputs are shown, by the last part of their name (`bearing_sim.model.sample`, scene fields, columns of tables)."""
 

@@ -10,7 +10,6 @@ import re
 import types
 import typing
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,6 +22,7 @@ from bearing_sim.files.outside import allowing_outside, why_outside
 from bearing_sim.files.reading import NO_FILE, read_text, why_not_readable
 from bearing_sim.files.yaml_text import values_of
 from bearing_sim.scene.bearing import Bearing, drop_other_lands
+from bearing_sim.scene.bundled import bundled_names, bundled_text
 from bearing_sim.scene.contour import UNREAD, drop_other_forms, with_contour_text
 from bearing_sim.scene.designation import DesignationError, is_designation
 from bearing_sim.scene.diameters import ROUND_RACEWAY, diameters, forget_counterpart, gives_round_raceway, override_by_radius, with_radii
@@ -95,21 +95,12 @@ def _reader(record: type) -> TypeAdapter:
 
 def scene_names() -> list[str]:
     """Return the names of the bundled scenes."""
-    return _bundled_names("scenes")
+    return bundled_names("scenes")
 
 
 def catalog_names(kind: str) -> list[str]:
     """Return the names of the catalog entries of a kind: ``bearings``, ``oils``, ``greases``, ``materials`` or ``mappings``."""
-    return _bundled_names(f"catalog/{kind}")
-
-
-def _bundled_names(folder: str) -> list[str]:
-    entries = resources.files("bearing_sim.scene").joinpath(folder).iterdir()
-    return sorted(entry.name.removesuffix(".yaml") for entry in entries if entry.name.endswith(".yaml"))
-
-
-def _bundled_text(folder: str, name: str) -> str:
-    return resources.files("bearing_sim.scene").joinpath(folder, f"{name}.yaml").read_text(encoding="utf-8")
+    return bundled_names(f"catalog/{kind}")
 
 
 def read_named(name: str | Path, folder: str, kind: str) -> tuple[str, Path | None]:
@@ -126,9 +117,9 @@ def read_named(name: str | Path, folder: str, kind: str) -> tuple[str, Path | No
     SceneError
         There is no such file, it is no regular file or not text, or is too large.
     """
-    known, path = _bundled_names(folder), Path(name)
+    known, path = bundled_names(folder), Path(name)
     if str(name) in known:
-        return _bundled_text(folder, str(name)), None
+        return bundled_text(folder, str(name)), None
     if why_not_readable(path) == NO_FILE:
         reason = f"no such file or bundled {kind}{did_you_mean(str(name), known)}; bundled: {', '.join(known)}"
         raise SceneError(str(name), [InvalidField(kind, "", reason)])
@@ -553,7 +544,7 @@ def _from_catalog(kind: str, name: str, path: str) -> tuple[dict, list[InvalidFi
 
 
 def _catalog_entry(kind: str, name: str) -> dict:
-    return values_of(_bundled_text(f"catalog/{kind}", name))
+    return values_of(bundled_text(f"catalog/{kind}", name))
 
 
 def _bearing_preset(name) -> tuple[dict, list[InvalidField]]:

@@ -22,6 +22,8 @@ import pydantic.dataclasses
 from pydantic import ConfigDict, model_validator
 from pydantic_core import PydanticCustomError, core_schema
 
+from bearing_sim.scene.bundled import catalog_table
+
 Record = TypeVar("Record")
 _NUMBER_THEN_UNIT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf(?:inity)?))\s*(.*?)\s*$", re.IGNORECASE)
 _LONGEST_TEXT = 100  # characters of a number and its unit
@@ -112,68 +114,16 @@ _TURNS = {
 # By the unit that is expected; to pint a mil is an angle.
 _MEANT = {SPEED: _TURNS, "m": dict.fromkeys(("mil", "mils"), "thou")}
 _ZERO_CELSIUS = 273.15  # [K]
-# SI over the usual units of each kind, to the last digit those of pint; kinds with an offset, and whatever else people write, are read by pint.
-_USUAL = {
-    "": {"%": 0.01},
-    "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "cm": 1e-2, "in": 0.0254},
-    "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
-    SPEED: {SPEED: 1.0, "rpm": 2.0 * math.pi / 60.0, "revolution/s": 2.0 * math.pi},
-    "N": {"N": 1.0, "kN": 1e3, "MN": 1e6},
-    "N/m": {"N/m": 1.0, "N/mm": 1e3, "N/um": 1e6, "N/µm": 1e6},
-    "N*m": {"N*m": 1.0, "N m": 1.0, "kN*m": 1e3},
-    "K": {"K": 1.0},
-    "delta_degC": {"K": 1.0, "delta_degC": 1.0},
-    "kg": {"kg": 1.0, "g": 1e-3, "t": 1e3},
-    "kg*m": {"kg*m": 1.0, "g*mm": 1e-6},
-    "kg/m^3": {"kg/m^3": 1.0, "g/cm^3": 999.9999999999999},
-    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "bar": 1e5, "N/mm^2": 1e6},
-    "1/Pa": {"1/Pa": 1.0, "1/GPa": 1e-9},
-    "Pa*s": {"Pa*s": 1.0, "mPa*s": 1e-3, "mPa s": 1e-3},
-    "m^2": {"m^2": 1.0, "cm^2": 1e-4, "mm^2": 1e-6},
-    "m^2/s": {"m^2/s": 1.0, "mm^2/s": 1e-6, "mm²/s": 1e-6, "cSt": 1.0000000000000002e-06},
-    "m^3/s": {"m^3/s": 1.0, "l/min": 1.666666666666667e-05, "ml/h": 2.7777777777777783e-10, "L/min": 1.666666666666667e-05},
-    "m/s": {"m/s": 1.0, "mm/s": 1e-3},
-    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0, "d": 86400.0},
-    "h": {"h": 1.0},
-    "Hz": {"Hz": 1.0, "kHz": 1e3},
-    "1/K": {"1/K": 1.0},
-    "W/K": {"W/K": 1.0},
-    "W/(m*K)": {"W/(m*K)": 1.0},
-    "W/(m^2*K)": {"W/(m^2*K)": 1.0},
-    "J/(kg*K)": {"J/(kg*K)": 1.0},
-}
-_SECOND_SPELLINGS = (  # which no message proposes
-    *("µm", "cm", "in", "revolution/s", "MN", "N/mm", "N/um", "N/µm", "N m", "kN*m", "delta_degC", "t", "g/cm^3", "bar", "N/mm^2", "mPa s"),
-    *("cm^2", "mm^2", "mm²/s", "cSt", "L/min", "d", "kHz"),
-)
+_USUAL: dict[str, dict[str, float]] = {}  # SI over the usual units, by the unit that is expected
+_PROPOSED: dict[str, list[str]] = {}  # those that a message proposes
+for _row in catalog_table("tables/units"):
+    _USUAL.setdefault(_row["kind"], {})[_row["unit"]] = float(_row["factor"])
+    if _row["proposed"]:
+        _PROPOSED.setdefault(_row["kind"], []).append(_row["unit"])
 _FIRST_PROPOSED = {"m": "mm", "K": "degC", "rad": "deg", "Pa": "MPa"}
 _MOST_PROPOSED = 3
 _ANGLES = ("radian", "degree", "turn", "revolution", "cycle", "arcminute", "arcsecond", "grade", "revolutions_per_minute", "revolutions_per_second")
-_SPELLINGS = (
-    "N",
-    "kN",
-    "MN",
-    "Pa",
-    "kPa",
-    "MPa",
-    "GPa",
-    "m",
-    "mm",
-    "um",
-    "kg",
-    "g",
-    "s",
-    "ms",
-    "K",
-    "degC",
-    "rpm",
-    "Hz",
-    "kHz",
-    "N*m",
-    "mPa*s",
-    "rad",
-    "deg",
-)
+_SPELLINGS = "N kN MN Pa kPa MPa GPa m mm um kg g s ms K degC rpm Hz kHz N*m mPa*s rad deg".split()
 
 
 def _bare_speed(value: object) -> str:
@@ -287,8 +237,8 @@ class Quantity:
     def with_units(self, number: float) -> str:
         """Return a bare number with each usual unit in which it lies within the bounds, such as ``5 N or 5 kN``; empty if it does in none."""
         first = self.shown_in or _FIRST_PROPOSED.get(self.unit, self.unit)
-        usual = dict.fromkeys((first, *_USUAL.get(self.unit, ()), *(("degC",) if self.unit == "K" else ())))
-        written = [f"{number:.12g} {unit}" for unit in usual if unit not in _SECOND_SPELLINGS]
+        usual = dict.fromkeys((first, *_PROPOSED.get(self.unit, ()), *(("degC",) if self.unit == "K" else ())))
+        written = [f"{number:.12g} {unit}" for unit in usual]
         fitting = [text for text in written if self.minimum <= to_si(text, self.unit) <= self.maximum]
         return " or ".join(fitting[:_MOST_PROPOSED])
 
