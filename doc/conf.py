@@ -6,6 +6,7 @@ The reference pages are generated from the code by ``_extensions/generated_refer
 
 import re
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent
@@ -19,7 +20,11 @@ author = "bearing_sim maintainers"
 copyright = "2026, bearing_sim maintainers"
 release = version = next(line.split('"')[1] for line in (ROOT / "setup.py").read_text().splitlines() if line.strip().startswith("version="))
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "generated_reference", "notebook_pages"]
+# The build farm of ROS has Sphinx and MyST alone: there the pages are built without what only their look needs.
+complete = all(find_spec(name) for name in ("math_core", "pydata_sphinx_theme", "sphinx_design"))
+looks = ["sphinx_design", "mathml"] if complete else ["sphinx.ext.mathjax"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "generated_reference", "notebook_pages", *looks]
+html_math_renderer = "mathml" if complete else "mathjax"
 exclude_patterns = ["_build", "modules.rst", "bearing_sim*.rst"]  # the latter two are made by rosdoc2; reference/ has them
 
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist", "fieldlist"]
@@ -31,15 +36,16 @@ default_role = "py:obj"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 
-html_theme = "alabaster"
+html_theme = "pydata_sphinx_theme" if complete else "alabaster"
 html_theme_options = {
-    "description": "Cage slip and rating life of cylindrical roller bearings, live",
-    "page_width": "1280px",
-    "sidebar_width": "260px",
-    "body_max_width": "980px",
-    "fixed_sidebar": True,
-    "show_relbars": True,
+    "header_links_before_dropdown": 6,
+    "navbar_end": ["theme-switcher"],
+    "show_toc_level": 2,
+    "footer_start": ["copyright"],
+    "footer_end": [],
 }
+html_sidebars = {"index": []} if complete else {}
+html_show_sourcelink = False
 html_static_path = [str(FOLDER / "_static")]
-html_css_files = ["tables.css"]
+html_css_files = ["pages.css"]
 html_copy_source = False
