@@ -7,7 +7,8 @@ import time
 
 import pytest
 from fake_simulation import FakeSimulation
-from test_live import Bench, ListRecorder
+from list_sink import ListSink
+from test_live import Bench
 
 from bearing_sim.messages.events import Level
 from bearing_sim.scene.loader import load_scene
@@ -52,7 +53,7 @@ def test_a_cage_that_is_not_measured_leaves_no_trace(bench):
 
 
 def test_a_cage_that_slips_more_than_predicted_is_told_in_the_verdict_and_as_news_once(bench):
-    recorder = ListRecorder()
+    recorder = ListSink()
     bench.live.sinks.attach("record", recorder)
     bench.measure(2.0, slip=0.015)
     assert bench.verdict == "as predicted"
@@ -62,7 +63,7 @@ def test_a_cage_that_slips_more_than_predicted_is_told_in_the_verdict_and_as_new
     assert bench.verdict == "slips more than predicted"
     (event,) = [event for event in bench.news if event.kind == "residual.shift"]
     assert event.level is Level.WARN and event in recorder.events
-    assert recorder.measurements[-1][0] == pytest.approx(IDEAL * 0.97, rel=0.01) and recorder.measurements[-1][1] == pytest.approx(0.02, abs=0.01)
+    assert recorder.measurements[-1][1] == pytest.approx(IDEAL * 0.97, rel=0.01) and recorder.measurements[-1][2] == pytest.approx(0.02, abs=0.01)
 
 
 def test_a_measurement_that_cannot_be_is_refused_as_an_input_is_and_one_that_stops_is_stale(bench):

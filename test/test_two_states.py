@@ -7,9 +7,10 @@ import math
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from list_sink import ListSink
 from recordings import write_log
 from test_governor import TICK, FakeLevel
-from test_live import Bench, ListRecorder
+from test_live import Bench
 
 from bearing_sim.cli import table as table_command
 from bearing_sim.cli.main import main
@@ -199,7 +200,7 @@ def test_a_fleet_counts_bearings_at_two_states_and_beyond_the_corrected_table_in
 @pytest.mark.parametrize(("speed", "is_told"), [(SLOW, True), (FAST, False)])
 def test_the_live_model_reports_two_states_once_in_news_recording_and_diagnostics(keep, speed, is_told):
     keep(corrected(), two_states_at_speed=speed)
-    bench, sink = Bench(scene=CORRECTED), ListRecorder()  # whose shaft turns slowly
+    bench, sink = Bench(scene=CORRECTED), ListSink()  # whose shaft turns slowly
     bench.live.open("record", lambda start_ns: sink)
     bench.run(0.6)
     condition = bench.live.condition(bench.now_ns)
