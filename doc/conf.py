@@ -37,13 +37,14 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 
 html_theme = "pydata_sphinx_theme" if complete else "alabaster"
-html_theme_options = {
-    "header_links_before_dropdown": 6,
-    "navbar_end": ["theme-switcher"],
-    "show_toc_level": 2,
-    "footer_start": ["copyright"],
-    "footer_end": [],
-}
+if complete:
+    html_theme_options = {
+        "header_links_before_dropdown": 6,
+        "navbar_end": ["theme-switcher"],
+        "show_toc_level": 2,
+        "footer_start": ["copyright"],
+        "footer_end": [],
+    }
 html_sidebars = {"index": []} if complete else {}
 html_show_sourcelink = False
 html_static_path = [str(FOLDER / "_static")]
