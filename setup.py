@@ -26,11 +26,11 @@ optional = {
     "ros": ros_wheels,
     "tables": ["pandas>=2.2", "pyarrow>=18", "xarray>=2024.6"],
     "terminal": ["rich>=13"],
-    "tdms": ["npTDMS>=1.10"],  # under the LGPL, so in no other extra but full
+    "tdms": ["npTDMS>=1.10"],  # under the LGPL, so in no other extra
     "vibration": ["h5py>=3.11", "pyuff>=2.5"],
     "view": ["pillow>=10", "rerun-sdk>=0.39,<0.42"],
 }
-full = [requirement for requirements in optional.values() for requirement in requirements]
+full = [requirement for extra, requirements in optional.items() if extra != "tdms" for requirement in requirements]
 
 setup(
     name=package_name,
@@ -85,6 +85,7 @@ setup(
             "flake8>=7",
             "hypothesis>=6",
             "ipykernel>=6",
+            "npTDMS>=1.10",
             "mypy>=1.15",
             "mcap-ros2-support>=0.5",
             "nbclient>=0.10",
