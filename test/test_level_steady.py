@@ -35,6 +35,7 @@ from bearing_sim.levels.steady.table_builder import build_table, solve_scene
 from bearing_sim.model.params import lubricate, pack
 from bearing_sim.model.table_span import Span
 from bearing_sim.numerics.linear_algebra import ALPHA_0, ALPHA_1, ALPHA_2, ALPHA_3, solve_cyclic
+from bearing_sim.scene.loader import scene_names
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import scene_inputs
 from bearing_sim.studies.extreme_run import at_stock
@@ -438,3 +439,8 @@ def test_handing_over_and_back_keeps_angle_speed_and_damage_and_loses_no_number(
     assert after["cage_slip"] == pytest.approx(before["cage_slip"], abs=5e-3)
     run.take_over(other)
     assert run.sample["cage_speed"] == after["cage_speed"] and run.advance(0.01)["damage"][0] > after["damage"]
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_every_bundled_scene_runs_at_this_level(name):
+    assert np.isfinite(Simulation(load_scene(name, ["level=steady"])).advance(1e-3)["cage_slip"]).all()

@@ -338,7 +338,8 @@ def reference_of(scene: Scene, span: Span) -> Reference:
         minimum_growth=_GROWTH_STEP * math.floor((span.minimum_growth - beyond) / _GROWTH_STEP),
         maximum_growth=_GROWTH_STEP * math.ceil((span.maximum_growth + beyond) / _GROWTH_STEP),
     )
-    return Reference(dataclasses.replace(scene, bearing=dataclasses.replace(bearing, clearance=None, outer_raceway=outer)), span, offset)
+    bearing = dataclasses.replace(bearing, clearance=None, outer_raceway=outer)  # a range of the clearance that it no longer has is no number of it
+    return Reference(dataclasses.replace(scene, bearing=bearing, uncertainty=()), span, offset)
 
 
 def shifted(table: Table, offset: float) -> Table:
