@@ -27,7 +27,7 @@ from bearing_sim.model.table_span import span_of
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-from bearing_sim.studies import correction as studied
+from bearing_sim.studies import correction_points as studied
 from bearing_sim.sweep.point import run_until_settled
 
 DOMAIN = Domain((100.0, 5000.0), (10.0, 5000.0), (330.0, 430.0), 2.0 * math.pi / 3.0, 0.0)

@@ -12,7 +12,7 @@ from matplotlib.colors import LogNorm, to_rgb
 from bearing_sim.cli.main import main
 from bearing_sim.scene.loader import load_bearing
 from bearing_sim.studies.bearing_drawing import draw as draw_bearing
-from bearing_sim.studies.uncertainty import Indices
+from bearing_sim.studies.uncertainty_propagation import Indices
 from bearing_sim.sweep import pictures
 from bearing_sim.sweep.pictures import as_shown, draw, draw_map, is_spaced_logarithmically, new_figure, ticks, value_text
 from bearing_sim.sweep.point import Column

@@ -25,7 +25,7 @@ from bearing_sim.sweep.states import ROLLING, SKID, Others, other_states, skid_s
 if TYPE_CHECKING:
     import pandas
 
-    from bearing_sim.studies.uncertainty import Band
+    from bearing_sim.studies.uncertainty_propagation import Band
 
 SAMPLES, SEED = 64, 2017  # of bands
 NEARBY = "nearby"  # start at a neighbouring point
@@ -197,7 +197,7 @@ def settle(
         point, at any level.  The run from there is as short as 15 cage turns, and the search for thermal equilibrium begins with those temperatures.
         Where there are several states, the result may be another one than from ideal rolling.
     longest : simulated time after which a bearing that does not settle is given up [s]; 1000 s, or 2000 cage turns, where absent.
-    bands : whether to compute bands of slip and life over the ranges of the scene's uncertain fields (`bearing_sim.studies.uncertainty`).
+    bands : whether to compute bands of slip and life over the ranges of the scene's uncertain fields (`bearing_sim.studies.uncertainty_propagation`).
     samples : size of each of the two samples of the bands, rounded up to a power of two.
     workers : processes that compute the bands.
 
@@ -233,7 +233,10 @@ def settle(
 
 def _bands(scene: Scene, samples: int, workers: int) -> "Mapping[str, Band]":
     """Return the bands of a scene by the names of its results."""
-    from bearing_sim.studies.uncertainty import rounded_up, study  # here, because importing SciPy's statistics takes longer than to settle
+    from bearing_sim.studies.uncertainty_propagation import (
+        rounded_up,
+        study,
+    )  # here, because importing SciPy's statistics takes longer than to settle
 
     found = study(scene, rounded_up(samples), SEED, shares=False, workers=workers)
     return MappingProxyType({"cage_slip": found.bands["cage_slip"], "modified_rating_life": found.bands["life_hours"]})

@@ -27,7 +27,7 @@ from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.physics.thermal_network import NODES
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-from bearing_sim.studies.uncertainty import UncertaintyError, varied
+from bearing_sim.studies.uncertainty_propagation import UncertaintyError, varied
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
 DRAWS = 64  # of the fields' scores at each operating point, the scene's own values among them
