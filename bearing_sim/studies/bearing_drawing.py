@@ -9,7 +9,7 @@ import numpy as np
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.flanges import flange_geometry
 from bearing_sim.studies.bearing_facts import GUIDES
-from bearing_sim.sweep.pictures import new_figure
+from bearing_sim.sweep.pictures import new_figure, save
 
 _RING, _ROLLER, _CAGE, _LINE = "#c9d3de", "#f0d9b5", "#7a9a6b", "#444444"
 _INK = {"edgecolor": _LINE, "linewidth": 0.8}
@@ -24,7 +24,7 @@ def draw(path: Path, bearing: Bearing) -> None:
     figure.suptitle(bearing.designation or bearing.name)
     if bearing.estimated:
         figure.supxlabel("~ estimated: no source prints it", fontsize=8, color=_LINE)
-    figure.savefig(path, dpi=130)
+    save(figure, path)
 
 
 def _mark(bearing: Bearing, field: str) -> str:

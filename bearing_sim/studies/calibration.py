@@ -22,7 +22,7 @@ from bearing_sim.levels.steady.table_builder import solve_points
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import Range, messages, nearest, number_at, quantities, with_values
 from bearing_sim.simulation import Inputs
-from bearing_sim.sweep.pictures import new_figure
+from bearing_sim.sweep.pictures import new_figure, save
 
 SPEED_CHANGE, LOAD_CHANGE = 0.02, 0.25  # relative, over a block and the settling time before it
 _SETTLING = 0.5  # s; lags of settled cages are below a third of it
@@ -567,8 +567,7 @@ def draw(path: Path, title: str, found: Calibration) -> None:
     axes["time"].legend(fontsize=9)
     _draw_comparison(axes["against"], found)
     _draw_residuals(axes["left"], found)
-    figure.suptitle(title)
-    figure.savefig(path, dpi=130)
+    save(figure, path, title)
 
 
 def _draw_comparison(axes, found) -> None:

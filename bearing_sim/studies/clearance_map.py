@@ -24,7 +24,7 @@ from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.scene.display import force, hours
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-from bearing_sim.sweep.pictures import as_shown, draw_map, new_figure, no_result_patch, on_grid, plain_numbers, set_limits
+from bearing_sim.sweep.pictures import as_shown, draw_map, new_figure, no_result_patch, on_grid, plain_numbers, save, set_limits, with_gaps
 from bearing_sim.sweep.point import FAILED, OK, Column
 from bearing_sim.sweep.table import Table
 
@@ -268,8 +268,7 @@ def draw(path: Path, title: str, found: ClearanceMap) -> None:
             figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False)
     else:
         _draw_lines(list(axes.flat), found)
-    figure.suptitle(title, fontsize=11)
-    figure.savefig(path, dpi=130)
+    save(figure, path, title, 11)
 
 
 def _draw_map(axes, found, name, colours) -> None:
@@ -304,7 +303,7 @@ def _draw_lines(axes, found) -> None:
     slip.plot(speeds, [row["cage_slip"] for row in rows], "-o", ms=4, color="#0072b2")
     slip.set(ylabel="cage slip [%]", ylim=(0.0, None))
     lives = np.array([row["life"] for row in rows])
-    life.plot(speeds, np.where(np.isfinite(lives), lives, np.nan), "-o", ms=4, color="#009e73")
+    life.plot(speeds, with_gaps(lives), "-o", ms=4, color="#009e73")
     life.set_ylabel("life [h]")
     finite = lives[np.isfinite(lives)]
     set_limits(life, np.append(finite, found.least_life) if (finite < _NEAR_LEAST * found.least_life).any() else finite, True)

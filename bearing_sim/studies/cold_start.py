@@ -26,7 +26,7 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation, scene_inputs, thermal_nodes
-from bearing_sim.sweep.pictures import new_figure, plain_numbers
+from bearing_sim.sweep.pictures import new_figure, plain_numbers, save
 from bearing_sim.sweep.settling import advance_until_settled, longest_run, shortest_run
 from bearing_sim.sweep.states import ROLLING, SKID, at_level_slip, standing_cage
 from bearing_sim.sweep.thermal import SKIDS, equilibrium_temperatures, simulation_held_at
@@ -309,8 +309,7 @@ def draw_courses(found: ColdStart, path: Path, title: str) -> None:
         axis.set_ylabel(text)
     for row, place in ((0, "center left"), (2, "center"), (3, "upper left"), (4, "upper left")):
         rows[row, 0].legend(fontsize=7, frameon=False, loc=place, ncols=2 if row == 2 else 1)
-    figure.suptitle(f"{title}\nload rises to {found.loaded / 1e3:.3g} kN (dashed); from a skid (line), from rolling (dotted)", fontsize=11)
-    figure.savefig(path, dpi=130)
+    save(figure, path, f"{title}\nload rises to {found.loaded / 1e3:.3g} kN (dashed); from a skid (line), from rolling (dotted)", 11)
 
 
 def _words(start: str) -> str:

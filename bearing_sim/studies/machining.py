@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.scene.display import number
-from bearing_sim.sweep.pictures import new_figure, plain_numbers
+from bearing_sim.sweep.pictures import new_figure, plain_numbers, save
 
 HARMONICS = 120  # w_n falls with the fifth power of n
 POINTS = 720
@@ -146,8 +146,7 @@ def draw(path: Path, section: RingSection, pressing: Pressing, machined: Machine
     ring = f"ring of mean radius {1e3 * section.mean_radius:g} mm and thickness {1e3 * section.thickness:g} mm"
     made = f"D value {number(1e6 * machined.d_value)} µm, roundness of the low points {number(round(1e6 * machined.roundness, 3))} µm"
     turn = f", one of them turned by {math.degrees(pressing.arc_turn):g}°" if pressing.arc_turn else ""
-    figure.suptitle(f"{pressed}{turn}, {ring}\n{made}", fontsize=11)
-    figure.savefig(path, dpi=130)
+    save(figure, path, f"{pressed}{turn}, {ring}\n{made}", 11)
 
 
 def _edges(pressing):

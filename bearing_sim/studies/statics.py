@@ -19,7 +19,7 @@ from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, 
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, OilFactors, oil_factors, rate_lives
 from bearing_sim.scene.display import hours, larger_unit
 from bearing_sim.scene.scene import Scene
-from bearing_sim.sweep.pictures import new_figure
+from bearing_sim.sweep.pictures import new_figure, save
 from bearing_sim.sweep.thermal import operating_state
 
 _PITCH_POSITIONS, _MOST_PITCH_POSITIONS = 20, 320  # cage angles over one roller pitch for the lives, at first and at most
@@ -165,8 +165,7 @@ def draw(path: Path, title: str, found: Statics) -> None:
     for row, (name, slices) in enumerate((("inner", found.inner_slices), ("outer", found.outer_slices))):
         _draw_along(figure, figure.add_subplot(grid[row, 1]), name, slices, found)
     tilt = f"tilt {1e3 * found.tilt[0]:.3g} mrad, " if found.tilt[0] > 1e-9 else ""
-    figure.suptitle(f"{title}\n{tilt}L10 {hours(found.lives.l10)} by the load on the bearing, L10r {hours(found.lives.l10r)} by slices")
-    figure.savefig(path, dpi=130)
+    save(figure, path, f"{title}\n{tilt}L10 {hours(found.lives.l10)} by the load on the bearing, L10r {hours(found.lives.l10r)} by slices")
 
 
 def _draw_around(axes, found):

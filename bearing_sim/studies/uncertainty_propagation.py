@@ -26,7 +26,7 @@ from bearing_sim.scene.mounting import clearance_limits, clearance_source
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.scene.uncertainty import Range, messages, number_at, quantities, ranges_of, ring_ranges, shown, with_values, without_dimensions
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
-from bearing_sim.sweep.pictures import new_figure, plain_numbers
+from bearing_sim.sweep.pictures import new_figure, plain_numbers, save
 from bearing_sim.sweep.ring_resonance import ring_resonance
 from bearing_sim.sweep.states import states
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
@@ -592,8 +592,7 @@ def draw(path: Path, title: str, found: Study, life: str, times: np.ndarray | No
     _draw_indices(axes["life indices"], found, "life_hours", "life")
     if times is not None:
         _draw_course(axes["course"], found, times)
-    figure.suptitle(title)
-    figure.savefig(path, dpi=130)
+    save(figure, path, title)
 
 
 def _draw_distribution(axes, values, found, name, scale, label, colour) -> None:
