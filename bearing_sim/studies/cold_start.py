@@ -22,6 +22,7 @@ from bearing_sim.model.validity import contact_speeds
 from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.physics.heat import hertz_half_width
 from bearing_sim.physics.thermal_network import NODES
+from bearing_sim.scene.display import ZERO_CELSIUS
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
@@ -47,7 +48,6 @@ _SAME_SLIP, _SAME_TEMPERATURE = 1e-3, 0.1  # K; differences of two courses that 
 _LOADED_AFTER = (60.0, 300.0, 900.0)  # s of idling after which the load comes, besides the first second and the end of idling
 _RATE, _HELD = 2000.0, 1.0  # samples a second while it does; s for which it stays
 _ROLLS = 0.02  # slip of a cage that rolls
-_ZERO = 273.15
 
 
 class Instant(NamedTuple):
@@ -98,7 +98,7 @@ class ColdStart(NamedTuple):
 
 def cold_scene(scene: Scene, start: float = COLD) -> Scene:
     """Return a scene at level steady whose parts, oil and air are as cold as ``start`` [K], with a thermal network."""
-    celsius = f"{start - _ZERO} degC"
+    celsius = f"{start - ZERO_CELSIUS} degC"
     network = [] if scene.heat.law == "network" else ["heat={law: network}"]
     changed = load_scene(scene, [*network, f"heat.ambient_temperature={celsius}", f"lubricant.temperature={celsius}"])
     return changed.at_level("steady")
@@ -326,4 +326,4 @@ def _draw_course(course: Course, axes, labelled: bool) -> None:
     axes[3].plot(minutes, [1e6 * each.film / each.film_left for each in course.instants], color="0.6", label=full, **style)
     for place, name in enumerate(NODE_OBSERVABLES):
         label = name.removesuffix("_temperature").replace("_", " ") if labelled and course.start == SKID else None
-        axes[4].plot(minutes, [each.temperatures[place] - _ZERO for each in course.instants], color=f"C{place}", label=label, **style)
+        axes[4].plot(minutes, [each.temperatures[place] - ZERO_CELSIUS for each in course.instants], color=f"C{place}", label=label, **style)

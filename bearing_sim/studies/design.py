@@ -24,13 +24,13 @@ from bearing_sim.scene.display import hours, number
 from bearing_sim.scene.loader import SceneError, load_scene, scene_to_yaml
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import with_values
-from bearing_sim.studies.rating import loads_text
+from bearing_sim.studies.sheet import loads_text
 from bearing_sim.sweep.conditions import Conditions, OperatingPoint, PointError, combined_life, scene_at_point
 from bearing_sim.sweep.grid import Axis, axis, one_line, scene_at
 from bearing_sim.sweep.pictures import legend_below, new_figure, on_grid, plain_numbers, save, with_gaps
 from bearing_sim.sweep.point import OK, REFUSED, UNSETTLED, Column, point_row
 from bearing_sim.sweep.table import Table, read_table, write_table
-from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
+from bearing_sim.sweep.tasks import Journal, Progress, Task, in_silence, run_tasks, task
 
 LOW, D_VALUE = "bearing.outer_raceway.low_radius", "bearing.outer_raceway.d_value"
 NOMINAL, WORST = "nominal", "worst"
@@ -358,7 +358,7 @@ def design(
     duration: float,
     workers: int | None = None,
     dask: str | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Progress = in_silence,
     verify_level: str | None = None,
 ) -> Designed:
     """Map which raceways meet the limits, and verify what is found at a level of higher fidelity.

@@ -342,8 +342,7 @@ def draw_over_time(path: Path | BinaryIO, courses: Sequence[Course], title: str 
     plain_numbers(axes[-1].xaxis)
     _name_courses(figure, courses)
     figure.align_ylabels(axes)
-    save(figure, path, _shortened(title, _LONGEST_TITLE), 10, format=form)
-    return figure
+    return _saved(figure, path, title, form)
 
 
 def _time_label(courses: Sequence[Course], span: float, unit: str) -> str:
@@ -358,15 +357,14 @@ def _time_label(courses: Sequence[Course], span: float, unit: str) -> str:
 def _draw_panel(axes, name: str, panel: Panel, courses: Sequence[Course], starts: Sequence[float], divisor: float) -> None:
     shown = [k for k in range(len(panel.lines)) if any(np.isfinite(course.lines[name, k][1]).any() for course in courses)]
     unit, factor = larger_unit(panel.unit, np.concatenate([course.lines[name, k][1] for course in courses for k in shown] or [np.zeros(0)]))
+    several = len(courses) > 1  # then the colour tells the runs apart, and the line what it is of
     every = []
     for place, course in enumerate(courses):
         for k in shown:
             times, values = course.lines[name, k]
-            several = len(courses) > 1
-            look = {"color": COLOURS[(place if several else k) % len(COLOURS)], "ls": _STYLES[k % len(_STYLES)] if several else "-"}
-            if 0 < np.isfinite(values).sum() <= _FEW_POINTS:
-                look |= {"marker": "o", "ms": 4}
-            axes.plot((times - starts[place]) / divisor, values / factor, lw=1.1, **look)
+            marks = {"marker": "o", "ms": 4} if 0 < np.isfinite(values).sum() <= _FEW_POINTS else {}
+            style = {"color": COLOURS[(place if several else k) % len(COLOURS)], "ls": _STYLES[k % len(_STYLES)] if several else "-"}
+            axes.plot((times - starts[place]) / divisor, values / factor, lw=1.1, **style, **marks)
             every.append(values[np.isfinite(values)] / factor)
         bands = [course.recorded[name]] if name in course.recorded else []
         if name == "slip" and course.band is not None:
@@ -384,7 +382,6 @@ def _draw_panel(axes, name: str, panel: Panel, courses: Sequence[Course], starts
     if len(shown) > 1:
         from matplotlib.lines import Line2D
 
-        several = len(courses) > 1  # then the colour tells the runs apart, and the line what it is of
         looks = [{"color": "0.25", "ls": _STYLES[k % len(_STYLES)]} if several else {"color": COLOURS[k % len(COLOURS)]} for k in shown]
         handles = [Line2D([], [], lw=1.1, label=panel.lines[k].name, **look) for k, look in zip(shown, looks)]
         axes.legend(handles=handles, frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=3.2)
@@ -454,6 +451,11 @@ def _add_legend(figure, handles: Sequence) -> None:
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, fontsize=8)
 
 
+def _saved(figure, path: Path | BinaryIO, title: str, form: str | None) -> "object":
+    save(figure, path, _shortened(title, _LONGEST_TITLE), 10, format=form)
+    return figure
+
+
 def _shortened(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[: most - 2]} …"
 
@@ -476,11 +478,10 @@ def draw_over_load(path: Path | BinaryIO, courses: Sequence[Course], title: str 
     runs = [(course.scene, course.loaded[_turning(course), 0], course.name) for course in courses]
     style = {"ms": 3, "ls": "", "alpha": 0.6, "mew": 0}
     figure = _draw_slip_and_life(series, style, runs, _course_names(courses, True), life_label([course.scene for course in courses]) + " [h]", 4.6)
-    save(figure, path, _shortened(title, _LONGEST_TITLE), 10, format=form)
-    return figure
+    return _saved(figure, path, title, form)
 
 
-def _draw_slip_and_life(series: Sequence, style: Mapping, runs: Sequence, names: Sequence[str], life_heading: str, height: float) -> "object":
+def _draw_slip_and_life(series, style: Mapping, runs, names: Sequence[str], life_heading: str, height: float):
     """Return a figure of slip and life over the load.
 
     Parameters
@@ -564,5 +565,4 @@ def draw_table_over_load(
     speeds = np.array(sorted({float(point["speed"]) for point in points if math.isfinite(point["speed"])}))
     runs = [(scene, speeds, "")] if scene is not None and len(speeds) else []
     figure = _draw_slip_and_life(series, {"ms": 4, "lw": 1.2}, runs, [_shortened(name, 60) for name in names], life_heading, 4.8)
-    save(figure, path, _shortened(title, _LONGEST_TITLE), 10, format=form)
-    return figure
+    return _saved(figure, path, title, form)

@@ -10,7 +10,7 @@ P_m at n_m has the L10 that the sum of the points gives.  Modified lives have no
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
@@ -27,7 +27,7 @@ from bearing_sim.sweep.conditions import OperatingPoint, PointError, Spectrum, c
 from bearing_sim.sweep.pictures import COLOURS, new_figure, save
 from bearing_sim.sweep.point import DURATION, LIVES, OK, OTHER_STATE, REFUSED, RESULTS, TEXTS, UNSETTLED, Column, empty_row, point_row
 from bearing_sim.sweep.table import Table
-from bearing_sim.sweep.tasks import Journal, run_tasks, task
+from bearing_sim.sweep.tasks import Journal, Progress, in_silence, run_tasks, task
 
 EXPONENT = 10.0 / 3.0
 """p of the life equation of roller bearings (ISO 281)."""
@@ -143,7 +143,7 @@ def evaluate(
     duration: float = DURATION,
     workers: int | None = None,
     dask: str | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Progress = in_silence,
 ) -> Evaluated:
     """Run a scene at each point of a load spectrum until it has settled, and add up the damage.
 

@@ -54,10 +54,8 @@ def respond(
     """
     given = load_scene(name, [*overrides, f"level={level}"]).support
     carried = () if given.shaft_bends or given.outer_ring_moves else ("support.elastic=true",)
-    shaft, unbalance = (
-        f"shaft: {{mass: {given.shaft.mass!r} kg}}",
-        f"unbalance: {{amount: {given.unbalance.amount!r}, angle: {given.unbalance.angle!r}}}",
-    )
+    shaft = f"shaft: {{mass: {given.shaft.mass!r} kg}}"
+    unbalance = f"unbalance: {{amount: {given.unbalance.amount!r}, angle: {given.unbalance.angle!r}}}"
     models = {
         STILL: (f"support={{{shaft}}}", "level=slip"),
         HELD: (f"support={{{shaft}, {unbalance}}}", f"level={level}"),

@@ -14,6 +14,7 @@ from bearing_sim.sweep.table import Table, life_column
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")  # Okabe and Ito: safe for colour-blind readers
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+DPI = 130  # of pictures
 NO_RESULT = "0.72"  # grey of the cells of a map that have none
 _MOST_DECADES = 6  # of a logarithmic axis and of colours: near rest, or without load, a life grows beyond any scale
 _APART = 0.12  # of the width of axes and of their height, by which the labels of contours are apart
@@ -70,18 +71,18 @@ def new_figure(width: float, height: float):
     return figure
 
 
-def save(figure, path: Path | BinaryIO, title: str = "", size: float | None = None, **more) -> None:
-    """Write a figure with its title, in a size of letters [pt], into a file; ``more`` goes to `matplotlib.figure.Figure.savefig`.
+def save(figure, path: Path | BinaryIO, title: str = "", size: float | str = "large", **more) -> None:
+    """Write a figure with its title into a file; ``more`` goes to `matplotlib.figure.Figure.savefig`.
 
     Parameters
     ----------
     figure : of `new_figure`.
     path : its suffix gives the format: .png, .svg or .pdf; or a stream, for .png.
-    title, size : nothing stands above the picture without a title; None: the size of matplotlib's titles.
+    title, size : nothing stands above the picture without a title; size of its letters in points or by its name in matplotlib.
     """
     if title:
         figure.suptitle(title, fontsize=size)
-    figure.savefig(path, **{"dpi": 130} | more)
+    figure.savefig(path, **{"dpi": DPI} | more)
 
 
 def look_of(k: int, **more) -> dict:
