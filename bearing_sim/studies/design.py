@@ -320,22 +320,25 @@ def raceway_row(scene: Scene, duration: float, conditions: Conditions) -> dict:
         rows = [result(point, deviation, signs) for point, deviation in zip(points, deviations)]
         return max(row["cage_slip"] for row in rows), combined_life([row["modified_rating_life"] for row in rows], points)
 
+    def worst(choose, name, place) -> list[tuple[float, float]]:
+        """Return slip and life where one of them is worst: with the tolerances off in the worst directions, and with speed and load alone."""
+        deviations = [choose(operating, key=lambda each: result(point, each, exact)[name]) for point in points]
+        signs = tuple(choose((0, -1, 1), key=lambda sign: alone[k, sign][place]) for k in range(len(tolerances)))
+        return [mission(deviations, signs), mission(deviations, exact)]
+
     both = (dict.fromkeys((0.0, -each, each)) for each in (conditions.speed_tolerance, conditions.load_tolerance))
     operating, at_nominal = list(itertools.product(*both)), [(0.0, 0.0)] * len(points)
     try:
         nominal = mission(at_nominal, exact)
-        most_slip = [max(operating, key=lambda each: result(point, each, exact)["cage_slip"]) for point in points]
-        least_life = [min(operating, key=lambda each: result(point, each, exact)["modified_rating_life"]) for point in points]
+        for point, deviation in itertools.product(points, operating):
+            result(point, deviation, exact)
         alone = {
             (k, sign): mission(at_nominal, tuple(sign * (other == k) for other in range(len(tolerances))))
             for k, sign in itertools.product(range(len(tolerances)), (-1, 0, 1))
         }
-        worst_for_slip = tuple(max((0, -1, 1), key=lambda sign: alone[k, sign][0]) for k in range(len(tolerances)))
-        worst_for_life = tuple(min((0, -1, 1), key=lambda sign: alone[k, sign][1]) for k in range(len(tolerances)))
-        together = [mission(most_slip, worst_for_slip), mission(least_life, worst_for_life), mission(most_slip, exact), mission(least_life, exact)]
+        slips, lives = zip(*alone.values(), *worst(max, "cage_slip", 0), *worst(min, "modified_rating_life", 1))
     except _NoResult as error:
         return _NOTHING | dict(zip(("status", "reason", "warnings"), (*error.args, "")))
-    slips, lives = zip(*alone.values(), *together)
     unsettled = [row["reason"] for row in found.values() if row["status"] == UNSETTLED]
     return {
         "nominal_slip": nominal[0],
@@ -369,7 +372,7 @@ def design(
     limits : to meet.
     radii, d_values : of the grid; the region is searched between the smallest and the largest.
     journal : of finished raceways, which are not computed again.
-    duration, workers, dask, progress : see `bearing_sim.sweep.grid.sweep`.
+    duration, workers, dask, progress : see `bearing_sim.sweep.grid.run_sweep`.
     verify_level : that verifies edges and centre of each interval, see `verified`; None: nothing is verified.
 
     Raises

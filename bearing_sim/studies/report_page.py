@@ -44,6 +44,12 @@ _RECORDINGS, _TABLES = (".mcap", ACTIVE), (".parquet", ".csv")
 _MOST_ROWS = 1000  # of a table on a page; the files have all
 _MOST_POINTS = 4000  # of a line in a picture
 _LAST = 0.2  # of a recording, over which its final results are averaged
+_POINTS = (
+    Column("share", "", "of the time"),
+    Column("shaft_speed_rpm", "rpm", "shaft speed"),
+    Column("radial_load", "N", "radial load"),
+    Column("oil_temperature_degC", "degC", "oil temperature"),
+)  # of a design
 _SECTORS = 72  # of the circle, for the load distribution
 
 
@@ -234,9 +240,7 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
     if widest is not None:
         where = "in the worst case" if widest.kind == studied.WORST else "at nominal conditions, none in the worst case"
         answer = f"Widest interval ({where}): D = {widest.d_value:.4f} mm, R_low = {widest.low_from:.5f} to {widest.low_to:.5f} mm."
-    points = [Column("share", "", "of the time"), Column("shaft_speed_rpm", "rpm", "shaft speed"), Column("radial_load", "N", "radial load")]
-    if any("oil_temperature_degC" in point for point in wanted["points"]):
-        points.append(Column("oil_temperature_degC", "degC", "oil temperature"))
+    points = [column for column in _POINTS if any(column.name in point for point in wanted["points"])]
     rows = [{column.name: point.get(column.name) for column in points} for point in wanted["points"]]
     summary = {
         "limits": f"slip below {wanted['slip_below']:g} %, life above {wanted['life_above']:g} h",
@@ -441,12 +445,11 @@ def _observables(blocks: Sequence[np.ndarray], settled: np.ndarray, scene: Scene
 def _draw_loads(stream, settled: np.ndarray) -> None:
     """Draw the mean load of a roller over its azimuth."""
     sector = np.floor(np.mod(settled["roller_angle"], 2 * math.pi) / (2 * math.pi) * _SECTORS).astype(int).ravel() % _SECTORS
-    counts = np.bincount(sector, minlength=_SECTORS)
     azimuths = (np.arange(_SECTORS) + 0.5) * 360.0 / _SECTORS
     figure = new_figure(8, 3.6)
     axes = figure.subplots()
     for ring, colour in zip(("inner", "outer"), COLOURS):
-        sums = np.bincount(sector, weights=settled[f"{ring}_load"].ravel(), minlength=_SECTORS)
+        sums, counts = (np.bincount(sector, weights, _SECTORS) for weights in (settled[f"{ring}_load"].ravel(), None))
         axes.plot(azimuths, np.where(counts > 0, sums / np.maximum(counts, 1), np.nan), color=colour, marker=".", ms=3, label=f"{ring} raceway")
     axes.set(xlabel="azimuth [deg]", ylabel="roller load [N]", xlim=(0, 360), xticks=range(0, 361, 45))
     axes.grid(alpha=0.3)

@@ -118,11 +118,10 @@ def _pressures(scene: Scene, window: np.ndarray) -> dict[str, float]:
     """Return the largest Hertz pressure and that at the ends of rollers [MPa] on both raceways: of tilted rollers where the level has them."""
     found, params = {}, None if scene.bodies_tilt else pack(scene)
     for ring in ("inner", "outer"):
-        if params is None:
-            whole, edge = float(window[f"{ring}_pressure"].max()), float(window[f"{ring}_edge_pressure"].max())
-        else:
-            whole, edge = aligned_pressures(float(window[f"{ring}_load_maximum"].max()), ring, params)
-        found |= {f"{ring}_pressure_maximum_mpa": 1e-6 * whole, f"{ring}_edge_pressure_maximum_mpa": 1e-6 * edge}
+        pressures = [float(window[f"{ring}_{kind}"].max()) for kind in ("pressure", "edge_pressure")]
+        if params is not None:
+            pressures = aligned_pressures(float(window[f"{ring}_load_maximum"].max()), ring, params)
+        found |= {f"{ring}_{kind}_maximum_mpa": 1e-6 * value for kind, value in zip(("pressure", "edge_pressure"), pressures)}
     return found
 
 

@@ -48,12 +48,6 @@ class Statics(NamedTuple):
     sample: np.ndarray  # block of one sample with all this in it, for laws and reports; its cage does not slip
 
 
-def with_slices(scene: Scene, slices: int) -> Scene:
-    """Return a scene with another number of slices per roller."""
-    roller = dataclasses.replace(scene.bearing.roller, slices=slices)
-    return dataclasses.replace(scene, bearing=dataclasses.replace(scene.bearing, roller=roller))
-
-
 def statics(scene: Scene, slices: int) -> Statics:
     """Return the statics of a scene at its constant conditions and without cage slip, in thermal equilibrium where it has a thermal network.
 
@@ -69,8 +63,8 @@ def statics(scene: Scene, slices: int) -> Statics:
     IntegrationError
         There is no thermal equilibrium: it says why.
     """
-    scene = with_slices(scene, slices)
-    scene = dataclasses.replace(scene, life=dataclasses.replace(scene.life, laminae=slices))  # the slices are the laminae
+    bearing = dataclasses.replace(scene.bearing, roller=dataclasses.replace(scene.bearing.roller, slices=slices))
+    scene = dataclasses.replace(scene, bearing=bearing, life=dataclasses.replace(scene.life, laminae=slices))  # the slices are the laminae
     (params, lubrication, temperatures), operating = operating_state(scene), scene.operating
     count, raceways, speed = params.rollers.count, params.raceways, abs(operating.shaft_speed)
     cage_speed = 0.5 * operating.shaft_speed * (1.0 - raceways.diameter_ratio)
@@ -109,9 +103,9 @@ def statics(scene: Scene, slices: int) -> Statics:
         outer_slices=at.outer.copy(),
         inner_pressure=pressures[0],
         outer_pressure=pressures[1],
-        ring=(float(at.ring[0]), float(at.ring[1])),
-        tilt=leaning(float(at.ring[2]), float(at.ring[3])),
-        moment=leaning(float(at.reaction[2]), float(at.reaction[3])),
+        ring=tuple(at.ring[:2].tolist()),
+        tilt=leaning(*at.ring[2:].tolist()),
+        moment=leaning(*at.reaction[2:].tolist()),
         equivalent_loads=equivalent,
         lives=lives,
         clearance=clearance_at(operating.shaft_speed, lubrication.growth, params),
