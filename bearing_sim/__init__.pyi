@@ -14,9 +14,9 @@ from bearing_sim.scene.scene import Scene as Scene
 from bearing_sim.simulation import Inputs as Inputs
 from bearing_sim.simulation import IntegrationError as IntegrationError
 from bearing_sim.simulation import Simulation as Simulation
-from bearing_sim.studies.operating_point import Settled as Settled
-from bearing_sim.studies.operating_point import settle as settle
-from bearing_sim.studies.uncertainty import UncertaintyError as UncertaintyError
+from bearing_sim.studies.settle import Settled as Settled
+from bearing_sim.studies.settle import settle as settle
+from bearing_sim.studies.uncertainty_propagation import UncertaintyError as UncertaintyError
 from bearing_sim.sweep.grid import FieldError as FieldError
 from bearing_sim.sweep.grid import run_sweep as run_sweep
 from bearing_sim.sweep.table import Table as Table

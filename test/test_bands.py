@@ -15,8 +15,8 @@ from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import ANSWERS, conditions_at, domain_of, fit_response, read_response, scene_fields, write_response
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.scene.scene import tolerance_overrides
-from bearing_sim.studies.response import design, obtain_response, settled_points
-from bearing_sim.studies.uncertainty import UncertaintyError
+from bearing_sim.studies.response_points import design, obtain_response, settled_points
+from bearing_sim.studies.uncertainty_propagation import UncertaintyError
 
 SCENE = asking_scene()
 CLEARANCE_BAND = QUANTITIES.index("running_clearance")

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from bearing_sim.cli.main import main
 from bearing_sim.scene.loader import load_bearing, load_scene
 from bearing_sim.scene.uncertainty import ranges_of
-from bearing_sim.studies import bearing_drawing
+from bearing_sim.studies import bearing_facts
 from bearing_sim.sweep.pictures import new_figure
 
 
@@ -122,7 +122,7 @@ def test_what_heats_or_cools_the_shaft_is_written_with_its_ranges(tmp_path, shaf
 @pytest.mark.parametrize("designation", ["NU 210", "NU 1010", "N 2310 ECP"])
 def test_all_of_a_drawing_lies_within_its_frame(designation):
     axes = new_figure(6, 6).subplots()
-    bearing_drawing._draw_section(axes, load_bearing(designation))
+    bearing_facts._draw_section(axes, load_bearing(designation))
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     places = [text.get_position() for text in axes.texts]
     places += [corner for patch in axes.patches for corner in patch.get_corners()]

@@ -27,7 +27,7 @@ from bearing_sim.model.table_span import span_of
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-from bearing_sim.studies import correction as studied
+from bearing_sim.studies import correction_points as studied
 from bearing_sim.sweep.point import run_until_settled
 
 DOMAIN = Domain((100.0, 5000.0), (10.0, 5000.0), (330.0, 430.0), 2.0 * math.pi / 3.0, 0.0)
@@ -182,7 +182,7 @@ def test_more_points_are_measured_as_long_as_they_help(errors, points, monkeypat
         measured.append(len(conditions))
         return SimpleNamespace(**dict(zip(("slip_error", "life_error"), next(found))))
 
-    monkeypatch.setattr(studied, "run_tasks", lambda tasks, *_, **__: [{"planar": [], "steady": []}] * len(tasks))
+    monkeypatch.setattr("bearing_sim.studies.batches.run_tasks", lambda tasks, *_: [{"status": "failed"}] * len(tasks))
     monkeypatch.setattr(studied, "_fitted", fitted)
     monkeypatch.setattr(studied, "_doubtful", lambda _, count, seed: np.zeros((count, 4)))
     studied._measured(scene, correction_domain(scene), tmp_path / "points.journal", 1, lambda done, total: None, studied.MOST_POINTS)

@@ -313,10 +313,17 @@ def test_every_level_but_the_highest_is_verified_by_one_that_includes_more():
     assert studied.VERIFIED_BY["steady"] == "planar", "level slip solves the same equations"
 
 
-def test_the_radii_that_show_a_verification_are_the_edges_and_centres_of_both_intervals():
-    interval = studied._Interval(NOMINAL, 1e-4, 34.0e-3, 34.4e-3, "slip", "life")
-    assert studied._places(interval, None) == pytest.approx({34.0e-3: "lower edge", 34.2e-3: "centre", 34.4e-3: "upper edge"})
-    narrowed = studied._places(interval, interval._replace(low=34.1e-3))
-    assert {place: radius for radius, place in narrowed.items()} == pytest.approx(
-        {"lower edge": 34.0e-3, "verified lower edge": 34.1e-3, "centre": 34.2e-3, "verified centre": 34.25e-3, "upper edge": 34.4e-3}
+def test_the_radii_that_show_an_interval_are_its_edges_and_its_centre():
+    interval = studied.Border(NOMINAL, 1e-4, 34.0e-3, 34.4e-3, "slip", "life")
+    assert {place: radius for radius, place in interval.places.items()} == pytest.approx(
+        {"lower edge": 34.0e-3, "centre": 34.2e-3, "upper edge": 34.4e-3}
     )
+    assert interval._replace(low_to=34.0e-3).places == {34.0e-3: "lower edge"}, "an interval of one radius"
+
+
+def test_a_narrowed_interval_is_shown_by_the_radii_before_and_after(monkeypatch):
+    designed = found(monkeypatch, Analytic({"steady": 6.0, "planar": 6.0}, {"steady": 350.0, "planar": 250.0}))
+    radii = {check.place: check.low_radius for check in designed.checks if check.kind == NOMINAL}
+    assert set(radii) <= {f"{prefix}{place}" for prefix in ("", "verified ") for place in ("lower edge", "centre", "upper edge")}
+    assert {"lower edge", "centre", "upper edge"} < set(radii), "what is left of it is shown, too"
+    assert list(radii.values()) == sorted(radii.values())

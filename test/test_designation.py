@@ -16,7 +16,7 @@ from bearing_sim.scene.loader import SceneError, scene_from_yaml, scene_to_yaml
 from bearing_sim.scene.mounting import clearance_limits
 from bearing_sim.scene.ratings import load_rating, rate
 from bearing_sim.scene.uncertainty import ranges_of, with_values
-from bearing_sim.studies.uncertainty import varied
+from bearing_sim.studies.uncertainty_propagation import varied
 
 SCENE = """
 name: designation

@@ -184,7 +184,7 @@ def test_a_machine_of_the_study_is_solved_for_within_its_plateaus_and_jumps_over
 )
 def test_the_study_refuses_a_sensor_that_says_nothing_about_the_scene(monkeypatch, sensor, message):
     of_slip_alone = SimpleNamespace(varied_answers=lambda: [0])
-    monkeypatch.setattr("bearing_sim.studies.response.obtain_response", lambda *_: of_slip_alone)
+    monkeypatch.setattr("bearing_sim.studies.response_points.obtain_response", lambda *_: of_slip_alone)
     result = CliRunner().invoke(study_estimator, ["deng2017_table1", "--measure", sensor])
     assert result.exit_code == 2 and message in " ".join(result.output.split())
 

@@ -39,7 +39,7 @@ from bearing_sim.studies.friction import (
     simple_moment,
     skf_moment,
 )
-from bearing_sim.studies.operating_point import settle
+from bearing_sim.studies.settle import settle
 
 RPM = math.pi / 30
 

@@ -31,8 +31,7 @@ from bearing_sim.physics.rating_life import (
 )
 from bearing_sim.physics.starvation import Starvation
 from bearing_sim.scene.ratings import fatigue_limit, static_rating
-from bearing_sim.studies.rating import life_report
-from bearing_sim.studies.sheet import life_rows
+from bearing_sim.studies.sheet import life_report, life_rows
 
 PITCH = 62.75e-3
 FULL_INLETS = Starvation(0.0, True)

@@ -11,8 +11,8 @@ from matplotlib.colors import LogNorm, to_rgb
 
 from bearing_sim.cli.main import main
 from bearing_sim.scene.loader import load_bearing
-from bearing_sim.studies.bearing_drawing import draw as draw_bearing
-from bearing_sim.studies.uncertainty import Indices
+from bearing_sim.studies.bearing_facts import draw as draw_bearing
+from bearing_sim.studies.uncertainty_propagation import Indices
 from bearing_sim.sweep import pictures
 from bearing_sim.sweep.pictures import as_shown, draw, draw_map, is_spaced_logarithmically, new_figure, ticks, value_text
 from bearing_sim.sweep.point import Column
@@ -190,7 +190,7 @@ def test_shares_of_the_variance_are_possible_ones_or_not_known():
 @pytest.mark.parametrize("designation", ["NU 232", "NU 210"])
 def test_every_estimate_of_a_drawn_bearing_is_marked(tmp_path, monkeypatch, designation):
     figures = []
-    monkeypatch.setattr("bearing_sim.studies.bearing_drawing.new_figure", lambda *size: figures.append(new_figure(*size)) or figures[-1])
+    monkeypatch.setattr("bearing_sim.sweep.pictures.new_figure", lambda *size: figures.append(new_figure(*size)) or figures[-1])
     bearing = load_bearing(designation)
     draw_bearing(tmp_path / "a.png", bearing)
     texts = [text.get_text() for axes in figures[0].axes for text in (*axes.texts, axes.title)]

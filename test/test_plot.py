@@ -27,6 +27,7 @@ from bearing_sim.studies.run_plot import (
     recorded_bands,
     thinned,
 )
+from bearing_sim.sweep import pictures
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, write_table
 
@@ -37,7 +38,7 @@ MODIFIED = load_scene("deng2017_table1", ["life.reliability=95 %"])
 @pytest.fixture(autouse=True)
 def coarse(monkeypatch):
     """Draw coarse files, in a fraction of the time; readability is judged at the figure's own resolution."""
-    monkeypatch.setattr(run_plot, "_DPI", 30)
+    monkeypatch.setattr(pictures, "DPI", 30)
 
 
 def shown_texts(figure):

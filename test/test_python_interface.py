@@ -21,7 +21,7 @@ import bearing_sim
 from bearing_sim import Inputs, SceneError, Settled, Simulation, load_scene, run_sweep, settle
 from bearing_sim.scene.scene import OPERATING_POINT
 from bearing_sim.simulation import scene_inputs
-from bearing_sim.studies.uncertainty import UncertaintyError, study
+from bearing_sim.studies.uncertainty_propagation import UncertaintyError, study
 from bearing_sim.sweep.grid import FieldError, axis, read_axis
 from bearing_sim.sweep.point import point_row
 

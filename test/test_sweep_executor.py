@@ -18,7 +18,7 @@ from sweep_tasks import deadly, noted, tasks
 
 from bearing_sim.cli.main import main
 from bearing_sim.estimation.response import read_response
-from bearing_sim.studies.response import obtain_response
+from bearing_sim.studies.response_points import obtain_response
 from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse, run_tasks, task
 
 HERE = Path(__file__).resolve().parent
@@ -191,8 +191,8 @@ def test_the_command_sweeps_on_a_cluster_what_it_sweeps_alone(tmp_path, cluster)
 
 @pytest.mark.long
 def test_the_response_that_a_cluster_builds_is_the_one_that_is_built_alone(tmp_path, cluster, monkeypatch):
-    monkeypatch.setattr("bearing_sim.studies.response.DRAWS", 8)
-    monkeypatch.setattr("bearing_sim.studies.response.obtain_response", functools.partial(obtain_response, points=256))
+    monkeypatch.setattr("bearing_sim.studies.response_points.DRAWS", 8)
+    monkeypatch.setattr("bearing_sim.studies.response_points.obtain_response", functools.partial(obtain_response, points=256))
     words = ["table", "deng2017_table1", "--bands", "--set", "life.reliability=0.95", "--json"]  # whose response does not come with the package
 
     def built(name, *more):

@@ -17,7 +17,7 @@ from bearing_sim.cli.main import main
 from bearing_sim.model.plausibility import left_out
 from bearing_sim.scene.loader import SceneError, load_scene, scene_from_yaml, scene_names, scene_to_yaml
 from bearing_sim.scene.uncertainty import Range, number_at, quantities, value_at, with_values, without_dimensions
-from bearing_sim.studies.uncertainty import (
+from bearing_sim.studies.uncertainty_propagation import (
     UncertaintyError,
     band,
     design,

@@ -43,7 +43,7 @@ from bearing_sim.physics.film import DOWSON_TOYODA
 from bearing_sim.recording.reader import Recording
 from bearing_sim.runtime.live import LiveModel, warmed_up
 from bearing_sim.scene.ratings import rate
-from bearing_sim.studies.operating_point import settle
+from bearing_sim.studies.settle import settle
 from bearing_sim.sweep import grading
 from bearing_sim.sweep.point import point_row
 

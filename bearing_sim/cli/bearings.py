@@ -114,25 +114,24 @@ def _report_loads(scene, slices, found) -> dict:
 
 
 def _lives(scene, slices, found) -> dict:
-    from bearing_sim.studies.rating import report_of
+    from bearing_sim.studies.sheet import report_of
 
     renamed = {"rating_life": found.lives.basic, "modified_rating_life": found.lives.modified}
     return report_of(scene, found.lives._asdict() | renamed, found.film) | {"laminae": slices}
 
 
 def _clearance(scene, found) -> dict:
-    from bearing_sim.studies.clearance import PARTS, clearance_of
+    from bearing_sim.studies.sheet import CLEARANCES, clearance_of
 
     at = found.clearance
-    return clearance_of(scene, dict(zip(PARTS, (at.running, at.initial, at.fits, at.rotation, at.heat, at.contour))))
+    return clearance_of(scene, dict(zip(CLEARANCES, (at.running, at.initial, at.fits, at.rotation, at.heat, at.contour))))
 
 
 def _print_loads(scene, slices, found) -> None:
     import numpy as np
 
     from bearing_sim.scene.display import force, number
-    from bearing_sim.studies.clearance import clearance_text
-    from bearing_sim.studies.sheet import axial_rows, life_rows, temperatures, temperatures_text
+    from bearing_sim.studies.sheet import axial_rows, clearance_text, life_rows, temperatures, temperatures_text
 
     def lean(amount, azimuth, unit):
         return f"{number(amount)} {unit}, +x end towards {number(round(math.degrees(azimuth), 1))}°" if amount > 1e-9 else "none"

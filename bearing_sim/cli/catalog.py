@@ -137,7 +137,7 @@ def _show(designation: str, picture, as_json) -> None:
     with as_usage_error(SceneError):
         bearing = load_bearing(designation)
     if picture is not None:
-        from bearing_sim.studies.bearing_drawing import draw
+        from bearing_sim.studies.bearing_facts import draw
 
         with as_file_error():
             with picture.draft() as draft:

@@ -53,8 +53,8 @@ def response_with_progress(scene, rebuild=False, workers=None, dask=None):
         The scene has no uncertain fields, another command is building the response, or the scheduler does not answer.
     """
     from bearing_sim.estimation.response import kept_response
-    from bearing_sim.studies.response import obtain_response
-    from bearing_sim.studies.uncertainty import UncertaintyError
+    from bearing_sim.studies.response_points import obtain_response
+    from bearing_sim.studies.uncertainty_propagation import UncertaintyError
     from bearing_sim.sweep.tasks import ClusterError, JournalInUse
 
     if not rebuild and (kept := kept_response(scene)) is not None:

@@ -89,7 +89,7 @@ def _band_of(course, samples):
     from bearing_sim.cli.uncertainty import SEED
     from bearing_sim.model.turning import stands_text, turns
     from bearing_sim.scene.uncertainty import without_range
-    from bearing_sim.studies.uncertainty import UncertaintyError, rounded_up, study
+    from bearing_sim.studies.uncertainty_propagation import UncertaintyError, rounded_up, study
 
     times, conditions, scene = course.conditions[:, 0], course.conditions[:, 1:], course.scene
     turning = turns(conditions[:, 0], scene.thresholds.slip_from_speed)

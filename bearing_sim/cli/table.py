@@ -131,7 +131,7 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
     """
     from bearing_sim.levels.steady.table_builder import cached_table, obtain_table
     from bearing_sim.scene.loader import SceneError
-    from bearing_sim.studies.correction import obtain_correction
+    from bearing_sim.studies.correction_points import obtain_correction
     from bearing_sim.sweep.tasks import JournalInUse
 
     kept = None if rebuild else cached_table(scene, temperatures)

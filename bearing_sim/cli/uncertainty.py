@@ -56,7 +56,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     warn_of_scene(scene, before_results=False)
     scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
     with as_file_error(), as_usage_error(JournalInUse):
-        from bearing_sim.studies.uncertainty import rounded_up
+        from bearing_sim.studies.uncertainty_propagation import rounded_up
         from bearing_sim.sweep.table import note_points, same_points, study_digest
 
         conditions = course and (course.seconds.tolist(), course.conditions.tolist())
@@ -71,7 +71,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     with as_file_error():
         if picture is not None:
             from bearing_sim.studies.run_plot import life_label
-            from bearing_sim.studies.uncertainty import draw
+            from bearing_sim.studies.uncertainty_propagation import draw
 
             ranges = f"{len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
             with picture.draft() as draft:
@@ -90,11 +90,11 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, w
     ----------
     scene : a scene with ranges.
     samples : rounded up to a power of two.
-    seed, level, journal, workers, dask : as for `bearing_sim.studies.uncertainty.study`.
-    course : `bearing_sim.studies.uncertainty.Stretches`, or None.
+    seed, level, journal, workers, dask : as for `bearing_sim.studies.uncertainty_propagation.study`.
+    course : `bearing_sim.studies.uncertainty_propagation.Stretches`, or None.
     """
     announce_compilation()
-    from bearing_sim.studies.uncertainty import UncertaintyError, lowest_level, rounded_up, study, varied_ranges
+    from bearing_sim.studies.uncertainty_propagation import UncertaintyError, lowest_level, rounded_up, study, varied_ranges
     from bearing_sim.sweep.tasks import ClusterError
 
     base = rounded_up(samples)
@@ -115,7 +115,7 @@ def _course(log, scene, count):
 
     from bearing_sim.inputs.log import InputLogError, read_input_log
     from bearing_sim.scene.uncertainty import without_range
-    from bearing_sim.studies.uncertainty import stretches
+    from bearing_sim.studies.uncertainty_propagation import stretches
 
     with as_usage_error(InputLogError), as_file_error():
         course = judged(read_input_log(log), scene)
@@ -203,7 +203,7 @@ def _shares(shares, samples) -> str:
 
     import numpy as np
 
-    from bearing_sim.studies.uncertainty import Indices
+    from bearing_sim.studies.uncertainty_propagation import Indices
 
     if shares is None:
         return "unknown: it is not finite at every point"

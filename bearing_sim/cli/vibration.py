@@ -176,7 +176,7 @@ def _largest_slip(text, scene_name, shaft_speed, record) -> float:
     from bearing_sim.cli.reporting import announce_compilation
     from bearing_sim.scene.loader import load_scene
     from bearing_sim.simulation import IntegrationError, scene_inputs
-    from bearing_sim.studies.uncertainty import UncertaintyError, largest_slip
+    from bearing_sim.studies.uncertainty_propagation import UncertaintyError, largest_slip
 
     scene = load_scene(scene_name)
     speed = shaft_speed if shaft_speed is not None else scene.operating.shaft_speed

@@ -6,6 +6,7 @@ independent of other load; on an idle machine they equal wall time.  The minimum
 ``test/benchmarks/solver_comparison.py`` compares with other solvers.
 """
 
+import itertools
 import json
 import os
 import platform
@@ -265,23 +266,20 @@ def run_bench(quick: bool = False, cold: bool = False, progress: Callable[[str],
     with one_core() as core:
         began, used = time.perf_counter(), time.process_time()
         report = {"bearing": BEARING, "radial_load": LOAD, "quick": quick, "machine": machine_facts(core), "cases": [], "references": []}
-        for level in levels:
-            for speed in SPEEDS:
-                progress(f"{level} at {speed:g} rpm: reference")
-                settled = SettledReference(bench_scene(level, speed), extent.settled, extent.tight)
-                report["references"].append({"level": level, "speed_rpm": speed, **settled.described()})
-                for name, overrides in level_integrators(level).items():
-                    progress(f"{level} at {speed:g} rpm: {name}")
-                    measured = _measure(bench_scene(level, speed, overrides), settled, extent)
-                    report["cases"].append({"level": level, "integrator": name, "speed_rpm": speed, **measured})
+        for level, speed in itertools.product(levels, SPEEDS):
+            where = {"level": level, "speed_rpm": speed}
+            progress(f"{level} at {speed:g} rpm: reference")
+            settled = SettledReference(bench_scene(level, speed), extent.settled, extent.tight)
+            report["references"].append(where | settled.described())
+            for name, overrides in level_integrators(level).items():
+                progress(f"{level} at {speed:g} rpm: {name}")
+                measured = _measure(bench_scene(level, speed, overrides), settled, extent)
+                report["cases"].append(where | {"integrator": name} | measured)
         report["machine"]["core_fraction"] = (time.process_time() - used) / (time.perf_counter() - began)
         if extent.start_up:
             progress("start-up")
-            report["start_up"] = [
-                {"level": level, "cold": is_cold, **start_up(BEARING, level, is_cold)}
-                for is_cold in ([False, True] if cold else [False])
-                for level in levels
-            ]
+            starts = itertools.product((False, True) if cold else (False,), levels)
+            report["start_up"] = [{"level": level, "cold": is_cold, **start_up(BEARING, level, is_cold)} for is_cold, level in starts]
     return report
 
 

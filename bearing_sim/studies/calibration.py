@@ -22,7 +22,7 @@ from bearing_sim.levels.steady.table_builder import solve_points
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import Range, messages, nearest, number_at, quantities, with_values
 from bearing_sim.simulation import Inputs
-from bearing_sim.sweep.pictures import new_figure
+from bearing_sim.sweep.pictures import new_figure, save
 
 SPEED_CHANGE, LOAD_CHANGE = 0.02, 0.25  # relative, over a block and the settling time before it
 _SETTLING = 0.5  # s; lags of settled cages are below a third of it
@@ -208,7 +208,7 @@ def check_fields(scene: Scene, fields: Sequence[str], blocks: Blocks) -> list[Ra
             hint = nearest(name, by_field) or nearest(name, known)
             raise CalibrationError(f"--fit {name}: unknown field{hint}; the scene has ranges for {', '.join(by_field) or 'no field'}")
         path = name if name in known else matches[0]
-        if path.startswith("operating.") or (path == "lubricant.temperature" and not np.isnan(blocks.conditions[:, 3]).any() and len(blocks.slip)):
+        if _is_measured(path, blocks) and len(blocks.slip) or path.startswith("operating."):
             raise CalibrationError(f"--fit {path}: the recording itself gives it; fit other fields")
         if path not in by_field:
             raise CalibrationError(f'--fit {path}: the scene gives no range to search; add --set "uncertainty.{path}=[LOW, HIGH]"')
@@ -218,6 +218,11 @@ def check_fields(scene: Scene, fields: Sequence[str], blocks: Blocks) -> list[Ra
         raise CalibrationError(f"--fit: {', '.join(sorted(repeated))} is given twice" if repeated else "--fit: expected at least one field")
     _check_amount(len(ranges), blocks)
     return ranges
+
+
+def _is_measured(path: str, blocks: Blocks) -> bool:
+    """Return whether the recording gives a field."""
+    return path.startswith("operating.") or path == "lubricant.temperature" and not np.isnan(blocks.conditions[:, 3]).any()
 
 
 def _check_amount(fields: int, blocks: Blocks) -> None:
@@ -273,7 +278,7 @@ def check_fit(scene: Scene, ranges: Sequence[Range], found, slopes: np.ndarray, 
     for one, position in zip(ranges, found.x):
         if _BOUND < position < 1.0 - _BOUND:
             continue
-        bound, declared = (one.low, known[one.field]) if position <= _BOUND else (one.high, known[one.field])
+        bound, declared = one.low if position <= _BOUND else one.high, known[one.field]
         raise CalibrationError(
             f"the best {one.field} lies at the bound of its range, {declared.show(bound)}, where the model slips by "
             f"{100 * after.mean():.3g} % on average and the measured cage by {100 * blocks.slip.mean():.3g} %; check other fields, the scene and "
@@ -525,10 +530,9 @@ def _misfit(residuals: np.ndarray, index: np.ndarray, tau: float, fields: int) -
 def _dependence(model: _Model, positions: np.ndarray, slopes: np.ndarray, blocks: Blocks) -> dict[str, np.ndarray]:
     """Return the fitted fields with each other uncertain field at the ends of its range, to first order."""
     fitted, inverse = model.values(positions), np.linalg.pinv(slopes)
-    from_log = not np.isnan(blocks.conditions[:, 3]).any()
     depends = {}
     for one in model.scene.uncertainty:
-        if one.field in fitted or one.field.startswith("operating.") or (from_log and one.field == "lubricant.temperature"):
+        if one.field in fitted or _is_measured(one.field, blocks):
             continue
         shifted = [positions + inverse @ (blocks.slip - model.slip(fitted | {one.field: end})) for end in (one.low, one.high)]
         depends[one.field] = np.array([[scale.value(position) for scale, position in zip(model.scales, row)] for row in shifted])
@@ -539,15 +543,10 @@ def _fitted_scene(scene: Scene, fitted: Sequence[Fitted], confidence: float) -> 
     """Return the scene with the fitted values, and their confidence intervals as ranges."""
     known = quantities(type(scene))
     source = f"calibrated; {100 * confidence:g} % confidence interval of the scatter alone"
-    narrowed = {
-        one.range.field: Range(
-            field=one.range.field,
-            low=max(one.low, known[one.range.field].minimum),
-            high=min(one.high, known[one.range.field].maximum),
-            source=source,
-        )
-        for one in fitted
-    }
+    narrowed = {}
+    for field, one in ((one.range.field, one) for one in fitted):
+        low, high = max(one.low, known[field].minimum), min(one.high, known[field].maximum)
+        narrowed[field] = Range(field=field, low=low, high=high, source=source)
     scene = with_values(scene, {one.range.field: one.value for one in fitted})
     return replace(scene, uncertainty=tuple(narrowed.get(one.field, one) for one in scene.uncertainty))
 
@@ -560,15 +559,17 @@ def draw(path: Path, title: str, found: Calibration) -> None:
     figure = new_figure(12, 8)
     axes = figure.subplot_mosaic([["time", "time"], ["against", "left"]])
     blocks = found.blocks
-    axes["time"].plot(blocks.times, 100 * blocks.slip, ".", ms=4, color=_MEASURED, label=f"measured, means over {blocks.length:.3g} s")
-    axes["time"].plot(blocks.times, 100 * found.before, ".", ms=3, color=_BEFORE, label="model, original scene")
-    axes["time"].plot(blocks.times, 100 * found.after, ".", ms=3, color=_AFTER, label="model, calibrated")
+    for slips, size, colour, label in (
+        (blocks.slip, 4, _MEASURED, f"measured, means over {blocks.length:.3g} s"),
+        (found.before, 3, _BEFORE, "model, original scene"),
+        (found.after, 3, _AFTER, "model, calibrated"),
+    ):
+        axes["time"].plot(blocks.times, 100 * slips, ".", ms=size, color=colour, label=label)
     axes["time"].set(xlabel="time [s]", ylabel="cage slip [%]")
     axes["time"].legend(fontsize=9)
     _draw_comparison(axes["against"], found)
     _draw_residuals(axes["left"], found)
-    figure.suptitle(title)
-    figure.savefig(path, dpi=130)
+    save(figure, path, title)
 
 
 def _draw_comparison(axes, found) -> None:

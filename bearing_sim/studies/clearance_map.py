@@ -16,29 +16,27 @@ import numpy as np
 
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.table import empty_table
-from bearing_sim.messages.topics import ARRAYS
 from bearing_sim.model.running_clearance import mounted, seat_pressure
 from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.thermal_network import POWERS
 from bearing_sim.recording.provenance import git_hash, package_version
-from bearing_sim.scene.display import force, hours
+from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, hours
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-from bearing_sim.sweep.pictures import as_shown, draw_map, new_figure, no_result_patch, on_grid, plain_numbers, set_limits
+from bearing_sim.studies.sheet import CLEARANCES
+from bearing_sim.sweep.pictures import as_shown, draw_map, new_figure, no_result_patch, on_grid, plain_numbers, save, set_limits, with_gaps
 from bearing_sim.sweep.point import FAILED, OK, Column
 from bearing_sim.sweep.table import Table
 
 NO_EQUILIBRIUM = "no_equilibrium"
 SPEED, LOAD = "operating.shaft_speed", "operating.radial_load"
-_PARTS = ARRAYS["running_clearance"].fields
 _ENDLESS = 1e4  # s; longer than any lag of a cage; at level steady simulated time costs nothing
-_CELSIUS, _RPM = 273.15, 30.0 / math.pi
 _NEAR = 1e-4  # of a speed, to which bisection finds it
 _LEAP = 10.0  # K; a bearing that is farther from the limit of its scene where equilibrium ends does not pass the limit but runs away
 COLUMNS = (
     Column(SPEED, "rpm", "speed of the shaft"),
     Column(LOAD, "N", "radial load"),
-    *(Column(name, "um", f"{name.replace('_', ' ')}, diametral; negative: preload") for name in _PARTS),
+    *(Column(name, "um", f"{name.replace('_', ' ')}, diametral; negative: preload") for name in CLEARANCES),
     *(Column(name, "degC", f"{name.replace('_', ' ')}; NaN: no law of heat computes it") for name in NODE_OBSERVABLES),
     Column("seat_pressure", "MPa", "pressure between shaft and inner ring; negative: what is missing for it; NaN without a fit"),
     Column("cage_slip", "%", "cage slip"),
@@ -105,7 +103,7 @@ def row_at(scene: Scene, shaft_speed: float, radial_load: float) -> dict:
     """
     angle, oil = scene.operating.load_angle, scene.lubricant.temperature
     inputs = Inputs(shaft_speed, radial_load * math.cos(angle), radial_load * math.sin(angle), oil)
-    row = {column.name: math.nan for column in COLUMNS} | {SPEED: shaft_speed * _RPM, LOAD: radial_load, "status": OK, "reason": ""}
+    row = {column.name: math.nan for column in COLUMNS} | {SPEED: shaft_speed * RPM, LOAD: radial_load, "status": OK, "reason": ""}
     nodes = None
     if scene.heat.law == "network":
         found = thermal_equilibrium(scene, inputs)
@@ -122,8 +120,8 @@ def row_at(scene: Scene, shaft_speed: float, radial_load: float) -> dict:
     except IntegrationError as error:
         return row | {"status": FAILED, "reason": str(error)}
     sample, parts = samples[-1], mounted(scene.bearing, scene.mounting)
-    row |= {name: 1e6 * float(sample[name]) for name in _PARTS}
-    row |= {name: float(sample[name]) - _CELSIUS for name in NODE_OBSERVABLES}
+    row |= {name: 1e6 * float(sample[name]) for name in CLEARANCES}
+    row |= {name: float(sample[name]) - ZERO_CELSIUS for name in NODE_OBSERVABLES}
     losses = sum(float(sample[name]) for name in POWERS)
     row |= {"cage_slip": 100.0 * float(sample["cage_slip"]), "life": float(sample["modified_rating_life"]), "loss": losses}
     return row | {"seat_pressure": 1e-6 * float(seat_pressure(parts, sample)) if parts.shaft.fitted else math.nan}
@@ -187,7 +185,7 @@ def _bisect(scene: Scene, kind: str, below: tuple[float, dict], above: tuple[flo
     reason = (above if held_below else below)[1]["reason"]
     if kind == "equilibrium":
         hottest = max(row[name] for name in NODE_OBSERVABLES)
-        kind = "runaway" if scene.heat.limit - _CELSIUS - hottest > _LEAP else "limit"
+        kind = "runaway" if scene.heat.limit - ZERO_CELSIUS - hottest > _LEAP else "limit"
     return Loss(load, kind, 0.5 * (below[0] + above[0]), not held_below, row, reason)
 
 
@@ -206,7 +204,7 @@ def in_words(found: ClearanceMap) -> list[str]:
 
 
 def _said(loss: Loss, least_life: float) -> str:
-    speed, row = f"{loss.shaft_speed * _RPM:,.0f} rpm", loss.values
+    speed, row = f"{loss.shaft_speed * RPM:,.0f} rpm", loss.values
     if loss.kind in ("runaway", "limit"):
         side = "below" if loss.regained else "above"
         text = f"thermal runaway {side} {speed}" if loss.kind == "runaway" else f"too hot {side} {speed}"
@@ -229,13 +227,15 @@ def _state(row: dict) -> str:
 
 
 def _about(scene: Scene, speeds: Sequence[float], loads: Sequence[float]) -> dict:
-    shown = ((SPEED, "rpm", [speed * _RPM for speed in speeds]), (LOAD, "N", list(loads)))
     return {
         "kind": "clearance",
         "scene": scene.name,
         "level": scene.level,
         "heat": scene.heat.law,
-        "axes": [{"field": field, "unit": unit, "values": values} for field, unit, values in shown],
+        "axes": [
+            {"field": SPEED, "unit": "rpm", "values": [speed * RPM for speed in speeds]},
+            {"field": LOAD, "unit": "N", "values": list(loads)},
+        ],
         "version": package_version(),
         "commit": git_hash(),
     }
@@ -268,8 +268,7 @@ def draw(path: Path, title: str, found: ClearanceMap) -> None:
             figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False)
     else:
         _draw_lines(list(axes.flat), found)
-    figure.suptitle(title, fontsize=11)
-    figure.savefig(path, dpi=130)
+    save(figure, path, title, 11)
 
 
 def _draw_map(axes, found, name, colours) -> None:
@@ -283,7 +282,7 @@ def _draw_map(axes, found, name, colours) -> None:
     x, y, quantity = (as_shown(each, table.column(each).unit, values) for each, values in ((SPEED, across), (LOAD, up), (name, field)))
     draw_map(axes, x, y, quantity, colours, centre=0.0 if name == "running_clearance" else None)
     for kind, (label, style) in _LINES.items():
-        at = [(each.shaft_speed * _RPM, each.radial_load * y.values[-1] / up[-1]) for each in found.losses if each.kind == kind]
+        at = [(each.shaft_speed * RPM, each.radial_load * y.values[-1] / up[-1]) for each in found.losses if each.kind == kind]
         if at:
             line, *_ = axes.plot(*zip(*at), style, marker="o", ms=3, color="#7b1fa2", lw=1.8, label=label)
             line.set_path_effects([withStroke(linewidth=3.6, foreground="white")])
@@ -291,21 +290,24 @@ def _draw_map(axes, found, name, colours) -> None:
 
 def _draw_lines(axes, found) -> None:
     table, rows = found.table, [row for row in found.table.rows if row["status"] == OK]
-    speeds = [row[SPEED] for row in rows]
     clearance, warmth, slip, life = axes
-    clearance.plot(speeds, [row["running_clearance"] for row in rows], "k-o", ms=4, lw=2, label="running clearance")
+
+    def plot(axes, name, style="-", **look):
+        axes.plot([row[SPEED] for row in rows], with_gaps([row[name] for row in rows]), style, **look)
+
+    plot(clearance, "running_clearance", "k-o", ms=4, lw=2, label="running clearance")
     for name, colour in _STACKED:
-        clearance.plot(speeds, [row[name] for row in rows], color=colour, lw=1.2, label=name.removesuffix("_clearance"))
+        plot(clearance, name, color=colour, lw=1.2, label=name.removesuffix("_clearance"))
     clearance.axhline(0.0, color="0.5", lw=0.8)
     clearance.set_ylabel("clearance and its parts [µm]")
     for name, colour in zip(NODE_OBSERVABLES, _NODE_COLOURS):
-        warmth.plot(speeds, [row[name] for row in rows], color=colour, lw=1.4, label=name.removesuffix("_temperature").replace("_", " "))
+        plot(warmth, name, color=colour, lw=1.4, label=name.removesuffix("_temperature").replace("_", " "))
     warmth.set_ylabel("temperature [°C]")
-    slip.plot(speeds, [row["cage_slip"] for row in rows], "-o", ms=4, color="#0072b2")
+    plot(slip, "cage_slip", "-o", ms=4, color="#0072b2")
     slip.set(ylabel="cage slip [%]", ylim=(0.0, None))
-    lives = np.array([row["life"] for row in rows])
-    life.plot(speeds, np.where(np.isfinite(lives), lives, np.nan), "-o", ms=4, color="#009e73")
+    plot(life, "life", "-o", ms=4, color="#009e73")
     life.set_ylabel("life [h]")
+    lives = np.array([row["life"] for row in rows])
     finite = lives[np.isfinite(lives)]
     set_limits(life, np.append(finite, found.least_life) if (finite < _NEAR_LEAST * found.least_life).any() else finite, True)
     life.axhline(found.least_life, color="0.5", lw=0.8)
@@ -315,6 +317,6 @@ def _draw_lines(axes, found) -> None:
         each.grid(alpha=0.3)
         for loss in found.losses:
             label, style = _LINES[loss.kind]
-            each.axvline(loss.shaft_speed * _RPM, color="#7b1fa2", ls=style, lw=1.0, label=label if each is clearance else None)
+            each.axvline(loss.shaft_speed * RPM, color="#7b1fa2", ls=style, lw=1.0, label=label if each is clearance else None)
     clearance.legend(fontsize=8)
     warmth.legend(fontsize=8)

@@ -13,13 +13,11 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-
 from bearing_sim.model.plausibility import minimum_load
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation, scene_inputs
-from bearing_sim.sweep.pictures import new_figure, plain_numbers
+from bearing_sim.sweep.pictures import new_figure, plain_numbers, save
 from bearing_sim.sweep.settling import advance_until_settled, longest_run, shortest_run
 from bearing_sim.sweep.states import states
 
@@ -175,33 +173,27 @@ def draw_map(found: SkidMap, path: Path, title: str, before: SkidMap | None = No
     supplies = list(dict.fromkeys(point.supply for point in found.points))
     figure = new_figure(4.3 * len(supplies), 7.0)
     axes = figure.subplots(2, len(supplies), squeeze=False, sharey="row")
-    shades = _shades(found)
-    for column, supply in enumerate(supplies):
-        for celsius, shade in shades.items():
-            for one, style in ((before, 0.8), (found, 1.8)):
-                if one is None:
-                    continue
-                points = [point for point in one.points if point.supply == supply and point.celsius == celsius]
-                loads = np.array([point.load for point in points]) / 1e3
-                label = f"{celsius:g} °C" if one is found and column == 0 else None
-                skid, rolling = ([100 * slip for slip in slips] for slips in zip(*((point.skid, point.rolling) for point in points)))
-                axes[0, column].plot(loads, skid, color=shade, lw=style, label=label, marker="." if one is found else None)
-                axes[0, column].plot(loads, rolling, color=shade, lw=style, ls=":")
-        for one, style in ((before, 0.8), (found, 1.8)):
-            if one is not None:
-                line = sorted((each for each in one.skid_loads if each.supply == supply), key=lambda each: each.celsius)
-                axes[1, column].plot([each.celsius for each in line], [each.load / 1e3 for each in line], "k.-", lw=style)
-        for axis, along in ((axes[0, column], axes[0, column].axvline), (axes[1, column], axes[1, column].axhline)):
+    shades, drawn = _shades(found), [(found, 1.8)] if before is None else [(before, 0.8), (found, 1.8)]
+    for supply, (above, below) in zip(supplies, axes.T):
+        for (celsius, shade), (one, width) in itertools.product(shades.items(), drawn):
+            points = [point for point in one.points if (point.supply, point.celsius) == (supply, celsius)]
+            loads, look = [point.load / 1e3 for point in points], {"color": shade, "lw": width}
+            own = {"marker": ".", "label": f"{celsius:g} °C" if supply == supplies[0] else None} if one is found else {}
+            above.plot(loads, [100 * point.skid for point in points], **look, **own)
+            above.plot(loads, [100 * point.rolling for point in points], ls=":", **look)
+        for one, width in drawn:
+            line = sorted((each.celsius, each.load / 1e3) for each in one.skid_loads if each.supply == supply)
+            below.plot(*zip(*line), "k.-", lw=width)
+        for axis, along in ((above, above.axvline), (below, below.axhline)):
             along(found.minimum_load / 1e3, color="0.6", ls="--", lw=1.0)
             axis.grid(alpha=0.3)
-        axes[0, column].set(xscale="log", yscale="log", xlabel="radial load [kN]", title=supply.replace("_", " "))
-        axes[1, column].set(xlabel="oil temperature [°C]")
-        plain_numbers(axes[0, column].xaxis, axes[0, column].yaxis)
+        above.set(xscale="log", yscale="log", xlabel="radial load [kN]", title=supply.replace("_", " "))
+        below.set(xlabel="oil temperature [°C]")
+        plain_numbers(above.xaxis, above.yaxis)
     axes[0, 0].set_ylabel("cage slip [%]")
     axes[1, 0].set_ylabel("skid load [kN]")
     figure.legend(loc="outside lower center", ncols=len(shades), frameon=False)
-    figure.suptitle(f"{title}\nfrom a skid (line) and from rolling (dotted); minimum load (dashed)", fontsize=11)
-    figure.savefig(path, dpi=130)
+    save(figure, path, f"{title}\nfrom a skid (line) and from rolling (dotted); minimum load (dashed)", 11)
 
 
 def _shades(found: SkidMap) -> dict[float, str]:

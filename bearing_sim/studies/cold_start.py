@@ -22,11 +22,12 @@ from bearing_sim.model.validity import contact_speeds
 from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.physics.heat import hertz_half_width
 from bearing_sim.physics.thermal_network import NODES
+from bearing_sim.scene.display import ZERO_CELSIUS
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation, scene_inputs, thermal_nodes
-from bearing_sim.sweep.pictures import new_figure, plain_numbers
+from bearing_sim.sweep.pictures import new_figure, plain_numbers, save
 from bearing_sim.sweep.settling import advance_until_settled, longest_run, shortest_run
 from bearing_sim.sweep.states import ROLLING, SKID, at_level_slip, standing_cage
 from bearing_sim.sweep.thermal import SKIDS, equilibrium_temperatures, simulation_held_at
@@ -47,7 +48,6 @@ _SAME_SLIP, _SAME_TEMPERATURE = 1e-3, 0.1  # K; differences of two courses that 
 _LOADED_AFTER = (60.0, 300.0, 900.0)  # s of idling after which the load comes, besides the first second and the end of idling
 _RATE, _HELD = 2000.0, 1.0  # samples a second while it does; s for which it stays
 _ROLLS = 0.02  # slip of a cage that rolls
-_ZERO = 273.15
 
 
 class Instant(NamedTuple):
@@ -98,7 +98,7 @@ class ColdStart(NamedTuple):
 
 def cold_scene(scene: Scene, start: float = COLD) -> Scene:
     """Return a scene at level steady whose parts, oil and air are as cold as ``start`` [K], with a thermal network."""
-    celsius = f"{start - _ZERO} degC"
+    celsius = f"{start - ZERO_CELSIUS} degC"
     network = [] if scene.heat.law == "network" else ["heat={law: network}"]
     changed = load_scene(scene, [*network, f"heat.ambient_temperature={celsius}", f"lubricant.temperature={celsius}"])
     return changed.at_level("steady")
@@ -226,10 +226,15 @@ def _instant(scene: Scene, time: float, sample: np.void, film: ThinnestFilm) -> 
         float(film.least(np.array([sample]))[0]),
         state.left,
         state.asperity_share,
-        float(sample["inner_sliding_power"] + sample["outer_sliding_power"]),
+        float(_sliding(sample)),
         float(sample["friction_moment"]),
         tuple(thermal_nodes(sample).tolist()),
     )
+
+
+def _sliding(samples: np.ndarray | np.void) -> np.ndarray:
+    """Return the sliding power in the contacts with both raceways [W]."""
+    return samples["inner_sliding_power"] + samples["outer_sliding_power"]
 
 
 def _loading(conditions: _Conditions, begin: str, time: float, nodes: np.ndarray, skids: bool) -> Loading:
@@ -244,7 +249,6 @@ def _loading(conditions: _Conditions, begin: str, time: float, nodes: np.ndarray
     width = hertz_half_width(load, radius, params.rollers.length, params.raceways.reduced_modulus)
     skidding = np.flatnonzero(samples["cage_slip"] > _ROLLS)
     last = int(skidding[-1]) + 1 if len(skidding) else 0
-    sliding = samples["inner_sliding_power"] + samples["outer_sliding_power"]
     return Loading(
         conditions.load,
         begin,
@@ -253,7 +257,7 @@ def _loading(conditions: _Conditions, begin: str, time: float, nodes: np.ndarray
         _heaviest(before, params)[0],
         power,
         power / (2.0 * width * params.rollers.length),
-        float(sliding[:last].sum()) / _RATE,
+        float(_sliding(samples[:last]).sum()) / _RATE,
         last / _RATE if last < len(samples) else math.inf,
     )
 
@@ -292,9 +296,9 @@ def draw_courses(found: ColdStart, path: Path, title: str) -> None:
             _draw_course(course, axes, column == 0)
         for start, mark in ((SKID, "o"), (ROLLING, "x")):
             tried = [each for each in found.loadings if (each.load, each.start) == (load, start)]
-            minutes = [each.time / 60.0 for each in tried]
-            axes[2].plot(minutes, [each.contact_power for each in tried], mark, color="tab:red", label=f"as the load comes, {_words(start)}")
-            axes[2].plot(minutes, [max(each.idling_power, 1e-3) for each in tried], mark, color="tab:blue", label=f"idling, {_words(start)}")
+            minutes, words = [each.time / 60.0 for each in tried], _words(start)
+            axes[2].plot(minutes, [each.contact_power for each in tried], mark, color="tab:red", label=f"as the load comes, {words}")
+            axes[2].plot(minutes, [max(each.idling_power, 1e-3) for each in tried], mark, color="tab:blue", label=f"idling, {words}")
         for axis in axes:
             axis.axvline(course.loaded_at / 60.0, color="0.6", ls="--", lw=1.0)
             axis.grid(alpha=0.3)
@@ -309,8 +313,7 @@ def draw_courses(found: ColdStart, path: Path, title: str) -> None:
         axis.set_ylabel(text)
     for row, place in ((0, "center left"), (2, "center"), (3, "upper left"), (4, "upper left")):
         rows[row, 0].legend(fontsize=7, frameon=False, loc=place, ncols=2 if row == 2 else 1)
-    figure.suptitle(f"{title}\nload rises to {found.loaded / 1e3:.3g} kN (dashed); from a skid (line), from rolling (dotted)", fontsize=11)
-    figure.savefig(path, dpi=130)
+    save(figure, path, f"{title}\nload rises to {found.loaded / 1e3:.3g} kN (dashed); from a skid (line), from rolling (dotted)", 11)
 
 
 def _words(start: str) -> str:
@@ -318,13 +321,16 @@ def _words(start: str) -> str:
 
 
 def _draw_course(course: Course, axes, labelled: bool) -> None:
-    style = {"ls": "-" if course.start == SKID else ":", "lw": 1.6}
-    minutes = [each.time / 60.0 for each in course.instants]
-    axes[0].plot(minutes, [100.0 * each.cage_slip for each in course.instants], "k", label=_words(course.start), **style)
-    axes[1].plot(minutes, [each.sliding_power for each in course.instants], "k", **style)
-    axes[3].plot(minutes, [1e6 * each.film for each in course.instants], "k", **style)
-    full = "with full inlets" if labelled and course.start == SKID else None
-    axes[3].plot(minutes, [1e6 * each.film / each.film_left for each in course.instants], color="0.6", label=full, **style)
+    from_skid, minutes = course.start == SKID, [each.time / 60.0 for each in course.instants]
+
+    def plot(row, values, label=None, colour="k"):
+        axes[row].plot(minutes, values, color=colour, label=label, ls="-" if from_skid else ":", lw=1.6)
+
+    plot(0, [100.0 * each.cage_slip for each in course.instants], _words(course.start))
+    plot(1, [each.sliding_power for each in course.instants])
+    plot(3, [1e6 * each.film for each in course.instants])
+    named = labelled and from_skid
+    plot(3, [1e6 * each.film / each.film_left for each in course.instants], "with full inlets" if named else None, "0.6")
     for place, name in enumerate(NODE_OBSERVABLES):
-        label = name.removesuffix("_temperature").replace("_", " ") if labelled and course.start == SKID else None
-        axes[4].plot(minutes, [each.temperatures[place] - _ZERO for each in course.instants], color=f"C{place}", label=label, **style)
+        label = name.removesuffix("_temperature").replace("_", " ") if named else None
+        plot(4, [each.temperatures[place] - ZERO_CELSIUS for each in course.instants], label, f"C{place}")

@@ -24,13 +24,13 @@ from bearing_sim.scene.display import hours, number
 from bearing_sim.scene.loader import SceneError, load_scene, scene_to_yaml
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import with_values
-from bearing_sim.studies.rating import loads_text
+from bearing_sim.studies.sheet import loads_text
 from bearing_sim.sweep.conditions import Conditions, OperatingPoint, PointError, combined_life, scene_at_point
 from bearing_sim.sweep.grid import Axis, axis, one_line, scene_at
-from bearing_sim.sweep.pictures import new_figure, on_grid, plain_numbers
+from bearing_sim.sweep.pictures import legend_below, new_figure, on_grid, plain_numbers, save, with_gaps
 from bearing_sim.sweep.point import OK, REFUSED, UNSETTLED, Column, point_row
 from bearing_sim.sweep.table import Table, read_table, write_table
-from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
+from bearing_sim.sweep.tasks import Journal, Progress, Task, in_silence, run_tasks, task
 
 LOW, D_VALUE = "bearing.outer_raceway.low_radius", "bearing.outer_raceway.d_value"
 NOMINAL, WORST = "nominal", "worst"
@@ -58,6 +58,7 @@ _NUMBERS = (
     Column("worst_slip", "%", "largest cage slip within the tolerances"),
     Column("worst_life", "h", "shortest life within the tolerances"),
 )
+_NOTHING = dict.fromkeys((column.name for column in _NUMBERS), math.nan)
 COLUMNS = (
     Column(LOW, "mm", "radius at the low points, R_low"),
     Column(D_VALUE, "mm", "high-point radius minus low-point radius, D"),
@@ -119,7 +120,7 @@ class Limits(NamedTuple):
 
     def met(self, row: dict, kind: str) -> bool:
         """Return whether slip and life of a row meet the limits; False without a result."""
-        return row[f"{kind}_slip"] < self.slip_below and row[f"{kind}_life"] > self.life_above
+        return not self.broken_by(row, kind)
 
     def broken_by(self, row: dict, kind: str) -> str:
         """Return which limit a row violates, or that it has no result."""
@@ -130,7 +131,7 @@ class Limits(NamedTuple):
 
 
 class Border(NamedTuple):
-    """Ends of the region at one D value; lengths in mm."""
+    """Radii that meet the limits at one D value, from ``low_from`` to ``low_to``, and what bounds them; lengths in mm in results."""
 
     kind: str
     d_value: float
@@ -138,6 +139,25 @@ class Border(NamedTuple):
     low_to: float
     below_by: str
     above_by: str
+
+    @property
+    def in_millimetres(self) -> "Border":
+        """The same of an interval in metres."""
+        return self._replace(d_value=_millimetres(self.d_value), low_from=_nanometres(self.low_from), low_to=_nanometres(self.low_to))
+
+    @property
+    def places(self) -> dict[float, str]:
+        """The names of the radii that show what an interval is."""
+        return {self.low_to: "upper edge", 0.5 * (self.low_from + self.low_to): "centre", self.low_from: "lower edge"}
+
+
+def _millimetres(length: float) -> float:
+    return float(f"{1e3 * length:.9g}")
+
+
+def _nanometres(length: float) -> float:
+    """Return a radius in mm, rounded to a nanometre."""
+    return round(1e3 * length, 6)
 
 
 class Band(NamedTuple):
@@ -203,19 +223,17 @@ class Designed(NamedTuple):
     def open_ends(self, kind: str) -> str:
         """Return where the map ends at raceways that meet the limits, so that the limit lies beyond it; empty if it does nowhere."""
         borders, d_values = [border for border in self.borders if border.kind == kind], self.grid.values(D_VALUE)
-        d_ends = sorted({border.d_value for border in borders} & {min(d_values), max(d_values)})
-        lows = [border.low_from for border in borders if border.below_by == END_OF_MAP]
-        highs = [border.low_to for border in borders if border.above_by == END_OF_MAP]
-        ends = [f"D = {' and '.join(f'{d_value:.4f}' for d_value in d_ends)} mm"] if d_ends else []
-        radii = sorted({*lows, *highs})
-        ends += [f"R_low = {' and '.join(f'{radius:.5f}' for radius in radii)} mm"] if radii else []
+        d_ends = {border.d_value for border in borders} & {min(d_values), max(d_values)}
+        radii = {end for border in borders for end, by in (border[2::2], border[3::2]) if by == END_OF_MAP}
+        shown = (("D", d_ends, 4), ("R_low", radii, 5))
+        ends = [f"{name} = {' and '.join(f'{value:.{digits}f}' for value in sorted(values))} mm" for name, values, digits in shown if values]
         return f"the map ends at {', and at '.join(ends)}, where raceways meet both limits: the region goes on beyond it" if ends else ""
 
     @property
     def border_table(self) -> Table:
         """The intervals as a table."""
-        nothing = Border("", math.nan, math.nan, math.nan, "", "")
-        rows = [(*band.found, band.verdict, *(band.verified or nothing)[2:]) for band in self.bands]
+        nothing = (math.nan, math.nan, "", "")
+        rows = [(*band.found, band.verdict, *(band.verified[2:] if band.verified else nothing)) for band in self.bands]
         return self._table(BORDER_COLUMNS, rows, "design borders")
 
     @property
@@ -240,12 +258,11 @@ def write_design(path: Path, designed: Designed) -> list[Path]:
 
 def read_design(path: Path) -> Designed:
     """Return a design from the path given to `write_design`; raises as `bearing_sim.sweep.table.read_table`."""
-    grid, borders, checks = (read_table(path.with_name(f"{path.stem}{suffix}.parquet")) for suffix in ("", "_borders", "_checks"))
+    grid, borders, checks = (read_table(path.with_name(f"{path.stem}{suffix}.parquet")) for suffix in TABLES)
     bands = []
-    for row in borders.rows:
-        kind, d_value, low_from, low_to, below_by, above_by, verdict, *rest = row.values()
-        verified = Border(kind, d_value, *rest) if verdict in (CONFIRMED, NARROWED) else None
-        bands.append(Band(Border(kind, d_value, low_from, low_to, below_by, above_by), verified, verdict))
+    for *found, verdict, low_from, low_to, below_by, above_by in (row.values() for row in borders.rows):
+        verified = Border(*found[:2], low_from, low_to, below_by, above_by) if verdict in (CONFIRMED, NARROWED) else None
+        bands.append(Band(Border(*found), verified, verdict))
     return Designed(grid, bands, [Check(*row.values()) for row in checks.rows])
 
 
@@ -303,22 +320,25 @@ def raceway_row(scene: Scene, duration: float, conditions: Conditions) -> dict:
         rows = [result(point, deviation, signs) for point, deviation in zip(points, deviations)]
         return max(row["cage_slip"] for row in rows), combined_life([row["modified_rating_life"] for row in rows], points)
 
+    def worst(choose, name, place) -> list[tuple[float, float]]:
+        """Return slip and life where one of them is worst: with the tolerances off in the worst directions, and with speed and load alone."""
+        deviations = [choose(operating, key=lambda each: result(point, each, exact)[name]) for point in points]
+        signs = tuple(choose((0, -1, 1), key=lambda sign: alone[k, sign][place]) for k in range(len(tolerances)))
+        return [mission(deviations, signs), mission(deviations, exact)]
+
     both = (dict.fromkeys((0.0, -each, each)) for each in (conditions.speed_tolerance, conditions.load_tolerance))
     operating, at_nominal = list(itertools.product(*both)), [(0.0, 0.0)] * len(points)
     try:
         nominal = mission(at_nominal, exact)
-        most_slip = [max(operating, key=lambda each: result(point, each, exact)["cage_slip"]) for point in points]
-        least_life = [min(operating, key=lambda each: result(point, each, exact)["modified_rating_life"]) for point in points]
+        for point, deviation in itertools.product(points, operating):
+            result(point, deviation, exact)
         alone = {
             (k, sign): mission(at_nominal, tuple(sign * (other == k) for other in range(len(tolerances))))
             for k, sign in itertools.product(range(len(tolerances)), (-1, 0, 1))
         }
-        worst_for_slip = tuple(max((0, -1, 1), key=lambda sign: alone[k, sign][0]) for k in range(len(tolerances)))
-        worst_for_life = tuple(min((0, -1, 1), key=lambda sign: alone[k, sign][1]) for k in range(len(tolerances)))
-        together = [mission(most_slip, worst_for_slip), mission(least_life, worst_for_life), mission(most_slip, exact), mission(least_life, exact)]
+        slips, lives = zip(*alone.values(), *worst(max, "cage_slip", 0), *worst(min, "modified_rating_life", 1))
     except _NoResult as error:
-        return dict.fromkeys((column.name for column in _NUMBERS), math.nan) | dict(zip(("status", "reason", "warnings"), (*error.args, "")))
-    slips, lives = zip(*alone.values(), *together)
+        return _NOTHING | dict(zip(("status", "reason", "warnings"), (*error.args, "")))
     unsettled = [row["reason"] for row in found.values() if row["status"] == UNSETTLED]
     return {
         "nominal_slip": nominal[0],
@@ -341,7 +361,7 @@ def design(
     duration: float,
     workers: int | None = None,
     dask: str | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Progress = in_silence,
     verify_level: str | None = None,
 ) -> Designed:
     """Map which raceways meet the limits, and verify what is found at a level of higher fidelity.
@@ -352,7 +372,7 @@ def design(
     limits : to meet.
     radii, d_values : of the grid; the region is searched between the smallest and the largest.
     journal : of finished raceways, which are not computed again.
-    duration, workers, dask, progress : see `bearing_sim.sweep.grid.sweep`.
+    duration, workers, dask, progress : see `bearing_sim.sweep.grid.run_sweep`.
     verify_level : that verifies edges and centre of each interval, see `verified`; None: nothing is verified.
 
     Raises
@@ -361,20 +381,20 @@ def design(
         No raceway of the grid has a valid scene, or the level that verifies cannot compute it; the errors are those of the first.
     """
     study = _Study(limits, duration, partial(run_tasks, journal=journal, workers=workers, dask=dask, progress=progress))
-    points = list(itertools.product(sorted(radii.values), sorted(d_values.values)))
-    scenes = {point: scene_at(name, overrides, (radii, d_values), point) for point in points}
+
+    def scenes_at(points, *more):
+        return {point: scene_at(name, [*overrides, *more], (radii, d_values), point) for point in points}
+
+    scenes = scenes_at(itertools.product(sorted(radii.values), sorted(d_values.values)))
     if all(isinstance(scene, SceneError) for scene in scenes.values()):
-        raise scenes[points[0]]
+        raise next(iter(scenes.values()))
     grid = study.rows(scenes)
-    thin = {point: scene_at(name, overrides, (radii, d_values), point) for point in study.points_in_gaps(scenes, grid)}
-    rows, scenes = grid | study.rows(thin), scenes | thin
-    ends = [end for kind in KINDS for d_value in sorted(d_values.values) for end in _ends(kind, d_value, rows, limits)]
-    intervals = _intervals(ends, study.narrowed_edges(scenes, [edge for end in ends for edge in end]))
-    bands, checks = [Band(interval.border) for interval in intervals], []
+    thin = scenes_at(study.points_in_gaps(scenes, grid))
+    intervals = study.intervals(scenes | thin, grid | study.rows(thin))
+    bands, checks = [Band(interval.in_millimetres) for interval in intervals], []
     if verify_level is not None:
-        at = [(interval.low, interval.d_value) for interval in intervals]
-        own = [scene_at(name, overrides, (radii, d_values), point) for point in at]
-        higher = [scene_at(name, [*overrides, f"level={verify_level}"], (radii, d_values), point) for point in at]
+        at = [(interval.low_from, interval.d_value) for interval in intervals]
+        own, higher = ([found[point] for point in at] for found in (scenes_at(at), scenes_at(at, f"level={verify_level}")))
         if errors := [scene for scene in higher if isinstance(scene, SceneError)]:
             raise errors[0]
         bands, checks = study.verified_bands(intervals, own, higher)
@@ -397,27 +417,6 @@ def design(
     return Designed(Table(COLUMNS, [_table_row(point, row, limits) for point, row in grid.items()], about), bands, checks)
 
 
-class _Interval(NamedTuple):
-    """Radii that meet the limits at one D value [m], from ``low`` to ``high``, and what bounds them."""
-
-    kind: str
-    d_value: float
-    low: float
-    high: float
-    below_by: str
-    above_by: str
-
-    @property
-    def border(self) -> Border:
-        """The interval as shown, in mm."""
-        low, high = round(1e3 * self.low, 6), round(1e3 * self.high, 6)
-        return Border(self.kind, _millimetres(self.d_value), low, high, self.below_by, self.above_by)
-
-
-def _millimetres(length: float) -> float:
-    return float(f"{1e3 * length:.9g}")
-
-
 class _Study(NamedTuple):
     """What all tasks of one study share, and how they run."""
 
@@ -431,33 +430,38 @@ class _Study(NamedTuple):
         results = dict(
             zip(valid, self.run([task(scene.level, raceway_row, scene, self.duration, self.limits.conditions) for scene in valid.values()]))
         )
-        nothing = dict.fromkeys((column.name for column in _NUMBERS), math.nan)
         return {
-            point: nothing | (results[point] if point in results else {"status": REFUSED, "reason": one_line(scene), "warnings": ""})
+            point: _NOTHING | (results[point] if point in results else {"status": REFUSED, "reason": one_line(scene), "warnings": ""})
             for point, scene in scenes.items()
         }
 
     def points_in_gaps(self, scenes: dict[tuple, Scene | SceneError], rows: dict[tuple, dict]) -> list[tuple]:
         """Return points between those of the grid that meet the limits, where the region is thinner than the steps of the grid."""
-        gaps = []
-        for kind, d_value in itertools.product(KINDS, sorted({point[1] for point in rows})):
-            radii = sorted(radius for radius, d in rows if d == d_value)
-            for left, right in itertools.pairwise(radii):
-                if [self.limits.broken_by(rows[radius, d_value], kind) for radius in (left, right)] == ["life", "slip"]:
-                    gaps.append((kind, d_value, left, right))
-        results = self.run([self._search("gap", scenes[left, d_value], kind, "met_between", left, right) for kind, d_value, left, right in gaps])
-        return [(result["inside"], gap[1]) for gap, result in zip(gaps, results) if result.get("inside") is not None]
+        gaps = [
+            (kind, left, right)
+            for kind, points in _lines_of(rows)
+            for left, right in itertools.pairwise(points)
+            if [self.limits.broken_by(rows[point], kind) for point in (left, right)] == ["life", "slip"]
+        ]
+        results = self.run([self._search("gap", scenes[left], kind, "met_between", left[0], right[0]) for kind, left, right in gaps])
+        return [(result["inside"], left[1]) for (_, left, _), result in zip(gaps, results) if result.get("inside") is not None]
 
-    def narrowed_edges(self, scenes: dict[tuple, Scene], edges: list["_Edge"]) -> list[tuple[float, str]]:
-        """Return the radius of each edge, and what breaks the limits beyond it."""
-        found = {edge: (edge.inside, edge.broken_by) for edge in edges}
-        between = [edge for edge in edges if edge.outside is not None]
-        tasks = [self._search("edge", scenes[edge.inside, edge.d_value], edge.kind, "narrowed", edge.inside, edge.outside) for edge in between]
-        for edge, result in zip(between, self.run(tasks)):
-            found[edge] = result.get("inside", edge.inside), result.get("broken_by") or edge.broken_by
-        return [found[edge] for edge in edges]
+    def intervals(self, scenes: dict[tuple, Scene], rows: dict[tuple, dict]) -> list[Border]:
+        """Return the intervals of radii that meet the limits [m], with edges narrowed between a point inside and its neighbour outside."""
+        ends = []
+        for kind, points in _lines_of(rows):
+            for run in _runs([self.limits.met(rows[point], kind) for point in points]):
+                for inside, outside in zip(run, (run[0] - 1, run[1] + 1)):
+                    ends.append((kind, points[inside], points[outside] if 0 <= outside < len(points) else None))
+        tasks = [self._search("edge", scenes[inside], kind, "narrowed", inside[0], outside[0]) for kind, inside, outside in ends if outside]
+        results, found = iter(self.run(tasks)), []
+        for kind, inside, outside in ends:
+            result = next(results) if outside else {"broken_by": END_OF_MAP}
+            found.append((kind, *inside[::-1], result.get("broken_by") or self.limits.broken_by(rows[outside], kind), result.get("inside")))
+        edges = [(kind, d_value, radius if narrowed is None else narrowed, by) for kind, d_value, radius, by, narrowed in found]
+        return [Border(*low[:3], high[2], low[3], high[3]) for low, high in zip(edges[::2], edges[1::2])]
 
-    def verified_bands(self, intervals: Sequence[_Interval], own: Sequence[Scene], higher: Sequence[Scene]) -> tuple[list[Band], list[Check]]:
+    def verified_bands(self, intervals: Sequence[Border], own: Sequence[Scene], higher: Sequence[Scene]) -> tuple[list[Band], list[Check]]:
         """Return each interval with what the level that verifies leaves of it, and the raceways that show the difference.
 
         Parameters
@@ -465,12 +469,13 @@ class _Study(NamedTuple):
         intervals : as found.
         own, higher : a scene with the D value of each interval, at the level of the design and at the one that verifies.
         """
-        tasks = [self._search(f"verify {scene.level}", scene, each.kind, "verified", each.low, each.high) for each, scene in zip(intervals, higher)]
+        tasks = [self._search(f"verify {scene.level}", scene, each.kind, "verified", *each[2:4]) for each, scene in zip(intervals, higher)]
         results, bands, shown = self.run(tasks), [], []
         for interval, scene, result in zip(intervals, own, results):
             verdict, after = _judged(interval, result)
-            bands.append(Band(interval.border, after and after.border, verdict))
-            shown += [(interval, scene, result, place, radius) for radius, place in _places(interval, after).items()]
+            bands.append(Band(interval.in_millimetres, after and after.in_millimetres, verdict))
+            places = {radius: f"verified {place}" for radius, place in after.places.items()} if after else {}
+            shown += [(interval, scene, result, place, radius) for radius, place in sorted((places | interval.places).items())]
         lower = self.run(
             [
                 task("check", raceway_row, with_values(scene, {LOW: radius}), self.duration, self.limits.conditions_of(interval.kind))
@@ -482,51 +487,29 @@ class _Study(NamedTuple):
     def _search(self, name: str, scene: Scene, kind: str, search: str, first: float, second: float) -> Task:
         return task(name, searched, scene, self.duration, self.limits, kind, search, first, second)
 
-    def _check(self, interval: _Interval, scene: Scene, result: dict, place: str, radius: float, row: dict) -> Check:
+    def _check(self, interval: Border, scene: Scene, result: dict, place: str, radius: float, row: dict) -> Check:
         """Return a raceway at both levels from the result of verification and from its row at the level of the design."""
         higher = dict(zip(result.get("radii", ()), result.get("rows", ()))).get(radius, result)  # a lost worker has left its reason only
         numbers = []
         for one in (row, higher):
-            one = dict.fromkeys((column.name for column in _NUMBERS), math.nan) | one
+            one = _NOTHING | one
             numbers += [one[f"{interval.kind}_slip"], one[f"{interval.kind}_life"], self.limits.met(one, interval.kind)]
-        lengths = _millimetres(interval.d_value), place, round(1e3 * radius, 6)
+        lengths = _millimetres(interval.d_value), place, _nanometres(radius)
         return Check(interval.kind, *lengths, *numbers, higher["status"], higher["reason"], higher.get("warnings", ""))
 
 
-def _judged(interval: _Interval, result: dict) -> tuple[str, _Interval | None]:
+def _judged(interval: Border, result: dict) -> tuple[str, Border | None]:
     """Return the verdict on an interval, and what is left of it."""
-    if result.get("low") is None:
+    if result.get("low_from") is None:
         return WITHDRAWN, None
-    after = interval._replace(
-        low=result["low"], high=result["high"], below_by=result["below_by"] or interval.below_by, above_by=result["above_by"] or interval.above_by
-    )
-    return (CONFIRMED if (after.low, after.high) == (interval.low, interval.high) else NARROWED), after
-
-
-def _places(interval: _Interval, after: _Interval | None) -> dict[float, str]:
-    """Return the names of the radii that show what verification found."""
-    places: dict[float, str] = {}
-    for one, prefix in ((interval, ""), (after, "verified ")):
-        if one is not None:
-            for radius, place in ((one.low, "lower edge"), (0.5 * (one.low + one.high), "centre"), (one.high, "upper edge")):
-                places.setdefault(radius, prefix + place)
-    return dict(sorted(places.items()))
+    after = interval._replace(**{name: result[name] or getattr(interval, name) for name in Border._fields[2:]})
+    return (CONFIRMED if after[:4] == interval[:4] else NARROWED), after
 
 
 def _table_row(point, row, limits) -> dict:
     lengths = {LOW: _millimetres(point[0]), D_VALUE: _millimetres(point[1])}
     texts = {"status": row["status"], "reason": row["reason"], "warnings": row.get("warnings", "")}  # a lost worker's has none
     return lengths | {column.name: row[column.name] for column in _NUMBERS} | {f"meets_{kind}": limits.met(row, kind) for kind in KINDS} | texts
-
-
-class _Edge(NamedTuple):
-    """One end of the region at one D value: a radius that meets the limits and its neighbour that does not (None at the end of the grid)."""
-
-    kind: str
-    d_value: float
-    inside: float
-    outside: float | None
-    broken_by: str
 
 
 class _Raceways:
@@ -568,11 +551,8 @@ class _Raceways:
         """
         for _ in range(_HALVINGS):
             middle = 0.5 * (inside + outside)
-            if self.met(middle):
-                inside = middle
-            else:
-                outside = middle
-        return {"inside": inside, "outside": outside, "broken_by": self.broken_by(outside)}
+            inside, outside = (middle, outside) if self.met(middle) else (inside, middle)
+        return {"inside": inside, "broken_by": self.broken_by(outside)}
 
     def met_between(self, left: float, right: float) -> dict:
         """Return a radius between two others that meets the limits, or None if none was found.
@@ -608,36 +588,31 @@ class _Raceways:
 
         Returns
         -------
-        low, high : of the part that is left [m]; None if there is none.
+        low_from, low_to : of the part that is left [m]; None if there is none.
         below_by, above_by : what bounds it; empty where the end has not moved.
         radii, rows : what was computed.
         """
-        left = {"low": None, "high": None, "below_by": "", "above_by": ""}
+        left: dict = {"low_from": None}
         below_by, above_by = "", ""
         for _ in range(_ROUNDS):
             radii = sorted({low, 0.5 * (low + high), high})
             if all(map(self.met, radii)):
-                left = {"low": low, "high": high, "below_by": below_by, "above_by": above_by}
+                left = {"low_from": low, "low_to": high, "below_by": below_by, "above_by": above_by}
                 break
             if not any(map(self.met, radii)):
                 gaps = [pair for pair in itertools.pairwise(radii) if tuple(map(self.broken_by, pair)) == ("life", "slip")]
                 radii = sorted([*radii, *(found for gap in gaps if (found := self.met_between(*gap)["inside"]) is not None)])
-            parts = []
-            for first, last in _runs([self.met(radius) for radius in radii]):
-                lower, upper = (radii[first], below_by), (radii[last], above_by)
-                if first > 0:
-                    lower = self._edge(radii[first], radii[first - 1])
-                if last < len(radii) - 1:
-                    upper = self._edge(radii[last], radii[last + 1])
-                parts.append((lower, upper))
+            parts = [
+                [
+                    tuple(self.narrowed(radii[inside], radii[outside]).values()) if 0 <= outside < len(radii) else (radii[inside], by)
+                    for inside, outside, by in ((first, first - 1, below_by), (last, last + 1, above_by))
+                ]
+                for first, last in _runs([self.met(radius) for radius in radii])
+            ]
             if not parts:
                 break
             (low, below_by), (high, above_by) = max(parts, key=lambda part: part[1][0] - part[0][0])
         return left | {"radii": list(self._rows), "rows": list(self._rows.values())}
-
-    def _edge(self, inside: float, outside: float) -> tuple[float, str]:
-        found = self.narrowed(inside, outside)
-        return found["inside"], found["broken_by"]
 
 
 def searched(scene: Scene, duration: float, limits: Limits, kind: str, search: str, first: float, second: float) -> dict:
@@ -660,27 +635,10 @@ def _runs(met: Sequence[bool]) -> Iterator[tuple[int, int]]:
             yield run[0], run[-1]
 
 
-def _intervals(ends, narrowed_edges) -> list[_Interval]:
-    """Return the intervals from the ends of the region and, in the same order, radius and violated limit of each edge."""
-    found, intervals = iter(narrowed_edges), []
-    for end, _ in ends:
-        (low, below_by), (high, above_by) = next(found), next(found)
-        intervals.append(_Interval(end.kind, end.d_value, low, high, below_by, above_by))
-    return intervals
-
-
-def _ends(kind, d_value, rows, limits) -> list[tuple[_Edge, _Edge]]:
-    """Return both ends of every interval of radii whose rows meet the limits at a D value."""
-    radii = sorted(radius for radius, d in rows if d == d_value)
-    found = []
-    for first, last in _runs([limits.met(rows[radius, d_value], kind) for radius in radii]):
-        edges = []
-        for inside, outside in ((first, first - 1), (last, last + 1)):
-            beyond = radii[outside] if 0 <= outside < len(radii) else None
-            broken_by = END_OF_MAP if beyond is None else limits.broken_by(rows[beyond, d_value], kind)
-            edges.append(_Edge(kind, d_value, radii[inside], beyond, broken_by))
-        found.append(tuple(edges))
-    return found
+def _lines_of(rows: dict[tuple, dict]) -> Iterator[tuple[str, list[tuple]]]:
+    """Yield the points (radius, D value) of each D value in order of their radii, for each kind of result."""
+    for kind, d_value in itertools.product(KINDS, sorted({d_value for _, d_value in rows})):
+        yield kind, sorted(point for point in rows if point[1] == d_value)
 
 
 _SLIP, _LIFE, _REFUSED = "#b2451f", "#0072b2", "#c1121f"
@@ -744,31 +702,22 @@ def draw(path: Path | BinaryIO, designed: Designed, beside: tuple[str, tuple[flo
     axes.plot([], [], color=_LIFE, label=f"life at {about['level']} [h]")
     axes.set(xlabel="D value [mm]", ylabel="low-point radius R_low [mm]")
     plain_numbers(axes.xaxis, axes.yaxis)
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    legend_below(figure, axes, ncols=2, fontsize=9)
     verified = f", verified at {verify_level}" if verify_level else ""
     points = f"{len(limits['points'])} operating points, " if limits["points"] else ""
     title = f"{about['name']} at level {about['level']}{verified}: slip below {limits['slip_below']:g} %, life above {hours(limits['life_above'])}"
-    figure.suptitle("\n".join([title, *textwrap.wrap(f"{about['life']}; {points}{STATE}", 120)]), fontsize=10)
     if beyond:
         texts = [ends if len(conditions) == len(KINDS) else f"{conditions[0]} {ends}" for ends, conditions in beyond.items()]
         axes.set_title("\n".join(line for text in texts for line in textwrap.wrap(text, 140)), fontsize=8)
-    figure.savefig(path, dpi=130)
-
-
-def _by_d_value(borders: Sequence[Border]) -> dict[float, list[Border]]:
-    """Return the intervals at each D value that has any."""
-    found: dict[float, list[Border]] = {}
-    for border in borders:
-        found.setdefault(border.d_value, []).append(border)
-    return found
+    save(figure, path, "\n".join([title, *textwrap.wrap(f"{about['life']}; {points}{STATE}", 120)]), 10)
 
 
 def _lines(borders: Sequence[Border], d_values: Sequence[float]) -> tuple[list[float], list[float]] | None:
     """Return the lower and the upper ends over all D values, NaN where there is no interval; None if there are several at one."""
-    found = _by_d_value(borders)
-    if any(len(each) > 1 for each in found.values()):
+    found = {border.d_value: border for border in borders}
+    if len(found) < len(borders):
         return None
-    return tuple([getattr(found[d][0], end) if d in found else math.nan for d in d_values] for end in ("low_from", "low_to"))
+    return tuple([getattr(found[d], end) if d in found else math.nan for d in d_values] for end in ("low_from", "low_to"))
 
 
 def _fill(axes, borders, d_values, look) -> None:
@@ -783,21 +732,18 @@ def _fill(axes, borders, d_values, look) -> None:
 
 def _outline(axes, borders, d_values, look) -> None:
     """Draw the ends of the intervals, joined between neighbouring D values where there is one at each."""
-    lines = _lines(borders, d_values)
     if not borders:
         return
-    if lines is None:
-        ends = [[getattr(border, end) for border in borders] for end in ("low_from", "low_to")]
-        for values, label in zip(ends, (look["label"], None)):
-            axes.plot([border.d_value for border in borders], values, "_", ms=9, **look | {"label": label})
-        return
-    for values, label in zip(lines, (look["label"], None)):
-        axes.plot(d_values, values, "--", marker="_", lw=1.2, **look | {"label": label})
+    lines = _lines(borders, d_values)
+    along, style = (d_values, {"ls": "--", "lw": 1.2}) if lines else ([border.d_value for border in borders], {"ls": "", "ms": 9})
+    ends = lines or [[getattr(border, end) for border in borders] for end in ("low_from", "low_to")]
+    for values, label in zip(ends, (look["label"], None)):
+        axes.plot(along, values, marker="_", **style | look | {"label": label})
 
 
 def _isolines(axes, designed, quantity, colour, limit, unit) -> None:
     across, up, field = on_grid(designed.grid, D_VALUE, LOW, quantity)
-    field = np.where(np.isfinite(field), field, np.nan)
+    field = with_gaps(field)
     finite = field[np.isfinite(field)]
     if min(field.shape) < 2 or not finite.size or not np.ptp(finite) > 0:
         return

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.scene.display import number
-from bearing_sim.sweep.pictures import new_figure, plain_numbers
+from bearing_sim.sweep.pictures import new_figure, plain_numbers, save
 
 HARMONICS = 120  # w_n falls with the fifth power of n
 POINTS = 720
@@ -118,11 +118,9 @@ def machine(section: RingSection, pressing: Pressing, *, ground_radius: float | 
     ground = low_radius - sprung.min() if ground_radius is None else ground_radius
     radii = ground + sprung
     before, after = np.roll(radii, 1), np.roll(radii, -1)
-    lows, highs = (np.flatnonzero(best) for best in ((radii < before) & (radii <= after), (radii > before) & (radii >= after)))
+    lows, highs = (np.stack([fine[best], radii[best]], axis=1) for best in ((radii < before) & (radii <= after), (radii > before) & (radii >= after)))
     every = _FINE // POINTS
-    return Machined(
-        fine[::every], radii[::every], float(ground), np.stack([fine[lows], radii[lows]], axis=1), np.stack([fine[highs], radii[highs]], axis=1)
-    )
+    return Machined(fine[::every], radii[::every], float(ground), lows, highs)
 
 
 def contour_text(machined: Machined, about: str) -> str:
@@ -146,8 +144,7 @@ def draw(path: Path, section: RingSection, pressing: Pressing, machined: Machine
     ring = f"ring of mean radius {1e3 * section.mean_radius:g} mm and thickness {1e3 * section.thickness:g} mm"
     made = f"D value {number(1e6 * machined.d_value)} µm, roundness of the low points {number(round(1e6 * machined.roundness, 3))} µm"
     turn = f", one of them turned by {math.degrees(pressing.arc_turn):g}°" if pressing.arc_turn else ""
-    figure.suptitle(f"{pressed}{turn}, {ring}\n{made}", fontsize=11)
-    figure.savefig(path, dpi=130)
+    save(figure, path, f"{pressed}{turn}, {ring}\n{made}", 11)
 
 
 def _edges(pressing):
@@ -164,13 +161,14 @@ def _draw_shape(axes, pressing, machined):
     for (start, end), pressure in zip(_edges(pressing), pressing.pressures):
         arc = np.linspace(start, end, 40)
         axes.plot(outside * np.cos(arc), outside * np.sin(arc), color="#6f93bd", lw=7, solid_capstyle="butt")
-        middle = 0.5 * (start + end)
         inward = {"arrowstyle": "-|>", "color": "#3c5f8a", "lw": 1.5, "shrinkA": 0, "shrinkB": 0}
         for at in np.linspace(start, end, 5)[1:-1]:
-            ends = [(radius * math.cos(at), radius * math.sin(at)) for radius in (outside - 0.03, outside - 0.19)]
-            axes.annotate("", xy=ends[1], xytext=ends[0], arrowprops=inward)
-        label = 1.53 * np.array([math.cos(middle), math.sin(middle)])
-        axes.text(*label, f"{1e-6 * pressure:.2f}\nMPa", ha="center", va="center", fontsize=9, color="#3c5f8a")
+            direction = np.array([math.cos(at), math.sin(at)])
+            axes.annotate("", xy=(outside - 0.19) * direction, xytext=(outside - 0.03) * direction, arrowprops=inward)
+        middle = 0.5 * (start + end)
+        axes.text(
+            1.53 * math.cos(middle), 1.53 * math.sin(middle), f"{1e-6 * pressure:.2f}\nMPa", ha="center", va="center", fontsize=9, color="#3c5f8a"
+        )
     axes.plot(np.cos(azimuths), np.sin(azimuths), "--", color=_ROUND, lw=1, label="ground, under load")
     axes.plot(drawn * np.cos(azimuths), drawn * np.sin(azimuths), color=_CONTOUR, lw=2, label=f"released, deviations ×{factor:.0f}")
     axes.set(aspect="equal", xlim=(-1.75, 1.75), ylim=(-1.75, 1.75))
@@ -186,18 +184,11 @@ def _draw_radius(axes, pressing, machined):
     axes.axhline(1e3 * machined.ground_radius, color=_ROUND, ls="--", lw=1)
     axes.plot(azimuths, radii, color=_CONTOUR, lw=2)
     span = max(float(np.ptp(radii)), 1e-6)
-    for points, side in ((machined.lows, -1), (machined.highs, 1)):
-        for angle, radius in points:
-            axes.plot(math.degrees(angle), 1e3 * radius, "o", color=_CONTOUR, ms=4)
-            axes.annotate(
-                f"{1e3 * radius:.4f}",
-                (math.degrees(angle), 1e3 * radius),
-                xytext=(0, 7 * side),
-                textcoords="offset points",
-                ha="left" if angle < 0.1 else "center",
-                va="bottom" if side > 0 else "top",
-                fontsize=9,
-            )
+    for points, side, place in ((machined.lows, -1, "top"), (machined.highs, 1, "bottom")):
+        for angle, radius in points * [math.degrees(1.0), 1e3]:
+            axes.plot(angle, radius, "o", color=_CONTOUR, ms=4)
+            look = {"ha": "left" if angle < 5.7 else "center", "va": place, "fontsize": 9}
+            axes.annotate(f"{radius:.4f}", (angle, radius), xytext=(0, 7 * side), textcoords="offset points", **look)
     axes.set(xlim=(0, 360), ylim=(radii.min() - 0.14 * span, radii.max() + 0.14 * span), xlabel="azimuth [°]", ylabel="raceway radius [mm]")
     axes.set_xticks(range(0, 361, 60))
     plain_numbers(axes.yaxis)

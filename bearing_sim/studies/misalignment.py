@@ -12,7 +12,7 @@ import numpy as np
 
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.statics import Statics, statics
-from bearing_sim.sweep.pictures import COLOURS, MARKERS, new_figure, plain_numbers
+from bearing_sim.sweep.pictures import COLOURS, legend_below, look_of, new_figure, plain_numbers, save
 from bearing_sim.sweep.settling import mean_life
 from bearing_sim.sweep.thermal import simulation_in_equilibrium
 
@@ -109,10 +109,8 @@ def draw(path: Path, title: str, found: list[Misaligned]) -> None:
         plain_numbers(each.yaxis)
         each.grid(alpha=0.3)
     _along(axes[-1], found)
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
-    figure.suptitle(title)
-    figure.savefig(path, dpi=130)
+    legend_below(figure, axes[0])
+    save(figure, path, title)
 
 
 def _edge_pressure(one):
@@ -122,23 +120,23 @@ def _edge_pressure(one):
 
 
 def _over_misalignment(axes, found, moving, still):
-    for crown, colour, marker in zip(dict.fromkeys(one.crown for one in found), COLOURS, MARKERS):
+    for k, crown in enumerate(dict.fromkeys(one.crown for one in found)):
         mine = [one for one in found if one.crown == crown]
         amounts = [1e3 * one.misalignment for one in mine]
-        axes.plot(amounts, [moving(one) for one in mine], marker=marker, ms=5, color=colour, label=f"crown {crown}")
+        axes.plot(amounts, [moving(one) for one in mine], **look_of(k, ms=5, label=f"crown {crown}"))
         if still is not None:
-            axes.plot(amounts, [still(one) for one in mine], "--", color=colour, lw=1, label=f"crown {crown}, quasi-static, no slip")
+            axes.plot(amounts, [still(one) for one in mine], "--", color=COLOURS[k], lw=1, label=f"crown {crown}, quasi-static, no slip")
 
 
 def _along(axes, found):
     """Draw load per length along the most heavily loaded roller, at a medium misalignment."""
     amounts = sorted({one.misalignment for one in found})
     shown = amounts[len(amounts) // 3]
-    for one, colour, marker in zip([one for one in found if one.misalignment == shown], COLOURS, MARKERS):
+    for k, one in enumerate(one for one in found if one.misalignment == shown):
         still = one.still
         width = still.slice_middles[1] - still.slice_middles[0]
         heaviest = still.inner_slices[np.argmax(still.inner)]
-        axes.plot(1e3 * still.slice_middles, 1e-3 * heaviest / width, marker=marker, ms=3, color=colour)
+        axes.plot(1e3 * still.slice_middles, 1e-3 * heaviest / width, **look_of(k, ms=3))
     title = f"most loaded roller, {1e3 * shown:g} mrad, quasi-static"
     axes.set(xlabel="along the roller, x [mm]", ylabel="load per length, inner raceway [N/mm]", title=title, ylim=(0, None))
     axes.grid(alpha=0.3)

@@ -9,6 +9,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -34,7 +35,7 @@ from bearing_sim.studies import spectrum as spectra
 from bearing_sim.studies.page import NoResults, command, document, folded, pairs, paragraph, picture, rows_table, warnings
 from bearing_sim.studies.run_plot import DEFAULT_PANELS, course_of, draw_over_time
 from bearing_sim.studies.sheet import results, sheet
-from bearing_sim.sweep.pictures import COLOURS, NotDrawable, draw, new_figure
+from bearing_sim.sweep.pictures import COLOURS, NotDrawable, draw, new_figure, save
 from bearing_sim.sweep.point import OK, Column
 from bearing_sim.sweep.settling import mean_life
 from bearing_sim.sweep.table import Table, read_any_table, written_by_us
@@ -43,7 +44,16 @@ _RECORDINGS, _TABLES = (".mcap", ACTIVE), (".parquet", ".csv")
 _MOST_ROWS = 1000  # of a table on a page; the files have all
 _MOST_POINTS = 4000  # of a line in a picture
 _LAST = 0.2  # of a recording, over which its final results are averaged
+_POINTS = (
+    Column("share", "", "of the time"),
+    Column("shaft_speed_rpm", "rpm", "shaft speed"),
+    Column("radial_load", "N", "radial load"),
+    Column("oil_temperature_degC", "degC", "oil temperature"),
+)  # of a design
 _SECTORS = 72  # of the circle, for the load distribution
+
+
+_Tell = Callable[[Tally, Path], None]
 
 
 class _Part(NamedTuple):
@@ -54,7 +64,7 @@ class _Part(NamedTuple):
     sections: dict[str, str]
 
 
-def page_of(source: Path, tell: Callable[[Tally, Path], None] = lambda tally, path: None) -> str:
+def page_of(source: Path, tell: _Tell = lambda tally, path: None) -> str:
     """Return the HTML page of a result.
 
     Parameters
@@ -93,7 +103,7 @@ def _is_of_design(path: Path) -> bool:
     return any(path.stem.endswith(suffix) and path.with_name(path.name.replace(suffix, "")).is_file() for suffix in ("_borders", "_checks"))
 
 
-def _folder_page(folder: Path, tell: Callable[[Tally, Path], None]) -> str:
+def _folder_page(folder: Path, tell: _Tell) -> str:
     """Return the page of all results in a folder, one after the other; files without results are listed with the reason."""
     parts, skipped = [], []
     for path in _results_in(folder):
@@ -112,7 +122,7 @@ def _folder_page(folder: Path, tell: Callable[[Tally, Path], None]) -> str:
     return document(f"{len(parts)} results in {folder.name}", warnings(skipped), sections)
 
 
-def _part(path: Path, tell: Callable[[Tally, Path], None]) -> _Part:
+def _part(path: Path, tell: _Tell) -> _Part:
     """Return the part of a page on one result."""
     if path.is_dir() or path.suffix in _RECORDINGS:
         try:
@@ -133,11 +143,11 @@ def _part(path: Path, tell: Callable[[Tally, Path], None]) -> _Part:
         raise NoResults(f"{path}: {error}") from None
 
 
-def _drawn(into) -> bytes:
-    """Return the PNG file that a function draws into a stream."""
+def _picture(title: str, draw: Callable, *arguments, caption: str = "", **more) -> str:
+    """Return an embedded picture that a function draws into a stream."""
     stream = io.BytesIO()
-    into(stream)
-    return stream.getvalue()
+    draw(stream, *arguments, **more)
+    return picture(stream.getvalue(), title, caption)
 
 
 # Sweeps and other tables
@@ -193,11 +203,11 @@ def _text(value) -> str:
 
 def _table_pictures(table: Table) -> str:
     if table.about.get("kind") == "spectrum":
-        return picture(_drawn(lambda stream: spectra.draw(stream, table)), "Shares of time and damage by point")
+        return _picture("Shares of time and damage by point", spectra.draw, table)
     if table.about.get("kind") != "sweep":
         return ""
     try:
-        return picture(_drawn(lambda stream: draw(stream, table)), "Results over what was varied")
+        return _picture("Results over what was varied", draw, table)
     except NotDrawable as error:
         return paragraph(f"No picture: {error}.")
 
@@ -213,13 +223,12 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
         told.append("nothing was verified at a level of higher fidelity")
     if (about["level"], verify_level) in studied.ALIKE:
         told.append(studied.ALIKE[about["level"], verify_level])
-    for verdict in (studied.WITHDRAWN, studied.NARROWED):
-        for kind in studied.KINDS:
-            count = sum(band.verdict == verdict and band.found.kind == kind for band in designed.bands)
-            if count:
-                told.append(
-                    f"{count} of {sum(band.found.kind == kind for band in designed.bands)} intervals ({kind}) {verdict} at level {verify_level}"
-                )
+    counts = Counter(key for band in designed.bands for key in ((band.verdict, band.found.kind), band.found.kind))
+    told += [
+        f"{counts[verdict, kind]} of {counts[kind]} intervals ({kind}) {verdict} at level {verify_level}"
+        for verdict, kind in product((studied.WITHDRAWN, studied.NARROWED), studied.KINDS)
+        if counts[verdict, kind]
+    ]
     for kind in studied.KINDS:
         if ends := designed.open_ends(kind):
             told.append(f"{studied.condition_name(kind, wanted)} {ends}")
@@ -231,9 +240,7 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
     if widest is not None:
         where = "in the worst case" if widest.kind == studied.WORST else "at nominal conditions, none in the worst case"
         answer = f"Widest interval ({where}): D = {widest.d_value:.4f} mm, R_low = {widest.low_from:.5f} to {widest.low_to:.5f} mm."
-    points = [Column("share", "", "of the time"), Column("shaft_speed_rpm", "rpm", "shaft speed"), Column("radial_load", "N", "radial load")]
-    if any("oil_temperature_degC" in point for point in wanted["points"]):
-        points.append(Column("oil_temperature_degC", "degC", "oil temperature"))
+    points = [column for column in _POINTS if any(column.name in point for point in wanted["points"])]
     rows = [{column.name: point.get(column.name) for column in points} for point in wanted["points"]]
     summary = {
         "limits": f"slip below {wanted['slip_below']:g} %, life above {wanted['life_above']:g} h",
@@ -246,14 +253,13 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
         **_varied(about),
     }
     check_columns = [_at_level(column, about) for column in studied.CHECK_COLUMNS]
-    drawn = picture(_drawn(lambda stream: studied.draw(stream, designed)), "Raceways that meet the limits")
     return _Part(
         f"Design of {about['name']} at level {about['level']}",
         _opening(about, told) + f"<p><b>{escape(answer)}</b></p>",
         {
             "Summary": pairs(summary),
             "Operating points": rows_table(points, rows) if rows else "",
-            "Picture": drawn,
+            "Picture": _picture("Raceways that meet the limits", studied.draw, designed),
             "Intervals of radii": rows_table(studied.BORDER_COLUMNS, designed.border_table.rows),
             "Both levels": rows_table(check_columns, designed.check_table.rows) if designed.checks else "",
             "Map": rows_table(studied.COLUMNS, designed.grid.rows, f"all {len(designed.grid.rows)} raceways"),
@@ -264,11 +270,9 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
 
 def _at_level(column: Column, about: Mapping) -> Column:
     """Return a column of checks whose unit names the level at which it was computed."""
-    if column.name in ("slip", "life"):
-        return column._replace(unit=f"{column.unit} at {about['level']}")
-    if column.name in ("verified_slip", "verified_life"):
-        return column._replace(unit=f"{column.unit} at {about['verify_level']}")
-    return column
+    quantity = column.name.removeprefix("verified_")
+    level = about["level" if quantity == column.name else "verify_level"]
+    return column._replace(unit=f"{column.unit} at {level}") if quantity in ("slip", "life") else column
 
 
 # Recordings
@@ -303,14 +307,14 @@ def _recording_part(recording: Recording) -> _Part:
     used = float(blocks[-1]["damage"][-1] - blocks[0]["damage"][0])
     use = use_of(slips, speeds, np.hypot(load_y, load_z), weights, used, scene.thresholds)
     at_end = _while_turning(settled, scene) if _turns(block[-1:], scene).all() else settled[:0]
-    none, at_rest = f"none: {stands_text(scene.thresholds.slip_from_speed)}", f"none: {stands_text(scene.thresholds.slip_from_speed)} there"
+    none, over = f"none: {stands_text(scene.thresholds.slip_from_speed)}", f"over the last {100 * _LAST:g} %"
     summary = {
         "recording": ", ".join(file.name for file in recording.files),
         "simulated": f"{number(use.seconds, 6)} s of {number(duration, 6)} s, {recording.tally.counts}",
         "level": scene.level,
         "cage slip while turning": none if math.isnan(slip["mean"]) else f"mean {100 * slip['mean']:.2f} %, largest {100 * slip['maximum']:.2f} %",
-        "cage slip at the end": f"{100 * np.nanmean(at_end['cage_slip']):.2f} %" if np.isfinite(at_end["cage_slip"]).any() else at_rest,
-        "characteristic frequencies at the end": frequencies_text(mean_frequencies(at_end)) if len(at_end) else at_rest,
+        "cage slip at the end": f"{100 * np.nanmean(at_end['cage_slip']):.2f} %" if np.isfinite(at_end["cage_slip"]).any() else f"{none} there",
+        "characteristic frequencies at the end": frequencies_text(mean_frequencies(at_end)) if len(at_end) else f"{none} there",
         "skid": use.skid_text(scene.thresholds),
         "life used": f"{100 * used:.4g} %",
         f"life under these conditions ({studied.life_name(scene)})": hours(use.life_hours) if used > 0.0 else "not used",
@@ -321,13 +325,9 @@ def _recording_part(recording: Recording) -> _Part:
         _opening(about, told),
         {
             "Summary": pairs(summary),
-            f"Answer sheet, mean over the last {100 * _LAST:g} %": _sheet(scene, at_end),
-            "Pictures": picture(_drawn(lambda stream: draw_over_time(stream, [course], form="png")), "Conditions and results over time")
-            + picture(
-                _drawn(lambda stream: _draw_loads(stream, settled)),
-                "Load distribution",
-                f"Roller loads over the azimuth from +y, mean over the last {100 * _LAST:g} % of the recording.",
-            ),
+            f"Answer sheet, mean {over}": _sheet(scene, at_end),
+            "Pictures": _picture("Conditions and results over time", draw_over_time, [course], form="png")
+            + _picture("Load distribution", _draw_loads, settled, caption=f"Roller loads over the azimuth from +y, mean {over} of the recording."),
             "Observables": _observables(blocks, settled, scene),
             "Events": _events_table(events),
             **_origin(about),
@@ -381,15 +381,13 @@ def _events_table(events: Sequence[Event]) -> str:
         Column("kind", "", "identifier"),
         Column("text", "", "of the first one"),
     )
-    rows = [
-        dict(
-            zip(
-                (column.name for column in columns), (each.first.time, each.last, each.count, each.first.level.name, each.first.kind, each.first.text)
-            )
-        )
-        for each in _grouped(events)
-    ]
-    return rows_table(columns, rows, f"{len(events)} events") if rows else ""
+    rows = [(each.first.time, each.last, each.count, each.first.level.name, each.first.kind, each.first.text) for each in _grouped(events)]
+    return _folded_table(columns, rows, f"{len(events)} events") if rows else ""
+
+
+def _folded_table(columns: Sequence[Column], rows: Iterable[Sequence], summary: str) -> str:
+    """Return a table that opens at a click, from rows of values in the order of the columns."""
+    return rows_table(columns, [dict(zip([column.name for column in columns], row)) for row in rows], summary)
 
 
 def _weights(times: np.ndarray, scene: Scene) -> np.ndarray:
@@ -440,24 +438,23 @@ def _observables(blocks: Sequence[np.ndarray], settled: np.ndarray, scene: Scene
             end = last[one.name][~np.isnan(last[one.name])]
             mean = mean_life(end) if one.unit == "h" else end.mean()
             numbers = (float(mean) if len(end) else math.nan, float(finite.min()), float(finite.max()))
-            rows.append(dict(zip((column.name for column in columns), (one.name, one.unit, *numbers, one.meaning))))
-    return rows_table(columns, rows, f"{len(rows)} observables")
+            rows.append((one.name, one.unit, *numbers, one.meaning))
+    return _folded_table(columns, rows, f"{len(rows)} observables")
 
 
 def _draw_loads(stream, settled: np.ndarray) -> None:
     """Draw the mean load of a roller over its azimuth."""
     sector = np.floor(np.mod(settled["roller_angle"], 2 * math.pi) / (2 * math.pi) * _SECTORS).astype(int).ravel() % _SECTORS
-    counts = np.bincount(sector, minlength=_SECTORS)
     azimuths = (np.arange(_SECTORS) + 0.5) * 360.0 / _SECTORS
     figure = new_figure(8, 3.6)
     axes = figure.subplots()
     for ring, colour in zip(("inner", "outer"), COLOURS):
-        sums = np.bincount(sector, weights=settled[f"{ring}_load"].ravel(), minlength=_SECTORS)
+        sums, counts = (np.bincount(sector, weights, _SECTORS) for weights in (settled[f"{ring}_load"].ravel(), None))
         axes.plot(azimuths, np.where(counts > 0, sums / np.maximum(counts, 1), np.nan), color=colour, marker=".", ms=3, label=f"{ring} raceway")
     axes.set(xlabel="azimuth [deg]", ylabel="roller load [N]", xlim=(0, 360), xticks=range(0, 361, 45))
     axes.grid(alpha=0.3)
     axes.legend(frameon=False)
-    figure.savefig(stream, dpi=110, format="png")
+    save(figure, stream, dpi=110, format="png")
 
 
 # What all pages have
@@ -522,5 +519,5 @@ def _scene_table(scene: Scene) -> str:
     for path, declared in quantities(Scene).items():
         value = value_at(scene, path)
         if isinstance(value, float):
-            rows.append({"quantity": path, "value": declared.show(value), "meaning": declared.meaning + estimated.get(path, "")})
-    return pairs({name: value for name, value in named.items() if value}) + rows_table(columns, rows, f"{len(rows)} quantities of the scene")
+            rows.append((path, declared.show(value), declared.meaning + estimated.get(path, "")))
+    return pairs({name: value for name, value in named.items() if value}) + _folded_table(columns, rows, f"{len(rows)} quantities of the scene")

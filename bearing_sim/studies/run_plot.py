@@ -24,7 +24,7 @@ from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, larger_unit, num
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import ranges_of, without_dimensions
 from bearing_sim.simulation import Inputs
-from bearing_sim.sweep.pictures import COLOURS, MARKERS, NotDrawable, new_figure, plain_numbers, set_limits
+from bearing_sim.sweep.pictures import COLOURS, NotDrawable, look_of, new_figure, plain_numbers, save, set_limits, with_gaps
 
 _LIFE = "modified_rating_life"
 _MOST_POINTS = 4000  # of a line; each stretch of a longer one keeps its least and its largest value
@@ -38,7 +38,6 @@ _CELLS = (240, 160)  # of a picture of slip over load, of each of which one samp
 _MOST_SLIP = 200.0  # [%] beyond which these cells do not tell slips apart
 _INSTANTS = 200  # of a run, at which the range of the slip may be computed
 _CONDITIONS = tuple(f"{name}_measured" if name in RING_TEMPERATURES else name for name in Inputs._fields)
-_DPI = 130
 _TIMES = ((180.0, 1.0, "s"), (180.0 * 60.0, 60.0, "min"), (72.0 * 3600.0, 3600.0, "h"), (math.inf, 86400.0, "d"))
 
 
@@ -68,12 +67,20 @@ class Panel(NamedTuple):
     has_start: bool = True
 
 
-def _observable(name: str, scale: float = 1.0, offset: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
-    return lambda block: scale * block[name] + offset
+def _line(name: str, scale: float = 1.0, offset: float = 0.0, shown: str = "") -> Line:
+    """Return the line of an observable in another unit."""
+    return Line(shown, lambda block: scale * block[name] + offset)
 
 
-def _temperature(shown: str, name: str) -> Line:
-    return Line(shown, _observable(name, 1.0, -ZERO_CELSIUS))
+_TEMPERATURES = {
+    "oil": "oil_temperature",
+    "inner ring": "inner_ring_temperature",
+    "outer ring": "outer_ring_temperature",
+    "rollers": "roller_temperature",
+    "housing": "housing_temperature",
+    "inner ring, measured": "inner_ring_temperature_measured",
+    "outer ring, measured": "outer_ring_temperature_measured",
+}
 
 
 def _load(block: np.ndarray) -> np.ndarray:
@@ -85,25 +92,13 @@ def _losses(block: np.ndarray) -> np.ndarray:
 
 
 PANELS = {
-    "speed": Panel("shaft speed", "rpm", (Line("", _observable("shaft_speed", RPM)),)),
+    "speed": Panel("shaft speed", "rpm", (_line("shaft_speed", RPM),)),
     "load": Panel("radial load", "N", (Line("", _load),)),
-    "slip": Panel("cage slip", "%", (Line("", _observable("cage_slip", 100.0)),)),
-    "life": Panel("rating life", "h", (Line("", _observable(_LIFE)),), is_logarithmic=True),
-    "temperature": Panel(
-        "temperature",
-        "°C",
-        (
-            _temperature("oil", "oil_temperature"),
-            _temperature("inner ring", "inner_ring_temperature"),
-            _temperature("outer ring", "outer_ring_temperature"),
-            _temperature("rollers", "roller_temperature"),
-            _temperature("housing", "housing_temperature"),
-            _temperature("inner ring, measured", "inner_ring_temperature_measured"),
-            _temperature("outer ring, measured", "outer_ring_temperature_measured"),
-        ),
-    ),
-    "clearance": Panel("running clearance", "µm", (Line("", _observable("running_clearance", 1e6)),)),
-    "damage": Panel("life used", "%", (Line("", _observable("damage", 100.0)),)),
+    "slip": Panel("cage slip", "%", (_line("cage_slip", 100.0),)),
+    "life": Panel("rating life", "h", (_line(_LIFE),), is_logarithmic=True),
+    "temperature": Panel("temperature", "°C", tuple(_line(name, 1.0, -ZERO_CELSIUS, shown) for shown, name in _TEMPERATURES.items())),
+    "clearance": Panel("running clearance", "µm", (_line("running_clearance", 1e6),)),
+    "damage": Panel("life used", "%", (_line("damage", 100.0),)),
     "roller_load": Panel(
         "largest roller load",
         "N",
@@ -296,20 +291,15 @@ def thinned(times: np.ndarray, values: np.ndarray, window: int, breaks: Sequence
     -------
     Times and values of the line; values that are not finite become NaN.
     """
-    values = np.where(np.isfinite(values), values, np.nan)
+    values = with_gaps(values)
+    index = np.arange(len(values))
     if window > 2 and len(values):
-        starts = np.arange(0, len(values), window)
-        ends = np.append(starts[1:], len(values))
         kept = []
-        for begin, end in zip(starts.tolist(), ends.tolist()):
-            piece = values[begin:end]
-            if np.isnan(piece).all():
-                kept.append(begin)
-                continue
-            kept += sorted({begin + int(np.nanargmin(piece)), begin + int(np.nanargmax(piece))})
+        for begin in range(0, len(values), window):
+            piece = values[begin : begin + window]
+            ends = {0} if np.isnan(piece).all() else {int(np.nanargmin(piece)), int(np.nanargmax(piece))}
+            kept += sorted(begin + end for end in ends)
         index = np.array(kept)
-    else:
-        index = np.arange(len(values))
     breaks = np.asarray(breaks, int)
     places, between = np.searchsorted(index, breaks), times[np.maximum(breaks - 1, 0)]
     return np.insert(times[index], places, between), np.insert(values[index], places, np.nan)
@@ -319,11 +309,10 @@ def _one_per_cell(rows: np.ndarray) -> np.ndarray:
     """Return those of many samples that differ in a picture: the first in each cell of load and slip, and the extremes of each column."""
     if len(rows) <= 200:
         return rows
-    load, slip = rows[:, 1], np.clip(np.where(np.isfinite(rows[:, 2]), rows[:, 2], 0.0), -_MOST_SLIP, _MOST_SLIP)
+    load, slip = rows[:, 1], np.clip(np.nan_to_num(with_gaps(rows[:, 2])), -_MOST_SLIP, _MOST_SLIP)
     cells = [np.floor(count * (each - each.min()) / (np.ptp(each) or 1.0)) for each, count in zip((load, slip), _CELLS)]
     _, first = np.unique(np.stack(cells), axis=1, return_index=True)
-    finite = np.where(np.isfinite(rows), rows, np.nan)
-    extremes = [k for column in finite.T if not np.isnan(column).all() for k in (np.nanargmin(column), np.nanargmax(column))]
+    extremes = [k for column in with_gaps(rows).T if not np.isnan(column).all() for k in (np.nanargmin(column), np.nanargmax(column))]
     return rows[np.unique([*first, *extremes])]
 
 
@@ -347,19 +336,13 @@ def draw_over_time(path: Path | BinaryIO, courses: Sequence[Course], title: str 
     starts = [course.first for course in courses] if len(courses) > 1 else [0.0]
     for each, name, panel in zip(axes, courses[0].panels, panels):
         _draw_panel(each, name, panel, courses, starts, divisor)
-    axes[-1].set_xlabel(_time_label(courses, span, unit))
-    if span == 0.0:
-        middle = (courses[0].first - starts[0]) / divisor
-        axes[-1].set_xlim(middle - 1.0, middle + 1.0)
-    else:
-        begin, end = (min(course.first - start for course, start in zip(courses, starts)), max(c.last - s for c, s in zip(courses, starts)))
-        axes[-1].set_xlim(begin / divisor, end / divisor)
+    begin, end = (min(course.first - start for course, start in zip(courses, starts)), max(c.last - s for c, s in zip(courses, starts)))
+    ends = (begin / divisor, end / divisor) if span > 0.0 else (begin / divisor - 1.0, begin / divisor + 1.0)
+    axes[-1].set(xlabel=_time_label(courses, span, unit), xlim=ends)
     plain_numbers(axes[-1].xaxis)
     _name_courses(figure, courses)
-    _entitle(figure, title)
     figure.align_ylabels(axes)
-    figure.savefig(path, dpi=_DPI, format=form)
-    return figure
+    return _saved(figure, path, title, form)
 
 
 def _time_label(courses: Sequence[Course], span: float, unit: str) -> str:
@@ -374,23 +357,21 @@ def _time_label(courses: Sequence[Course], span: float, unit: str) -> str:
 def _draw_panel(axes, name: str, panel: Panel, courses: Sequence[Course], starts: Sequence[float], divisor: float) -> None:
     shown = [k for k in range(len(panel.lines)) if any(np.isfinite(course.lines[name, k][1]).any() for course in courses)]
     unit, factor = larger_unit(panel.unit, np.concatenate([course.lines[name, k][1] for course in courses for k in shown] or [np.zeros(0)]))
+    several = len(courses) > 1  # then the colour tells the runs apart, and the line what it is of
     every = []
     for place, course in enumerate(courses):
         for k in shown:
             times, values = course.lines[name, k]
-            several = len(courses) > 1
-            look = {"color": COLOURS[(place if several else k) % len(COLOURS)], "ls": _STYLES[k % len(_STYLES)] if several else "-"}
-            if 0 < np.isfinite(values).sum() <= _FEW_POINTS:
-                look |= {"marker": "o", "ms": 4}
-            axes.plot((times - starts[place]) / divisor, values / factor, lw=1.1, **look)
+            marks = {"marker": "o", "ms": 4} if 0 < np.isfinite(values).sum() <= _FEW_POINTS else {}
+            style = {"color": COLOURS[(place if several else k) % len(COLOURS)], "ls": _STYLES[k % len(_STYLES)] if several else "-"}
+            axes.plot((times - starts[place]) / divisor, values / factor, lw=1.1, **style, **marks)
             every.append(values[np.isfinite(values)] / factor)
-        if name in course.recorded:
-            every += _draw_recorded(axes, course.recorded[name], starts[place], divisor, COLOURS[place % len(COLOURS)])
+        bands = [course.recorded[name]] if name in course.recorded else []
         if name == "slip" and course.band is not None:
-            band = course.band
-            begins, low, high = _joined(band)
-            axes.fill_between((begins - starts[place]) / divisor, 100 * low, 100 * high, color=COLOURS[place % len(COLOURS)], alpha=0.22, lw=0.0)
-            every += [100 * band.low[np.isfinite(band.low)], 100 * band.high[np.isfinite(band.high)]]
+            times, low, high = _joined(course.band)
+            bands.append(RecordedBand(times, low, 100 * low, 100 * high, is_calibrated=False))
+        for band in bands:
+            every += _draw_band(axes, band, starts[place], divisor, COLOURS[place % len(COLOURS)])
     only = panel.lines[shown[0]].name if len(shown) == 1 else ""
     label = life_label([course.scene for course in courses]) if name == "life" else panel.label
     axes.set_ylabel(f"{only} {label} [{unit}]".strip(), fontsize=9)
@@ -401,7 +382,6 @@ def _draw_panel(axes, name: str, panel: Panel, courses: Sequence[Course], starts
     if len(shown) > 1:
         from matplotlib.lines import Line2D
 
-        several = len(courses) > 1  # then the colour tells the runs apart, and the line what it is of
         looks = [{"color": "0.25", "ls": _STYLES[k % len(_STYLES)]} if several else {"color": COLOURS[k % len(COLOURS)]} for k in shown]
         handles = [Line2D([], [], lw=1.1, label=panel.lines[k].name, **look) for k, look in zip(shown, looks)]
         axes.legend(handles=handles, frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=3.2)
@@ -433,8 +413,8 @@ def _joined(band: SlipBand) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return tuple(np.insert(each, gaps, np.nan) for each in band)
 
 
-def _draw_recorded(axes, band: RecordedBand, start: float, divisor: float, colour: str) -> list[np.ndarray]:
-    """Shade a band that a run published, with its value where that is not the line of the panel; return the numbers that must be seen."""
+def _draw_band(axes, band: RecordedBand, start: float, divisor: float, colour: str) -> list[np.ndarray]:
+    """Shade a band, with its value where that is not the line of the panel; return the numbers that must be seen."""
     times = (band.times - start) / divisor
     axes.fill_between(times, band.low, band.high, color=colour, alpha=0.22, lw=0.0)
     if band.is_calibrated or band.own_value:
@@ -471,9 +451,9 @@ def _add_legend(figure, handles: Sequence) -> None:
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, fontsize=8)
 
 
-def _entitle(figure, title: str) -> None:
-    if title:
-        figure.suptitle(_shortened(title, _LONGEST_TITLE), fontsize=10)
+def _saved(figure, path: Path | BinaryIO, title: str, form: str | None) -> "object":
+    save(figure, path, _shortened(title, _LONGEST_TITLE), 10, format=form)
+    return figure
 
 
 def _shortened(text: str, most: int) -> str:
@@ -494,38 +474,46 @@ def draw_over_load(path: Path | BinaryIO, courses: Sequence[Course], title: str 
     ----------
     path, courses, title, form : see `draw_over_time`.
     """
-    figure = new_figure(10, 4.6)
-    slip, life = figure.subplots(1, 2)
-    unit, newtons = larger_unit("N", np.concatenate([course.loaded[:, 1] for course in courses]))
-    for k, course in enumerate(courses):
-        rows = course.loaded
-        look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ms": 3, "ls": "", "alpha": 0.6, "mew": 0}
-        slip.plot(rows[:, 1] / newtons, np.where(np.isfinite(rows[:, 2]), rows[:, 2], np.nan), **look)
-        life.plot(rows[:, 1] / newtons, np.where(np.isfinite(rows[:, 3]), rows[:, 3], np.nan), **look)
-    rows = np.concatenate([course.loaded for course in courses])
-    handles = _draw_minimum_loads((slip, life), [(course.scene, course.loaded[_turning(course), 0], course.name) for course in courses], newtons)
-    labels = f"radial load [{unit}]", f"{life_label([course.scene for course in courses])} [h]"
-    _finish_over_load(figure, (slip, life), labels, rows[:, 1] / newtons, rows[:, 2], rows[:, 3], handles, courses)
-    _entitle(figure, title)
-    figure.savefig(path, dpi=_DPI, format=form)
-    return figure
+    series = [course.loaded[:, 1:].T for course in courses]
+    runs = [(course.scene, course.loaded[_turning(course), 0], course.name) for course in courses]
+    style = {"ms": 3, "ls": "", "alpha": 0.6, "mew": 0}
+    figure = _draw_slip_and_life(series, style, runs, _course_names(courses, True), life_label([course.scene for course in courses]) + " [h]", 4.6)
+    return _saved(figure, path, title, form)
 
 
-def _finish_over_load(figure, axes, labels, loads, slips, lives, handles, courses=()) -> None:
-    slip, life = axes
-    for each, values, label, is_logarithmic in ((slip, slips, "cage slip [%]", False), (life, lives, labels[1], True)):
-        each.set(xlabel=labels[0], ylabel=label)
+def _draw_slip_and_life(series, style: Mapping, runs, names: Sequence[str], life_heading: str, height: float):
+    """Return a figure of slip and life over the load.
+
+    Parameters
+    ----------
+    series : loads [N], slips [%] and lives [h] of each line.
+    style : of all lines, besides colour and mark.
+    runs : whose minimum loads are drawn, see `_draw_minimum_loads`.
+    names : of the lines, which stand in the legend where there are several.
+    life_heading : label of the axis of the life.
+    height : of the figure [inch].
+    """
+    from matplotlib.lines import Line2D
+
+    figure = new_figure(10, height)
+    axes = figure.subplots(1, 2)
+    unit, newtons = larger_unit("N", np.concatenate([loads for loads, *_ in series]))
+    for k, (loads, *results) in enumerate(series):
+        for each, values in zip(axes, results):
+            each.plot(loads / newtons, with_gaps(values), **look_of(k, **style))
+    handles = _draw_minimum_loads(axes, runs, newtons)
+    loads, *columns = map(np.concatenate, zip(*series))
+    for each, values, label, is_logarithmic in zip(axes, columns, ("cage slip [%]", life_heading), (False, True)):
+        each.set(xlabel=f"radial load [{unit}]", ylabel=label)
         each.grid(alpha=0.3)
         reached = [float(mark.get_xdata()[0]) for mark in each.lines if len(mark.get_xdata()) == 2 and mark.get_xdata()[0] == mark.get_xdata()[1]]
-        set_limits(each, np.append(loads[np.isfinite(loads)], reached), False, "x")
+        set_limits(each, np.append(loads[np.isfinite(loads)] / newtons, reached), False, "x")
         set_limits(each, values[np.isfinite(values)], is_logarithmic)
-    if len(courses) > 1:
-        from matplotlib.lines import Line2D
-
-        looks = [{"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ls": ""} for k in range(len(courses))]
-        handles = [*(Line2D([], [], label=name, **look) for name, look in zip(_course_names(courses, True), looks)), *handles]
+    if len(names) > 1:
+        handles = [*(Line2D([], [], label=name, **look_of(k, ls=style.get("ls", "-"))) for k, name in enumerate(names)), *handles]
     if handles:
         _add_legend(figure, handles)
+    return figure
 
 
 def _draw_minimum_loads(axes, runs: Sequence[tuple[Scene, np.ndarray, str]], newtons: float) -> list:
@@ -569,26 +557,12 @@ def draw_table_over_load(
     """
     if not points:
         raise NotDrawable("no point of the table has a load and a slip")
-    figure = new_figure(10, 4.8)
-    slip, life = figure.subplots(1, 2)
-    unit, newtons = larger_unit("N", [float(point["load"]) for point in points])
-    families = list(dict.fromkeys(point["family"] for point in points))
-    for k, family in enumerate(families):
-        own = sorted((point for point in points if point["family"] == family), key=lambda point: point["load"])
-        look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ms": 4, "lw": 1.2}
-        loads = [point["load"] / newtons for point in own]
-        for each, name in ((slip, "slip"), (life, "life")):
-            each.plot(loads, [point[name] if math.isfinite(point[name]) else math.nan for point in own], **look)
-    columns = {name: np.array([float(point[name]) for point in points]) for name in ("load", "slip", "life", "speed")}
-    speeds = sorted({float(speed) for speed in columns["speed"] if math.isfinite(speed)})
-    handles = _draw_minimum_loads((slip, life), [(scene, np.array(speeds), "")], newtons) if scene is not None and speeds else []
-    if len(families) > 1:
-        from matplotlib.lines import Line2D
-
-        looks = [{"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)]} for k in range(len(families))]
-        handles = [*(Line2D([], [], label=_shortened(family, 60), **look) for family, look in zip(families, looks)), *handles]
-    labels = f"radial load [{unit}]", life_heading
-    _finish_over_load(figure, (slip, life), labels, columns["load"] / newtons, columns["slip"], columns["life"], handles)
-    _entitle(figure, title)
-    figure.savefig(path, dpi=_DPI, format=form)
-    return figure
+    families: dict[str, list[Mapping]] = {}
+    for point in sorted(points, key=lambda point: point["load"]):
+        families.setdefault(point["family"], []).append(point)
+    names = list(dict.fromkeys(point["family"] for point in points))
+    series = [np.array([[float(point[name]) for point in families[family]] for name in ("load", "slip", "life")]) for family in names]
+    speeds = np.array(sorted({float(point["speed"]) for point in points if math.isfinite(point["speed"])}))
+    runs = [(scene, speeds, "")] if scene is not None and len(speeds) else []
+    figure = _draw_slip_and_life(series, {"ms": 4, "lw": 1.2}, runs, [_shortened(name, 60) for name in names], life_heading, 4.8)
+    return _saved(figure, path, title, form)

@@ -6,25 +6,35 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from bearing_sim.messages.topics import ARRAYS, LIFE_SYMBOLS
 from bearing_sim.model.characteristic_frequencies import frequencies_text, mean_frequencies
-from bearing_sim.model.films import Films
+from bearing_sim.model.films import Films, films_of
 from bearing_sim.model.losses import loss_report, loss_text, power_loss
 from bearing_sim.model.oil import kinematic_viscosities, oil_at, specific_heat
 from bearing_sim.model.params import pack
 from bearing_sim.model.plausibility import minimum_load
+from bearing_sim.model.running_clearance import clearance_at_speed
 from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.temperatures import film_temperatures
 from bearing_sim.model.thermal_network import oil_flow
+from bearing_sim.model.turning import turns
+from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.physics.contact import EXPONENT
 from bearing_sim.physics.lamina_life import penetration_of
-from bearing_sim.physics.rating_life import viscosity_ratio
-from bearing_sim.scene.axial_load import equivalent_load_law
-from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, hours, number, power, quantity_text
+from bearing_sim.physics.rating_life import reliability_factor, viscosity_ratio
+from bearing_sim.scene.axial_load import axial_limits, equivalent_load_law, other_axial_limits, results_without_rule
+from bearing_sim.scene.display import LONGEST_LIFE, RPM, ZERO_CELSIUS, force, hours, number, power, quantity_text, with_sign
 from bearing_sim.scene.grease_life import relubrication_interval
+from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
-from bearing_sim.studies.clearance import clearance_report, clearance_text
 from bearing_sim.studies.friction import makers_moment
-from bearing_sim.studies.rating import life_report, loads_text
+from bearing_sim.sweep.point import LIVES
+from bearing_sim.sweep.settling import mean_life
+
+CLEARANCES = ARRAYS["running_clearance"].fields
+"""The running clearance, then its parts (see `bearing_sim.model.sample`)."""
+
+FACTORS = ARRAYS["life_factors"].fields
 
 Row = tuple[str, str]
 
@@ -108,11 +118,10 @@ def _pressures(scene: Scene, window: np.ndarray) -> dict[str, float]:
     """Return the largest Hertz pressure and that at the ends of rollers [MPa] on both raceways: of tilted rollers where the level has them."""
     found, params = {}, None if scene.bodies_tilt else pack(scene)
     for ring in ("inner", "outer"):
-        if params is None:
-            whole, edge = float(window[f"{ring}_pressure"].max()), float(window[f"{ring}_edge_pressure"].max())
-        else:
-            whole, edge = aligned_pressures(float(window[f"{ring}_load_maximum"].max()), ring, params)
-        found |= {f"{ring}_pressure_maximum_mpa": 1e-6 * whole, f"{ring}_edge_pressure_maximum_mpa": 1e-6 * edge}
+        pressures = [float(window[f"{ring}_{kind}"].max()) for kind in ("pressure", "edge_pressure")]
+        if params is not None:
+            pressures = aligned_pressures(float(window[f"{ring}_load_maximum"].max()), ring, params)
+        found |= {f"{ring}_{kind}_maximum_mpa": 1e-6 * value for kind, value in zip(("pressure", "edge_pressure"), pressures)}
     return found
 
 
@@ -156,6 +165,128 @@ def _limits(scene: Scene, window: np.ndarray, load: float, viscosity: float) -> 
         ring = float(sample["oil_temperature"] if math.isnan(known) else known)
         found["relubrication_interval_hours"] = relubrication_interval(scene, speed, ring).hours
     return found
+
+
+def loads_text(scene: Scene) -> str:
+    """Return by which loads the life of a scene is rated, in words: those of rollers contain the preload of its raceways, if it has any."""
+    bearing, loads = scene.bearing, scene.life.loads
+    if scene.life.method == "iso281" and scene.operating.axial_load and bearing.ratings.axial_load != "none":
+        return "the radial and the axial load on the bearing"
+    if scene.life.method == "iso281" or clearance_at_speed(bearing, scene.mounting, scene.operating.shaft_speed) >= 0.0:
+        return loads
+    outer = bearing.outer_raceway
+    lobed = outer.d_value > 0.0 or outer.contour is not None or bool(outer.low_points)
+    return f"{loads} with the {'preload of the lobes' if lobed else 'preload'}"
+
+
+def life_report(scene: Scene, samples: np.ndarray) -> dict:
+    """Return lives, load ratings and life factors, means over samples: of the lives' rates, because damage adds up, of everything else itself.
+
+    Parameters
+    ----------
+    scene : that was run.
+    samples : of a settled bearing, shape (n,), see `bearing_sim.model.sample`.
+    """
+    lives, films = {name: mean_life(samples[name]) for name in LIVES}, ThinnestFilm(scene)
+    film = np.where(turns(samples["shaft_speed"], 0.0), films.least(samples), np.nan)  # none at rest
+    speed, load = float(np.abs(samples["shaft_speed"]).mean()), float(np.hypot(samples["load_y"], samples["load_z"]).mean())
+    report = report_of(scene, lives | {name: float(np.mean(samples[name])) for name in FACTORS}, float(np.mean(film)), speed, load)
+    return report | {"films": films_of(scene, samples[-1])._asdict() if math.isfinite(report["film_um"]) else None}
+
+
+def report_of(scene: Scene, values: Mapping[str, float], film: float, speed: float | None = None, load: float | None = None) -> dict:
+    """Return the report of given lives and factors.
+
+    An axial load beyond the range of the makers' rule (`bearing_sim.scene.axial_load`) leaves no equivalent load and no life by it: they are NaN.
+
+    Parameters
+    ----------
+    scene : whose ratings and choice of life stand in the report.
+    values : by the names of `LIVES` [h] and `FACTORS` [SI].
+    film : least film thickness [m], NaN without a film.
+    speed, load : of the shaft [rad/s], and radial load [N]; None: those of the scene.
+    """
+    rated, roughness, operating = rate(scene.bearing), scene.bearing.roughness, scene.operating
+    speed, load = abs(operating.shaft_speed) if speed is None else speed, operating.radial_load if load is None else load
+    axial = _axial_report(scene, speed, load, values["viscosity_ratio"])
+    values = {**values, **dict.fromkeys(results_without_rule(scene, load), math.nan)}
+    return {
+        "life_method": scene.life.method,
+        "life_hours": _planned(values["rating_life"]),
+        "modified_life_hours": _planned(values["modified_rating_life"]),
+        **{f"{name}_hours": _planned(values[name]) for name in LIFE_SYMBOLS},
+        **{name: values[name] for name in FACTORS},
+        "a_iso": values["modified_rating_life"] / values["rating_life"] / reliability_factor(scene.life.reliability),
+        "dynamic_rating": rated.dynamic,
+        "static_rating": rated.static,
+        "fatigue_limit": rated.fatigue_limit,
+        **axial,
+        "computed_ratings": {name: getattr(rated.computed, name) for name in ("dynamic", "static", "fatigue_limit")},
+        "laminae": scene.life.laminae,
+        "profile": scene.bearing.roller.profile.law,
+        "profile_given": scene.bearing.roller.crown is not None,
+        "film_um": 1e6 * film,
+        "film_ratio": film / roughness.composite if roughness is not None else None,
+    }
+
+
+def _planned(life: float) -> float:
+    """Return a life [h]; infinite above `LONGEST_LIFE`: hardly anything but the rollers' own weight loads the bearing then."""
+    return math.inf if life > LONGEST_LIFE else life
+
+
+def _axial_report(scene: Scene, speed: float, load: float, kappa: float) -> dict:
+    """Return what the makers' rules say about the axial load, for JSON: forces in N, None where a rule gives none; empty without an axial load."""
+    axial = abs(scene.operating.axial_load)
+    if not axial:
+        return {}
+
+    def told(limits):
+        return {each.kind: {"force": each.force, "reason": each.reason or None} for each in limits}
+
+    limits = axial_limits(scene, speed, load, kappa)
+    return {
+        "axial_load_rule": equivalent_load_law(scene.bearing).rule,
+        "axial_load_within_rule": not results_without_rule(scene, load),
+        "axial_load_permitted": not any(each.force < axial for each in limits[:2]),
+        "axial_load_limits": told(limits),
+        "other_axial_load_limits": told(other_axial_limits(scene, speed, kappa)),
+    }
+
+
+def clearance_report(scene: Scene, samples: np.ndarray) -> dict:
+    """Return the running clearance and its parts [um], means over samples of shape (n,), and what the dimensions are."""
+    return clearance_of(scene, {name: float(np.mean(samples[name])) for name in CLEARANCES})
+
+
+def clearance_of(scene: Scene, values: Mapping[str, float]) -> dict:
+    """Return the report of given clearances [m] by the names of `CLEARANCES`."""
+    return {"dimensions_at": scene.bearing.dimensions_at, **{f"{name}_um": 1e6 * values[name] for name in CLEARANCES}}
+
+
+def clearance_text(scene: Scene, report: Mapping) -> str:
+    """Return the running clearance with its parts in words, from `clearance_report`."""
+    shown = {name.removesuffix("_clearance"): report[f"{name}_um"] for name in CLEARANCES}
+    running, text = shown.pop("running"), ""
+    if not shown["contour"]:
+        del shown["contour"]
+    if scene.bearing.dimensions_at == "running":
+        del shown["fit"], shown["rotation"], shown["heat"]
+        text = "; the dimensions are those of the running bearing: fits, rotation and heat change nothing"
+    parts = ", ".join(f"{name} {_signed(value)}" for name, value in shown.items())
+    side = "preload" if running < 0.0 else "play"
+    return f"{_signed(running)} µm ({side}): {parts}{text or _unsaid(scene)}"
+
+
+def _signed(micrometres: float) -> str:
+    return with_sign(round(micrometres, 2))
+
+
+def _unsaid(scene: Scene) -> str:
+    """Return what a cold bearing's scene leaves open."""
+    missing = [name for name in ("shaft", "housing") if (seat := getattr(scene.mounting, name)).fit is None and seat.interference is None]
+    unsaid = f"; no fit of the {' and the '.join(missing)} is given" if missing else ""
+    return unsaid + ("; all temperatures are taken as the oil's" if scene.heat.law == "none" else "")
 
 
 # Rows

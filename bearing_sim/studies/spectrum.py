@@ -10,7 +10,7 @@ P_m at n_m has the L10 that the sum of the points gives.  Modified lives have no
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
@@ -24,10 +24,10 @@ from bearing_sim.scene.loader import scene_to_yaml
 from bearing_sim.scene.scene import Scene
 from bearing_sim.studies.design import life_name
 from bearing_sim.sweep.conditions import OperatingPoint, PointError, Spectrum, combined_life, scene_at_point, shares
-from bearing_sim.sweep.pictures import COLOURS, new_figure
+from bearing_sim.sweep.pictures import COLOURS, new_figure, save
 from bearing_sim.sweep.point import DURATION, LIVES, OK, OTHER_STATE, REFUSED, RESULTS, TEXTS, UNSETTLED, Column, empty_row, point_row
 from bearing_sim.sweep.table import Table
-from bearing_sim.sweep.tasks import Journal, run_tasks, task
+from bearing_sim.sweep.tasks import Journal, Progress, in_silence, run_tasks, task
 
 EXPONENT = 10.0 / 3.0
 """p of the life equation of roller bearings (ISO 281)."""
@@ -143,7 +143,7 @@ def evaluate(
     duration: float = DURATION,
     workers: int | None = None,
     dask: str | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Progress = in_silence,
 ) -> Evaluated:
     """Run a scene at each point of a load spectrum until it has settled, and add up the damage.
 
@@ -245,8 +245,7 @@ def draw(path: Path | BinaryIO, table: Table, most: int = 20) -> None:
         axes.set_axisbelow(True)
     panels[0].set_ylim(len(shown) - 0.4, -0.6)
     rest = f"; the {most} most harmful of {count} points" if count > most else ""
-    figure.suptitle(f"{table.about['scene']} at level {table.about['level']}: life by point{rest}", fontsize=10)
-    figure.savefig(path, dpi=130)
+    save(figure, path, f"{table.about['scene']} at level {table.about['level']}: life by point{rest}", 10)
 
 
 def by_damage(table: Table) -> list[dict]:

@@ -19,7 +19,7 @@ from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, 
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, OilFactors, oil_factors, rate_lives
 from bearing_sim.scene.display import hours, larger_unit
 from bearing_sim.scene.scene import Scene
-from bearing_sim.sweep.pictures import new_figure
+from bearing_sim.sweep.pictures import new_figure, save
 from bearing_sim.sweep.thermal import operating_state
 
 _PITCH_POSITIONS, _MOST_PITCH_POSITIONS = 20, 320  # cage angles over one roller pitch for the lives, at first and at most
@@ -48,12 +48,6 @@ class Statics(NamedTuple):
     sample: np.ndarray  # block of one sample with all this in it, for laws and reports; its cage does not slip
 
 
-def with_slices(scene: Scene, slices: int) -> Scene:
-    """Return a scene with another number of slices per roller."""
-    roller = dataclasses.replace(scene.bearing.roller, slices=slices)
-    return dataclasses.replace(scene, bearing=dataclasses.replace(scene.bearing, roller=roller))
-
-
 def statics(scene: Scene, slices: int) -> Statics:
     """Return the statics of a scene at its constant conditions and without cage slip, in thermal equilibrium where it has a thermal network.
 
@@ -69,8 +63,8 @@ def statics(scene: Scene, slices: int) -> Statics:
     IntegrationError
         There is no thermal equilibrium: it says why.
     """
-    scene = with_slices(scene, slices)
-    scene = dataclasses.replace(scene, life=dataclasses.replace(scene.life, laminae=slices))  # the slices are the laminae
+    bearing = dataclasses.replace(scene.bearing, roller=dataclasses.replace(scene.bearing.roller, slices=slices))
+    scene = dataclasses.replace(scene, bearing=bearing, life=dataclasses.replace(scene.life, laminae=slices))  # the slices are the laminae
     (params, lubrication, temperatures), operating = operating_state(scene), scene.operating
     count, raceways, speed = params.rollers.count, params.raceways, abs(operating.shaft_speed)
     cage_speed = 0.5 * operating.shaft_speed * (1.0 - raceways.diameter_ratio)
@@ -109,9 +103,9 @@ def statics(scene: Scene, slices: int) -> Statics:
         outer_slices=at.outer.copy(),
         inner_pressure=pressures[0],
         outer_pressure=pressures[1],
-        ring=(float(at.ring[0]), float(at.ring[1])),
-        tilt=leaning(float(at.ring[2]), float(at.ring[3])),
-        moment=leaning(float(at.reaction[2]), float(at.reaction[3])),
+        ring=tuple(at.ring[:2].tolist()),
+        tilt=leaning(*at.ring[2:].tolist()),
+        moment=leaning(*at.reaction[2:].tolist()),
         equivalent_loads=equivalent,
         lives=lives,
         clearance=clearance_at(operating.shaft_speed, lubrication.growth, params),
@@ -165,8 +159,7 @@ def draw(path: Path, title: str, found: Statics) -> None:
     for row, (name, slices) in enumerate((("inner", found.inner_slices), ("outer", found.outer_slices))):
         _draw_along(figure, figure.add_subplot(grid[row, 1]), name, slices, found)
     tilt = f"tilt {1e3 * found.tilt[0]:.3g} mrad, " if found.tilt[0] > 1e-9 else ""
-    figure.suptitle(f"{title}\n{tilt}L10 {hours(found.lives.l10)} by the load on the bearing, L10r {hours(found.lives.l10r)} by slices")
-    figure.savefig(path, dpi=130)
+    save(figure, path, f"{title}\n{tilt}L10 {hours(found.lives.l10)} by the load on the bearing, L10r {hours(found.lives.l10r)} by slices")
 
 
 def _draw_around(axes, found):

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.scene.display import heading, larger_unit
+from bearing_sim.scene.display import RPM, heading, larger_unit
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.sweep.pictures import COLOURS, MARKERS, new_figure, plain_numbers
+from bearing_sim.sweep.pictures import legend_below, look_of, new_figure, plain_numbers, save
 from bearing_sim.sweep.thermal import simulation_in_equilibrium
 
 STILL, HELD, CARRIED = "slip", "rigid support", "support"
@@ -54,10 +54,8 @@ def respond(
     """
     given = load_scene(name, [*overrides, f"level={level}"]).support
     carried = () if given.shaft_bends or given.outer_ring_moves else ("support.elastic=true",)
-    shaft, unbalance = (
-        f"shaft: {{mass: {given.shaft.mass!r} kg}}",
-        f"unbalance: {{amount: {given.unbalance.amount!r}, angle: {given.unbalance.angle!r}}}",
-    )
+    shaft = f"shaft: {{mass: {given.shaft.mass!r} kg}}"
+    unbalance = f"unbalance: {{amount: {given.unbalance.amount!r}, angle: {given.unbalance.angle!r}}}"
     models = {
         STILL: (f"support={{{shaft}}}", "level=slip"),
         HELD: (f"support={{{shaft}, {unbalance}}}", f"level={level}"),
@@ -66,7 +64,7 @@ def respond(
     found = []
     for speed in shaft_speeds:
         for model, own in models.items():
-            progress(f"{speed * 30 / np.pi:.0f} rpm, {model}")
+            progress(f"{speed * RPM:.0f} rpm, {model}")
             found.append(_run(load_scene(name, [*overrides, *own, f"operating.shaft_speed={speed!r} rad/s"]), model))
     return found
 
@@ -81,8 +79,7 @@ def _run(scene, model):
         scene.operating.shaft_speed,
         float(block["cage_slip"].mean()),
         float(block["inner_load"].max()),
-        float(max(np.ptp(block["ring_y"]), np.ptp(block["ring_z"]))),
-        float(max(np.ptp(block["outer_ring_y"]), np.ptp(block["outer_ring_z"]))),
+        *(float(max(np.ptp(block[f"{ring}_y"]), np.ptp(block[f"{ring}_z"]))) for ring in ("ring", "outer_ring")),
         float((1.0 / block["modified_rating_life"]).mean()),
         float(block["support_power"].mean()),
     )
@@ -107,14 +104,11 @@ def draw(path: Path, title: str, found: Sequence[Response]) -> None:
         ("cage slip [%]", lambda one: 100 * one.slip),
     )
     for each, (label, value) in zip(axes, panels):
-        for model, colour, marker in zip((STILL, HELD, CARRIED), COLOURS, MARKERS):
+        for k, model in enumerate((STILL, HELD, CARRIED)):
             mine = [one for one in found if one.model == model]
-            speeds = [one.shaft_speed * 30 / np.pi for one in mine]
-            each.plot(speeds, [value(one) for one in mine], marker=marker, ms=4, color=colour, label=model)
+            each.plot([RPM * one.shaft_speed for one in mine], [value(one) for one in mine], **look_of(k, ms=4, label=model))
         each.set(xlabel="shaft speed [rpm]", ylabel=label, ylim=(0, None))
         plain_numbers(each.xaxis, each.yaxis)
         each.grid(alpha=0.3)
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
-    figure.suptitle(title)
-    figure.savefig(path, dpi=130)
+    legend_below(figure, axes[0])
+    save(figure, path, title)

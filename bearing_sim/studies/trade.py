@@ -26,7 +26,7 @@ from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, complete_overr
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Integration, Scene, tolerance_overrides
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-from bearing_sim.studies.correction import obtain_corrected_table
+from bearing_sim.studies.correction_points import obtain_corrected_table
 from bearing_sim.studies.trade_course import BIN, Course, Window, bin_edges, built_in, cage_rate, turned
 from bearing_sim.sweep.pictures import new_figure, plain_numbers
 from bearing_sim.sweep.tasks import Journal, Task, program_hash, run_tasks, task
@@ -41,7 +41,7 @@ _REPEATS = 3
 _SHORT, _OFTEN = 0.01, 10  # s of processor time below which a run is timed so many times as often
 _MOST_SLICES = 200  # of the settings; edge loads are compared with theirs
 _FIRST_REST, _LONGEST_REST, _RESTS = 20.0, 2000.0, 1e-4  # cage turns in which the start settles, and the change of slip that counts as rest
-_MORE_SOURCES = ("studies/trade_course.py", "studies/correction.py", "estimation/*.py")  # that results depend on
+_MORE_SOURCES = ("studies/trade_course.py", "studies/correction_points.py", "estimation/*.py")  # that results depend on
 
 
 class Setting(NamedTuple):

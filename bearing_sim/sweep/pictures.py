@@ -14,6 +14,7 @@ from bearing_sim.sweep.table import Table, life_column
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")  # Okabe and Ito: safe for colour-blind readers
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+DPI = 130  # of pictures
 NO_RESULT = "0.72"  # grey of the cells of a map that have none
 _MOST_DECADES = 6  # of a logarithmic axis and of colours: near rest, or without load, a life grows beyond any scale
 _APART = 0.12  # of the width of axes and of their height, by which the labels of contours are apart
@@ -68,6 +69,37 @@ def new_figure(width: float, height: float):
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
+
+
+def save(figure, path: Path | BinaryIO, title: str = "", size: float | str = "large", **more) -> None:
+    """Write a figure with its title into a file; ``more`` goes to `matplotlib.figure.Figure.savefig`.
+
+    Parameters
+    ----------
+    figure : of `new_figure`.
+    path : its suffix gives the format: .png, .svg or .pdf; or a stream, for .png.
+    title, size : nothing stands above the picture without a title; size of its letters in points or by its name in matplotlib.
+    """
+    if title:
+        figure.suptitle(title, fontsize=size)
+    figure.savefig(path, **{"dpi": DPI} | more)
+
+
+def look_of(k: int, **more) -> dict:
+    """Return colour and mark of the k-th of several lines, and what else is given of its look."""
+    return {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], **more}
+
+
+def with_gaps(values) -> np.ndarray:
+    """Return values with NaN, which leaves a gap in a line, instead of what is not finite."""
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+def legend_below(figure, axes, **more) -> None:
+    """Name what axes show in one legend below a figure, all in one row where ``more`` does not say how many (``ncols``)."""
+    handles, labels = axes.get_legend_handles_labels()
+    if handles:
+        figure.legend(handles, labels, loc="outside lower center", frameon=False, **{"ncols": len(labels)} | more)
 
 
 def ticks(low: float, high: float, is_logarithmic: bool, most: int = 6) -> list[float]:
@@ -147,6 +179,15 @@ def set_limits(axes, values: np.ndarray, is_logarithmic: bool, direction: str = 
     plain_numbers(axis)
 
 
+def _set_ends(axes, direction: str, low: float, high: float, is_logarithmic: bool) -> None:
+    """Let an axis go from one number to another, with ticks at numbers as people write them."""
+    axis = getattr(axes, f"{direction}axis")
+    axes.set(**{f"{direction}scale": "log" if is_logarithmic else "linear", f"{direction}lim": (low, high)})
+    axis.set_ticks(ticks(low, high, is_logarithmic))
+    axis.set_ticks([], minor=True)
+    plain_numbers(axis)
+
+
 def is_spaced_logarithmically(values: Sequence[float]) -> bool:
     """Return whether increasing values are spaced more evenly on a logarithmic scale than on a linear one, over a decade or more."""
     values = np.asarray(values, float)
@@ -208,12 +249,7 @@ def draw_map(axes, x: Values, y: Values, quantity: Values, colours: str = "virid
     bar.set_ticks(marked, labels=[number(each) for each in marked])
     bar.minorticks_off()
     for name, each in (("x", x), ("y", y)):
-        axis, ends = getattr(axes, f"{name}axis"), (float(each.values[0]), float(each.values[-1]))
-        getattr(axes, f"set_{name}scale")("log" if scales[name] else "linear")
-        getattr(axes, f"set_{name}lim")(*ends)
-        axis.set_ticks(ticks(*ends, scales[name]))
-        axis.set_ticks([], minor=True)
-        plain_numbers(axis)
+        _set_ends(axes, name, float(each.values[0]), float(each.values[-1]), scales[name])
     if inside := [each for each in marked if low < each < high]:
         halo, kept = [withStroke(linewidth=2.2, foreground="white")], []
         lines = axes.contour(x.values, y.values, drawn, inside, colors="black", linewidths=0.8, linestyles="solid")
@@ -296,13 +332,12 @@ def draw(path: Path | BinaryIO, table: Table, quantities: Sequence[str] = ()) ->
         empty.axis("off")
     if mapped:
         empty = any(math.isnan(row[name]) for row in table.rows for name in quantities)
-        handles, labels = ([no_result_patch()], ["no result"]) if empty else ([], [])
+        if empty:
+            figure.legend(handles=[no_result_patch()], loc="outside lower center", frameon=False)
     else:
-        handles, labels = figure.axes[0].get_legend_handles_labels()
-    if handles:
-        figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), 4), frameon=False)
+        legend_below(figure, figure.axes[0], ncols=min(len(figure.axes[0].get_legend_handles_labels()[1]), 4))
     figure.suptitle(_title(table), fontsize=11, wrap=True)
-    figure.savefig(path, dpi=130)
+    save(figure, path)
 
 
 def condition_title(about: Mapping) -> str:
@@ -335,8 +370,7 @@ def _draw_lines(axes, table: Table, varied: Sequence[Column], quantity: Column) 
         if not in_words:
             places = places[np.argsort(across.values[places], kind="stable")]
         name = value_text(family.name, family.unit, member) if family is not None else None
-        look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ms": 4, "lw": 1.4, "label": name}
-        axes.plot(across.values[places], np.where(np.isfinite(up.values[places]), up.values[places], np.nan), **look)
+        axes.plot(across.values[places], with_gaps(up.values[places]), **look_of(k, ms=4, lw=1.4, label=name))
     drifting = np.array([row["status"] == UNSETTLED for row in table.rows])
     if drifting.any():
         axes.plot(across.values[drifting], up.values[drifting], "x", color="black", ms=8, label="not yet at rest at the end of its run")
@@ -351,11 +385,9 @@ def _draw_lines(axes, table: Table, varied: Sequence[Column], quantity: Column) 
     if not in_words:
         own = np.unique(across.values)
         is_logarithmic, pad = is_spaced_logarithmically(own), 0.03
-        axes.set_xscale("log" if is_logarithmic else "linear")
-        ends = (own[0] * (own[0] / own[-1]) ** pad, own[-1] * (own[-1] / own[0]) ** pad) if is_logarithmic else (own[0], own[-1])
-        ends = ends if is_logarithmic else (own[0] - pad * np.ptp(own), own[-1] + pad * np.ptp(own))
-        axes.set_xlim(*ends)
-        axes.set_xticks(ticks(*map(float, ends), is_logarithmic))
-        axes.set_xticks([], minor=True)
-        plain_numbers(axes.xaxis)
+        if is_logarithmic:
+            ends = own[0] * (own[0] / own[-1]) ** pad, own[-1] * (own[-1] / own[0]) ** pad
+        else:
+            ends = own[0] - pad * np.ptp(own), own[-1] + pad * np.ptp(own)
+        _set_ends(axes, "x", *map(float, ends), is_logarithmic)
     axes.grid(alpha=0.3)

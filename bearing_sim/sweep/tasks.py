@@ -44,6 +44,14 @@ _SOURCES = (
 )
 
 
+Progress = Callable[[int, int], None]
+"""Called with the number of finished tasks or points, and of all that are not in the journal."""
+
+
+def in_silence(done: int, total: int) -> None:
+    """Tell nobody about progress."""
+
+
 class Task(NamedTuple):
     """One computation.
 
@@ -218,7 +226,7 @@ def run_tasks(
     journal: Journal,
     workers: int | None = None,
     dask: str | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Progress = in_silence,
 ) -> list[dict]:
     """Return the results of tasks in their order, from the journal where available; equal tasks are computed once.
 

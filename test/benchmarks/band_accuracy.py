@@ -25,7 +25,7 @@ from bearing_sim.estimation.bands import QUANTITIES, BandEstimator, prior_draws
 from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import ANSWERS, PROBABILITIES, conditions_at, domain_of, scene_fields
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.studies.response import at_points, obtain_response
+from bearing_sim.studies.response_points import at_points, obtain_response
 from bearing_sim.sweep.tasks import Journal
 
 RESOLVED = 32  # samples of an operating point by which the level's resolution is found

@@ -24,7 +24,7 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Matern, WhiteK
 from bearing_sim.estimation.bands import prior_draws
 from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import ANSWERS, PROBABILITIES, coordinates, domain_of, fit_response, scene_fields, slip_scale, transformed
-from bearing_sim.studies.response import DRAWS, at_points, design
+from bearing_sim.studies.response_points import DRAWS, at_points, design
 from bearing_sim.sweep.tasks import Journal
 
 SLIP = ANSWERS.index("cage_slip")

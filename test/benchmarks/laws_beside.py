@@ -17,7 +17,7 @@ from bearing_sim.scene.designation import designations
 from bearing_sim.scene.loader import load_bearing, scene_from_mapping
 from bearing_sim.scene.ratings import rate
 from bearing_sim.studies.friction import dimensions_of, series_of, skf_moment
-from bearing_sim.studies.operating_point import settle
+from bearing_sim.studies.settle import settle
 
 _BEARINGS, _LARGEST_BORE, _CLASSES = 60, 0.15, (32, 46, 68, 100, 150, 220, 320, 460)
 _SERIES = ("10", "2", "3", "22", "23")

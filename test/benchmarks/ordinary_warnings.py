@@ -17,7 +17,7 @@ from bearing_sim.scene.loader import load_bearing
 from bearing_sim.scene.new_scene import Wish, new_scene
 from bearing_sim.scene.ratings import rate
 from bearing_sim.simulation import IntegrationError
-from bearing_sim.studies.operating_point import settle
+from bearing_sim.studies.settle import settle
 from bearing_sim.sweep.grading import graded
 
 _LARGEST_BORE, _CLASSES = 0.15, (32, 46, 68, 100, 150, 220, 320, 460)

@@ -21,7 +21,7 @@ from bearing_sim.scene.contour import outer_contour
 from bearing_sim.scene.loader import load_scene, scene_from_yaml
 from bearing_sim.simulation import Simulation
 from bearing_sim.studies.statics import statics
-from bearing_sim.studies.uncertainty import design, indices
+from bearing_sim.studies.uncertainty_propagation import design, indices
 from validation.catalogues import KOYO, koyo_scene
 from validation.check import Check, Comparison, compared
 

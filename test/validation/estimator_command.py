@@ -43,7 +43,7 @@ def estimator(scene_name, overrides, runs, steps, hours, faults, level, measured
     """
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.scene.uncertainty import ranges_of
-    from bearing_sim.studies.uncertainty import UncertaintyError
+    from bearing_sim.studies.uncertainty_propagation import UncertaintyError
     from bearing_sim.sweep.tasks import ClusterError, JournalInUse
 
     warm = "temperatures" in measured
@@ -56,7 +56,7 @@ def estimator(scene_name, overrides, runs, steps, hours, faults, level, measured
         scene = load_scene(scene_name, [*overrides, *more])
         _require_sensors(scene, measured)
     announce_compilation(scene)
-    from bearing_sim.studies.response import obtain_response
+    from bearing_sim.studies.response_points import obtain_response
     from validation import estimator_study as study
 
     known = (_OIL,)

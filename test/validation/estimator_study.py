@@ -23,7 +23,7 @@ from bearing_sim.model.params import pack
 from bearing_sim.model.sample import new_block
 from bearing_sim.monitoring.residual import CALIBRATED_SLIP, ResidualMonitor
 from bearing_sim.scene.scene import Scene
-from bearing_sim.studies.response import at_points
+from bearing_sim.studies.response_points import at_points
 from bearing_sim.sweep.tasks import Journal
 
 RATE = 10.0  # Hz, of the sensor and of the samples
@@ -169,7 +169,7 @@ def machines(
     known : dotted paths of fields that have the scene's own values, because they are inputs.
     pause : seconds that pass in the middle of each plateau, unseen.
     every : seconds within which hidden fields go straight; the pause counts as one step.
-    journal, workers, dask, progress : see `bearing_sim.studies.response.at_points`.
+    journal, workers, dask, progress : see `bearing_sim.studies.response_points.at_points`.
     """
     random, free = np.random.default_rng(seed), np.array([name not in known for name in response.names])
     course, steps = plateaus(scene, count, random), max(round(_PLATEAU / every), 2)
@@ -322,7 +322,7 @@ def detections(
     values : before and after the step [SI].
     runs, seed : number of machines, and what they are drawn from.
     seconds : to wait for an alarm.
-    workers : see `bearing_sim.studies.response.at_points`.
+    workers : see `bearing_sim.studies.response_points.at_points`.
     """
     random, column = np.random.default_rng(seed), response.names.index(field)
     free = np.array([name not in known for name in response.names])
@@ -442,7 +442,7 @@ def verdicts(
     scene, response, known : as of `judge`.
     repeats : of each fault (`hidden_faults`), each in another machine.
     seed : of the machines, the operating points and the noise.
-    workers, dask : see `bearing_sim.studies.response.at_points`.
+    workers, dask : see `bearing_sim.studies.response_points.at_points`.
     progress : called with the number of finished runs and of all.
     """
     random, free = np.random.default_rng(seed), np.array([name not in known for name in response.names])

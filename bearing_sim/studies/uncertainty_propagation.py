@@ -7,7 +7,7 @@ one scrambled Sobol' sequence in 2 d dimensions; bands use both.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -26,10 +26,11 @@ from bearing_sim.scene.mounting import clearance_limits, clearance_source
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.scene.uncertainty import Range, messages, number_at, quantities, ranges_of, ring_ranges, shown, with_values, without_dimensions
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
-from bearing_sim.sweep.pictures import new_figure, plain_numbers
+from bearing_sim.studies.batches import answers_at
+from bearing_sim.sweep.pictures import new_figure, plain_numbers, save
 from bearing_sim.sweep.ring_resonance import ring_resonance
 from bearing_sim.sweep.states import states
-from bearing_sim.sweep.tasks import Journal, run_tasks, task
+from bearing_sim.sweep.tasks import Journal, Progress, in_silence
 from bearing_sim.sweep.thermal import equilibrium_temperatures
 
 PROBABILITIES = (0.05, 0.50, 0.95)  # below the low end, the middle and the high end of a band
@@ -131,6 +132,11 @@ def design(distributions: Sequence, base: int, seed: int) -> Design:
     first, second = drawn[:, 0], drawn[:, 1]
     mixed = [np.where(np.arange(count) == column, second, first) for column in range(count)]
     return Design(base, np.concatenate([first, second, *mixed]))
+
+
+def _design_of(scene: Scene, ranges: Sequence[Range], base: int, seed: int) -> Design:
+    """Return the points of a study of ranges about the values of a scene."""
+    return design([distribution(one, number_at(scene, one.field)) for one in ranges], base, seed)
 
 
 def band(values: np.ndarray) -> Band:
@@ -357,7 +363,7 @@ def rounded_up(samples: int) -> int:
 def study(
     scene: Scene, base: int, seed: int, *, shares: bool = True,
     level: str | None = None, course: tuple[np.ndarray, np.ndarray] | None = None, journal: Journal | None = None,
-    workers: int | None = None, dask: str | None = None, progress: Callable[[int, int], None] = lambda done, pending: None,
+    workers: int | None = None, dask: str | None = None, progress: Progress = in_silence,
 ) -> Study:  # fmt: skip
     """Return bands and Sobol' indices of slip and life.
 
@@ -387,12 +393,22 @@ def study(
     ranges, scene = varied_ranges(scene), filled_in(scene)
     _check(scene, ranges, course is not None)
     conditions, seconds = course if course is not None else (None, np.ones(1))
-    designed = design([distribution(one, number_at(scene, one.field)) for one in ranges], base, seed)
+    designed = _design_of(scene, ranges, base, seed)
     if not shares:
         designed = designed._replace(points=designed.points[: 2 * base])
     own = settled(varied(scene, {}), conditions)
-    kept = Journal() if journal is None else journal
-    found = _at_points(scene, [one.field for one in ranges], designed.points, conditions, len(seconds), kept, workers, dask, progress)
+    found = answers_at(
+        [designed.points],
+        settled_batch,
+        (scene, tuple(one.field for one in ranges), None if conditions is None else tuple(map(tuple, conditions.tolist()))),
+        {"settled": [[math.nan] * len(seconds)] * 2},
+        scene.level,
+        _BATCH if scene.level == "steady" else 1,
+        journal,
+        workers,
+        dask,
+        progress,
+    )["settled"]
     answers = dict(zip(VALUES, _over_course(found, seconds)))
     absent = int(np.isnan(answers["cage_slip"]).sum())
     if absent > _ABSENT * len(found):
@@ -412,21 +428,8 @@ def study(
     )
 
 
-def _at_points(scene, fields, points, conditions, stretches, journal, workers, dask, progress) -> np.ndarray:
-    """Return `settled` at each point, shape (points, 2, stretches)."""
-    size = _BATCH if scene.level == "steady" else 1
-    asked = None if conditions is None else tuple(map(tuple, conditions.tolist()))
-    parts = [points[first : first + size] for first in range(0, len(points), size)]
-    tasks = [task(scene.level, settled_batch, scene, tuple(fields), tuple(map(tuple, part.tolist())), asked) for part in parts]
-    results = run_tasks(
-        tasks, journal, workers, dask, lambda done, pending: progress(*(min(size * batches, len(points)) for batches in (done, pending)))
-    )
-    nothing = [[math.nan] * stretches] * 2
-    return np.concatenate([result.get("settled", [nothing] * len(part)) for part, result in zip(parts, results)])
-
-
 def settled_batch(
-    scene: Scene, fields: tuple[str, ...], points: tuple[tuple[float, ...], ...], conditions: tuple[tuple[float, ...], ...] | None
+    scene: Scene, fields: tuple[str, ...], conditions: tuple[tuple[float, ...], ...] | None, points: tuple[tuple[float, ...], ...]
 ) -> dict:
     """Return `settled` of a scene at several points, as lists under the key ``settled``.
 
@@ -512,7 +515,7 @@ def largest_slip(scene: Scene, inputs: Inputs, draws: int = 8, seed: int = 1) ->
     """
     scene = scene.at_level("steady")
     ranges, scene = varied_ranges(scene), filled_in(scene)
-    points = design([distribution(one, number_at(scene, one.field)) for one in ranges], draws, seed).points[:draws] if ranges else ()
+    points = _design_of(scene, ranges, draws, seed).points[:draws] if ranges else ()
     scenes = [scene, *(varied(scene, dict(zip([one.field for one in ranges], point))) for point in points)]
     found = [state.cage_slip for each in scenes for state in states(each, inputs, skid_load=False).found]
     if not found:
@@ -579,28 +582,26 @@ def draw(path: Path, title: str, found: Study, life: str, times: np.ndarray | No
     life : name of the life, such as ``modified rating life L_nmr``.
     times : of the stretches of its course [s], shape (m,); None without a course.
     """
-    layout = [["slip", "life"], ["slip indices", "life indices"]] + ([["course", "course"]] if times is not None else [])
-    rows = 1.4 + 0.34 * len(found.ranges)
-    heights = [4.4, max(rows, 3.0), 4.0][: len(layout)]
+    layout, heights = [["slip", "life"], ["slip indices", "life indices"]], [4.4, max(1.4 + 0.34 * len(found.ranges), 3.0)]
+    slip, over = "cage slip [%]", ""
+    if times is not None:
+        layout, heights, slip, over = [*layout, ["course", "course"]], [*heights, 4.0], f"mean {slip}", " under the course"
     figure = new_figure(13, sum(heights))
     axes = figure.subplot_mosaic(layout, height_ratios=heights)
-    slip, over = ("cage slip [%]", "") if times is None else ("mean cage slip [%]", " under the course")
     life = f"{life}{over} [h]{without_dimensions(one.field for one in found.ranges)}"
-    _draw_distribution(axes["slip"], 100 * found.answers["cage_slip"], found, "cage_slip", 100.0, slip, _SLIP)
-    _draw_distribution(axes["life"], found.answers["life_hours"], found, "life_hours", 1.0, life, _LIFE)
-    _draw_indices(axes["slip indices"], found, "cage_slip", "slip")
-    _draw_indices(axes["life indices"], found, "life_hours", "life")
+    for short, name, scale, label, colour in (("slip", "cage_slip", 100.0, slip, _SLIP), ("life", "life_hours", 1.0, life, _LIFE)):
+        _draw_distribution(axes[short], found, name, scale, label, colour)
+        _draw_indices(axes[f"{short} indices"], found, name, short)
     if times is not None:
         _draw_course(axes["course"], found, times)
-    figure.suptitle(title)
-    figure.savefig(path, dpi=130)
+    save(figure, path, title)
 
 
-def _draw_distribution(axes, values, found, name, scale, label, colour) -> None:
+def _draw_distribution(axes, found, name, scale, label, colour) -> None:
     from matplotlib.ticker import MaxNLocator
 
-    values = values[: 2 * found.design.base]
-    values, band, own = values[np.isfinite(values)], found.bands[name], scale * found.own[name]
+    values, band, own = scale * found.answers[name][: 2 * found.design.base], found.bands[name], scale * found.own[name]
+    values = values[np.isfinite(values)]
     bins, weights = int(np.clip(1.5 * np.sqrt(len(values)), _FEWEST_BINS, _MOST_BINS)), np.full(len(values), 100.0 / max(len(values), 1))
     axes.hist(values, bins=bins, weights=weights, color=colour, alpha=0.6)
     axes.axvspan(scale * band.low, scale * band.high, color=colour, alpha=0.12, lw=0)
@@ -639,8 +640,8 @@ def _draw_indices(axes, found, name, varied) -> None:
 
 
 def _draw_course(axes, found, times) -> None:
-    bands = found.slip_bands()
-    axes.fill_between(times, [100 * one.low for one in bands], [100 * one.high for one in bands], color=_SLIP, alpha=0.25, label="5 to 95 %")
-    axes.plot(times, [100 * one.middle for one in bands], color=_SLIP, label="50 %")
+    low, middle, high = 100.0 * np.array([one[:3] for one in found.slip_bands()]).T
+    axes.fill_between(times, low, high, color=_SLIP, alpha=0.25, label="5 to 95 %")
+    axes.plot(times, middle, color=_SLIP, label="50 %")
     axes.set(xlabel="time [s]", ylabel="cage slip [%]", ylim=(0, None))
     axes.legend(frameon=False, fontsize=9)

@@ -7,7 +7,6 @@ them, in the neighbourhood of those that are missed most when they are left out;
 
 import math
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -35,9 +34,10 @@ from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.physics.rating_life import rating_life_revolutions
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+from bearing_sim.studies.batches import answers_at
 from bearing_sim.studies.trade_course import cage_rate
 from bearing_sim.sweep.settling import Outcome, advance_until_settled
-from bearing_sim.sweep.tasks import Journal, run_tasks, task
+from bearing_sim.sweep.tasks import Journal, Progress, in_silence
 
 FIRST_POINTS, ENOUGH_POINTS, MOST_POINTS = 256, 512, 1024
 SLIP_GOAL, LIFE_GOAL = 5e-4, 0.01  # errors at points left out, root mean square, below which no more points are added
@@ -181,7 +181,7 @@ def _answers(outcome: Outcome, life: Life) -> np.ndarray:
 
 def obtain_correction(
     scene: Scene, temperatures: tuple[float, float] | None = None, workers: int | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None, rebuild: bool = False, most: int = MOST_POINTS,
+    progress: Progress = in_silence, rebuild: bool = False, most: int = MOST_POINTS,
 ) -> Correction:  # fmt: skip
     """Return the correction of a scene, from disk or measured and kept there; an interrupted measurement resumes from its journal.
 
@@ -219,12 +219,24 @@ def _measured(scene, domain, path: Path, workers, progress, most) -> Correction:
     began, plain = time.perf_counter(), measured_scene(scene, "slip")
     spread = _spread(min(FIRST_POINTS, most), 1, domain)
     conditions, rows, before = np.zeros((0, 4)), [], None
+    nothing = [math.nan] * len(ANSWER)
     with Journal(path, is_own=True) as journal:
         while True:
-            batches = [tuple(map(tuple, spread[first : first + _BATCH].tolist())) for first in range(0, len(spread), _BATCH)]
-            tasks, done = [task("planar", measured_points, plain, batch) for batch in batches], len(conditions)
-            results = run_tasks(tasks, journal, workers, progress=lambda k, total: progress(done + _BATCH * k, most))
-            rows += [result if "planar" in result else _no_answers(len(batch)) for result, batch in zip(results, batches)]
+            done = len(conditions)
+            rows.append(
+                answers_at(
+                    [spread],
+                    measured_points,
+                    (plain,),
+                    {"steady": nothing, "planar": nothing, "other_slip": math.nan},
+                    "planar",
+                    _BATCH,
+                    journal,
+                    workers,
+                    None,
+                    lambda points, total, done=done: progress(done + points, most),
+                )
+            )
             conditions = np.concatenate([conditions, spread])
             found = _fitted(domain, conditions, rows, time.perf_counter() - began)
             if len(conditions) >= most or (len(conditions) >= ENOUGH_POINTS and not _pays(before, found)) or not _missed(found):
@@ -249,12 +261,6 @@ def _missed(found: Correction) -> list[str]:
 def _pays(before: Correction | None, found: Correction) -> bool:
     """Return whether the last points have lowered every error that is above its goal; at a jump between two states none does."""
     return before is None or all(getattr(found, name) <= _PAYS * getattr(before, name) for name in _missed(found))
-
-
-def _no_answers(count: int) -> dict:
-    """Return the result of so many points whose worker was lost, in the form of `measured_points`."""
-    nothing = [[math.nan] * len(ANSWER)] * count
-    return {"steady": nothing, "planar": nothing, "other_slip": [math.nan] * count}
 
 
 def _fitted(domain, conditions, rows, seconds) -> Correction:

@@ -13,7 +13,7 @@ import numpy as np
 
 from bearing_sim.model.sample import OBSERVABLES, RING_TEMPERATURES
 from bearing_sim.model.validity import Exceedance, Grade, outside
-from bearing_sim.scene.display import force, hours, number, power
+from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, hours, number, power
 from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.scene.fidelity import Level
 from bearing_sim.scene.loader import load_scene
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import pandas
 
     from bearing_sim.model.names import SettledResults
-    from bearing_sim.studies.uncertainty import Band
+    from bearing_sim.studies.uncertainty_propagation import Band
 else:
     SettledResults = object
 
@@ -36,7 +36,6 @@ SAMPLES, SEED = 64, 2017  # of bands
 NEARBY = "nearby"  # start at a neighbouring point
 _OBSERVED = {each.name: each for each in OBSERVABLES}
 _RESULTS = {each.name: each for each in RESULTS}
-_CELSIUS = 273.15
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,22 +127,22 @@ class Settled(SettledResults):
 
     def __repr__(self) -> str:
         operating, last = self.scene.operating, self.outcome.window[-1]
-        point = f"{number(operating.shaft_speed * 30.0 / math.pi, 6)} rpm, {force(operating.radial_load)}"
-        lines = [f"{self.scene.name} at {point}, oil at {self.scene.lubricant.temperature - _CELSIUS:.4g} °C; level {self.scene.level}"]
+        point = f"{number(RPM * operating.shaft_speed, 6)} rpm, {force(operating.radial_load)}"
         took = "from the start" if self.settling_time == 0.0 else f"after {self.settling_time:.3g} s"
-        lines.append(f"  settled              {took if self.settled else f'no, {self.verdict}: {self.reason}'}")
         slip = "none, the shaft is at rest" if math.isnan(self.cage_slip) else f"{100.0 * self.cage_slip:.3g} %"
-        lines.append(f"  cage slip            {slip}{self._band('cage_slip', 100.0, '%')}")
-        lines.append(
-            f"  rating life          {hours(self.rating_life)}; modified {hours(self.modified_rating_life)}{self._band('modified_rating_life')}"
-        )
-        lines.append(f"  largest roller load  inner raceway {force(self.inner_load_maximum)}, outer raceway {force(self.outer_load_maximum)}")
-        lines.append(f"  running clearance    {number(1e6 * self.running_clearance)} µm")
-        lines.append(f"  power loss           {power(self.shaft_power)}")
+        lines = [
+            f"{self.scene.name} at {point}, oil at {self.scene.lubricant.temperature - ZERO_CELSIUS:.4g} °C; level {self.scene.level}",
+            f"  settled              {took if self.settled else f'no, {self.verdict}: {self.reason}'}",
+            f"  cage slip            {slip}{self._band('cage_slip', 100.0, '%')}",
+            f"  rating life          {hours(self.rating_life)}; modified {hours(self.modified_rating_life)}{self._band('modified_rating_life')}",
+            f"  largest roller load  inner raceway {force(self.inner_load_maximum)}, outer raceway {force(self.outer_load_maximum)}",
+            f"  running clearance    {number(1e6 * self.running_clearance)} µm",
+            f"  power loss           {power(self.shaft_power)}",
+        ]
         rows = state_rows(self.others, self.start) if math.isfinite(self.cage_slip) else []
         lines += [f"  {name:<20} {text}" for name, text in rows]
         if math.isfinite(last[RING_TEMPERATURES[0]]):
-            inner, outer = (last[name] - _CELSIUS for name in RING_TEMPERATURES)
+            inner, outer = (last[name] - ZERO_CELSIUS for name in RING_TEMPERATURES)
             lines.append(f"  ring temperatures    inner {inner:.4g} °C, outer {outer:.4g} °C")
         lines += [
             f"  beyond its range     {each.law.law} ({each.short}): {each.said_effect}, see warnings"
@@ -187,7 +186,7 @@ def settle(
         point, at any level.  The run from there is as short as 15 cage turns, and the search for thermal equilibrium begins with those temperatures.
         Where there are several states, the result may be another one than from ideal rolling.
     longest : simulated time after which a bearing that does not settle is given up [s]; 1000 s, or 2000 cage turns, where absent.
-    bands : whether to compute bands of slip and life over the ranges of the scene's uncertain fields (`bearing_sim.studies.uncertainty`).
+    bands : whether to compute bands of slip and life over the ranges of the scene's uncertain fields (`bearing_sim.studies.uncertainty_propagation`).
     samples : size of each of the two samples of the bands, rounded up to a power of two.
     workers : processes that compute the bands.
 
@@ -225,7 +224,10 @@ def settle(
 
 def _bands(scene: Scene, samples: int, workers: int) -> "Mapping[str, Band]":
     """Return the bands of a scene by the names of its results."""
-    from bearing_sim.studies.uncertainty import rounded_up, study  # here, because importing SciPy's statistics takes longer than to settle
+    from bearing_sim.studies.uncertainty_propagation import (
+        rounded_up,
+        study,
+    )  # here, because importing SciPy's statistics takes longer than to settle
 
     found = study(scene, rounded_up(samples), SEED, shares=False, workers=workers)
     return MappingProxyType({"cage_slip": found.bands["cage_slip"], "modified_rating_life": found.bands["life_hours"]})

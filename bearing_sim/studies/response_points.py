@@ -3,7 +3,6 @@
 
 import math
 import time
-from collections.abc import Callable
 
 import numpy as np
 from scipy.stats import qmc
@@ -27,8 +26,9 @@ from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.physics.thermal_network import NODES
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-from bearing_sim.studies.uncertainty import UncertaintyError, varied
-from bearing_sim.sweep.tasks import Journal, run_tasks, task
+from bearing_sim.studies.batches import answers_at
+from bearing_sim.studies.uncertainty_propagation import UncertaintyError, varied
+from bearing_sim.sweep.tasks import Journal, Progress, in_silence
 
 DRAWS = 64  # of the fields' scores at each operating point, the scene's own values among them
 _POINTS = 16_384  # that a response is fitted to, a power of two
@@ -188,7 +188,7 @@ def _refined(simulation: Simulation, nearby: _Equilibria) -> np.void | None:
 
 def at_points(
     scene: Scene, scores: np.ndarray, conditions: np.ndarray, journal: Journal | None = None, workers: int | None = None, dask: str | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None, level: str = "steady",
+    progress: Progress = in_silence, level: str = "steady",
 ) -> np.ndarray:  # fmt: skip
     """Return settled answers at points, shape (n, 7); NaN where there is none.
 
@@ -203,20 +203,18 @@ def at_points(
     """
     scene, fields = scene.at_level(level), scene_fields(scene)
     names, values = tuple(one.field for one in fields.ranges), fields.values_of(scores)
-    tasks = [
-        task(
-            level,
-            settled_points,
-            scene,
-            names,
-            tuple(map(tuple, values[first : first + _BATCH].tolist())),
-            tuple(map(tuple, conditions[first : first + _BATCH].tolist())),
-        )
-        for first in range(0, len(scores), _BATCH)
-    ]
-    results = run_tasks(tasks, Journal() if journal is None else journal, workers, dask, lambda done, total: progress(_BATCH * done, _BATCH * total))
-    nothing = [math.nan] * len(ANSWERS)
-    return np.concatenate([result.get("answers", [nothing] * len(each.arguments[2])) for each, result in zip(tasks, results)])
+    return answers_at(
+        [values, conditions],
+        settled_points,
+        (scene, names),
+        {"answers": [math.nan] * len(ANSWERS)},
+        level,
+        _BATCH,
+        journal,
+        workers,
+        dask,
+        progress,
+    )["answers"]
 
 
 def design(scene: Scene, count: int, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
@@ -241,7 +239,7 @@ def design(scene: Scene, count: int, seed: int = 1) -> tuple[np.ndarray, np.ndar
 
 
 def obtain_response(
-    scene: Scene, workers: int | None = None, dask: str | None = None, progress: Callable[[int, int], None] = lambda done, total: None,
+    scene: Scene, workers: int | None = None, dask: str | None = None, progress: Progress = in_silence,
     rebuild: bool = False, points: int = _POINTS,
 ) -> ResponseModel:  # fmt: skip
     """Return the response of a scene, from disk or built and kept there; an interrupted build resumes from its journal.
