@@ -4,14 +4,14 @@
 import math
 
 import click
+from click import IntRange
 
-from bearing_sim.cli.options import json_option, picture_option, scene_argument, set_option, verbose_option
-from bearing_sim.cli.outputs import OutputFile, WritingCommand
+from bearing_sim.cli.options import json_option, option, picture_option, scene_argument, set_option, verbose_option
+from bearing_sim.cli.outputs import OutputFile
 from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
     as_failed_run,
-    as_file_error,
     as_usage_error,
     print_json,
     print_table,
@@ -20,9 +20,10 @@ from bearing_sim.cli.reporting import (
     warn_of_scene,
     warnings_report,
 )
+from bearing_sim.cli.results import command
 
 
-@click.command("scenes")
+@command("scenes")
 @json_option
 def scenes(as_json):
     """List the bundled scenes, bearings, oils, greases and CSV mappings."""
@@ -38,12 +39,10 @@ def scenes(as_json):
     click.echo("any designation, such as NU 210 ECP/C3, is a bearing, too (bearing-sim catalog), and ISO VG 2 to 3200 are oils")
 
 
-@click.command("loads", cls=WritingCommand)
+@command("loads")
 @scene_argument
 @set_option
-@click.option(
-    "--slices", type=click.IntRange(5, 400), metavar="N", help="Slices per roller, for their loads and the life [default: life.laminae of the scene]."
-)
+@option("--slices", "Slices per roller, for their loads and the life [default: life.laminae of the scene].", IntRange(5, 400), metavar="N")
 @picture_option("Draw the loads")
 @verbose_option
 @json_option
@@ -53,11 +52,9 @@ def loads(scene_name, overrides, slices, picture, verbose, as_json):
     With heat.law network the bearing is in thermal equilibrium, as in `bearing-sim run`; where there is none, the command fails and says why.
     A moment or a misalignment requires level spatial, in the scene or by --set level=spatial.
     """
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.simulation import IntegrationError
+    from bearing_sim.scene.loader import load_scene
 
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, overrides)
+    scene = load_scene(scene_name, overrides)
     refuse_idle_temperature(scene, overrides)
     warn_of_scene(scene)
     announce_compilation()
@@ -66,14 +63,14 @@ def loads(scene_name, overrides, slices, picture, verbose, as_json):
     from bearing_sim.sweep.grading import graded
 
     slices = slices or scene.life.laminae
-    with as_failed_run(IntegrationError, ArithmeticError):
+    with as_failed_run(ArithmeticError):
         found = statics(scene, slices)
     if picture is not None:
         from bearing_sim.scene.display import quantity_text
         from bearing_sim.studies.statics import draw
 
         operating = (quantity_text(name, getattr(scene.operating, name)) for name in ("radial_load", "shaft_speed"))
-        with as_file_error(), picture.draft() as draft:
+        with picture.draft() as draft:
             draw(draft, f"{scene.name}: {' at '.join(operating)}", found)
     warnings = graded(scene, outside(scene, found.sample), found.sample[0])
     if as_json:
@@ -192,11 +189,11 @@ def _option(name, default, unit, meaning, minimum, maximum, shown_in):
     return click.option(f"--{name}", metavar="QUANTITY", callback=read, help=f"{meaning[0].upper()}{meaning[1:]}.", **shown)
 
 
-@click.command("machine", cls=WritingCommand)
+@command("machine")
 @_option("pressure", "2.0 MPa", "Pa", "mean pressure on the arcs", 1e3, 1e9, "MPa")
 @_option("arc-turn", "0 deg", "rad", "angle by which one arc is turned from its even position, phi_f", -math.pi / 2, math.pi / 2, "deg")
 @_option("arc-width", "60 deg", "rad", "width of each pressed arc", 1e-3, math.pi, "deg")
-@click.option("--arcs", default=3, show_default=True, type=click.IntRange(2, 12), help="Number of pressed arcs, one per lobe.")
+@option("--arcs", "Number of pressed arcs, one per lobe.", IntRange(2, 12), default=3)
 @_option("mean-radius", "35.8 mm", "m", "mean radius of the ring blank", 1e-3, 2.0, "mm")
 @_option("width", "12 mm", "m", "width of the ring", 1e-4, 1.0, "mm")
 @_option("pressed-width", None, "m", "width that the pressure acts on [default: the ring's]", 1e-4, 1.0, "mm")
@@ -204,7 +201,7 @@ def _option(name, default, unit, meaning, minimum, maximum, shown_in):
 @_option("modulus", "206 GPa", "Pa", "Young's modulus", 1e9, 1e12, "GPa")
 @_option("low-radius", None, "m", "smallest radius of the finished raceway [default: 34.8625 mm unless --ground-radius is given]", 1e-3, 2.0, "mm")
 @_option("ground-radius", None, "m", "radius to which the pressed ring is ground", 1e-3, 2.0, "mm")
-@click.option("-o", "--out", type=OutputFile(), metavar="CONTOUR.csv", help="Contour file for bearing.outer_raceway.contour_file.")
+@option("-o", "--out", "Contour file for bearing.outer_raceway.contour_file.", OutputFile(), metavar="CONTOUR.csv")
 @picture_option("Draw the contour")
 @json_option
 def machine(
@@ -240,14 +237,13 @@ def machine(
     with as_usage_error(ValueError):
         machined = machine(section, pressing, ground_radius=ground_radius, low_radius=low_radius)
     report = _report_machine(section, pressing, machined)
-    with as_file_error():
-        if out is not None:
-            out.write_text(contour_text(machined, _about(section, pressing)))
-        if picture is not None:
-            from bearing_sim.studies.machining import draw
+    if out is not None:
+        out.write_text(contour_text(machined, _about(section, pressing)))
+    if picture is not None:
+        from bearing_sim.studies.machining import draw
 
-            with picture.draft() as draft:
-                draw(draft, section, pressing, machined)
+        with picture.draft() as draft:
+            draw(draft, section, pressing, machined)
     if as_json:
         print_json({**report, "out": out and str(out), "picture": picture and str(picture)})
     else:

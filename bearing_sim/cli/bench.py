@@ -4,16 +4,18 @@
 import time
 
 import click
+from click import IntRange
 
-from bearing_sim.cli.options import json_option, level_type, quick_option
+from bearing_sim.cli.options import flag, json_option, level_type, option, quick_option
 from bearing_sim.cli.reporting import announce_compilation, print_json, print_rows, progress_bar
+from bearing_sim.cli.results import command
 
 _WORDS = ("level", "integrator")  # columns of text
 
 
-@click.command("levels")
-@click.option("--level", "levels", multiple=True, type=level_type, help="Measure this level; can be repeated [default: all].")
-@click.option("--cold", is_flag=True, help="Also measure the very first start, which compiles.")
+@command("levels")
+@option("--level", "levels", "Measure this level; can be repeated [default: all].", level_type, multiple=True)
+@flag("--cold", "Also measure the very first start, which compiles.")
 @quick_option
 @json_option
 def levels(levels, cold, quick, as_json):
@@ -88,10 +90,8 @@ _SPEEDS = (1500.0, 15_000.0, 45_000.0)  # rpm
 _SECONDS, _QUICK_SECONDS = 5.0, 0.5  # per run
 
 
-@click.command("fleet")
-@click.option(
-    "--level", "levels", multiple=True, default=("steady", "slip", "planar"), show_default=True, type=level_type, help="Level; can be repeated."
-)
+@command("fleet")
+@option("--level", "levels", "Level; can be repeated.", level_type, multiple=True, default=("steady", "slip", "planar"))
 @quick_option
 @json_option
 def fleet(levels, quick, as_json):
@@ -144,10 +144,10 @@ def _print_fleet(report) -> None:
     click.echo(f"core {report['core']}, load average {report['load_average']:.2f}; 0 held: the machine was busy")
 
 
-@click.command("compile")
-@click.option("--level", "levels", multiple=True, type=level_type, help="Compile this level; can be repeated [default: all].")
-@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of processes [default: one per core].")
-@click.option("--prune", is_flag=True, help="Afterwards remove the compiled code of other versions of bearing_sim.")
+@command("compile")
+@option("--level", "levels", "Compile this level; can be repeated [default: all].", level_type, multiple=True)
+@option("--workers", "Number of processes [default: one per core].", IntRange(min=1), metavar="N")
+@flag("--prune", "Afterwards remove the compiled code of other versions of bearing_sim.")
 def compile_levels(levels, workers, prune):
     """Compile levels now instead of at their first run, in parallel on all cores.
 

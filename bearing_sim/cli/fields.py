@@ -5,11 +5,12 @@ import click
 
 from bearing_sim.cli.options import json_option
 from bearing_sim.cli.reporting import UsageError, print_json, print_rows
+from bearing_sim.cli.results import command
 
 _COLUMNS = ("field", "unit or kind", "default", "range", "meaning")
 
 
-@click.command("fields")
+@command("fields")
 @click.argument("path", required=False, default="", metavar="[PATH]")
 @json_option
 def fields(path, as_json):

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import allow_outside_option, json_option, set_option
-from bearing_sim.cli.outputs import OutputRecording, WritingCommand
+from bearing_sim.cli.outputs import OutputRecording
 from bearing_sim.cli.reporting import (
     FailedRun,
     UsageError,
@@ -19,9 +19,10 @@ from bearing_sim.cli.reporting import (
     progress_bar,
     tell_use,
 )
+from bearing_sim.cli.results import command
 
 
-@click.command("import-csv", cls=WritingCommand)
+@command("import-csv")
 @click.argument("data", type=click.Path(path_type=Path), metavar="DATA.csv")
 @click.argument("mapping_name", metavar="[MAPPING]", required=False)
 @click.option(
@@ -204,7 +205,7 @@ def _print(table, mapping, data, out) -> None:
     print_table(f"{data.name} by {mapping.name}", rows)
 
 
-@click.command("mission", cls=WritingCommand)
+@command("mission")
 @click.option("-o", "--out", required=True, type=OutputRecording(), metavar="OUT.mcap", help="Log of the inputs.")
 @click.option("--duration", default=60.0, show_default=True, type=click.FloatRange(1, 3600), metavar="S", help="Duration; all phases scale with it.")
 @click.option("--rate", default=50.0, show_default=True, type=click.FloatRange(1, 2000), metavar="HZ", help="Rate of the speed and load messages.")

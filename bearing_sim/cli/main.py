@@ -8,9 +8,8 @@ from typing import NamedTuple
 
 import click
 
-from bearing_sim.cli.reporting import ARGUMENTS, EXIT_CODES, UsageError, require_whole
+from bearing_sim.cli.reporting import ARGUMENTS, EXIT_CODES, UsageError, as_ending, require_whole
 from bearing_sim.extras import what_is_missing
-from bearing_sim.files.limits import FileError
 from bearing_sim.files.standard_streams import standard_streams
 from bearing_sim.files.tally import PartlyUsedWarning
 
@@ -118,13 +117,11 @@ class LazyGroup(click.Group):
         A package that is not installed is named with the extra that installs it, a file that cannot be read with the reason.
         """
         try:
-            with warnings.catch_warnings():
+            with warnings.catch_warnings(), as_ending():
                 warnings.simplefilter("ignore", PartlyUsedWarning)  # the exit code and the last message say it
                 result = super().invoke(context)
         except ModuleNotFoundError as error:
             raise UsageError(what_is_missing(error)) from error
-        except FileError as error:
-            raise UsageError(str(error)) from error
         require_whole(context)
         return result
 

@@ -7,18 +7,20 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import click
+from click import IntRange
 
-from bearing_sim.cli.options import json_option
-from bearing_sim.cli.outputs import OutputFile, WritingCommand
-from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_rows, print_table, progress_bar, tell_use
+from bearing_sim.cli.options import PATH, flag, json_option, option
+from bearing_sim.cli.outputs import OutputFile
+from bearing_sim.cli.reporting import UsageError, print_json, print_rows, print_table, progress_bar, tell_use
+from bearing_sim.cli.results import command
 from bearing_sim.files.outputs import Output
 
 _OWN = "bearing_sim"
 
 
-@click.command("info")
-@click.argument("recording", type=click.Path(path_type=Path), metavar="RUN.mcap")
-@click.option("--scene", "prints_scene", is_flag=True, help="Print only the recorded scene, as YAML.")
+@command("info")
+@click.argument("recording", type=PATH, metavar="RUN.mcap")
+@flag("--scene", "prints_scene", "Print only the recorded scene, as YAML.")
 @json_option
 def info(recording, prints_scene, as_json):
     """Show what RUN.mcap holds: topics, counts, time span, scene, versions, and whether the file is complete.
@@ -27,15 +29,14 @@ def info(recording, prints_scene, as_json):
     and its checksums are verified: those of a recording of this version cover every byte, the scene too; what other files leave uncovered is
     said. Exit code 1 if a file is incomplete or damaged.
     """
-    from bearing_sim.recording.bag import RecordingError, mcap_files
+    from bearing_sim.recording.bag import mcap_files
     from bearing_sim.recording.recovery import contents, foreign_contents
 
-    with as_usage_error(RecordingError), as_file_error():
-        foreign = foreign_contents(recording)
-        files = [] if foreign is None else [foreign]
-        for file in mcap_files(recording) if foreign is None else ():
-            with progress_bar(f"reading {file.name}", 1.0) as progress:
-                files.append(contents(file, progress))
+    foreign = foreign_contents(recording)
+    files = [] if foreign is None else [foreign]
+    for file in mcap_files(recording) if foreign is None else ():
+        with progress_bar(f"reading {file.name}", 1.0) as progress:
+            files.append(contents(file, progress))
     own = files[0].metadata.get(_OWN, {})
     if prints_scene:
         if "scene" not in own:
@@ -146,17 +147,17 @@ def _trouble(file) -> str:
     return "; ".join(troubles) + f" (bearing-sim recover {file.path} -o GOOD.mcap)"
 
 
-@click.command("compare")
-@click.argument("first", type=click.Path(path_type=Path), metavar="RUN.mcap")
-@click.argument("second", type=click.Path(path_type=Path), metavar="AGAIN.mcap")
-@click.option(
+@command("compare")
+@click.argument("first", type=PATH, metavar="RUN.mcap")
+@click.argument("second", type=PATH, metavar="AGAIN.mcap")
+@option(
     "--tolerance",
     "tolerances",
+    "Accepted difference relative to the largest magnitude of a quantity, for all topics or for one [default: 1e-6].",
     multiple=True,
     metavar="NUMBER | TOPIC=NUMBER",
-    help="Accepted difference relative to the largest magnitude of a quantity, for all topics or for one [default: 1e-6].",
 )
-@click.option("--clock", "by_clock", is_flag=True, help="Match messages by the clock, for runs that began at different moments of one log.")
+@flag("--clock", "by_clock", "Match messages by the clock, for runs that began at different moments of one log.")
 @json_option
 def compare(first, second, tolerances, by_clock, as_json):
     """Compare two recordings topic by topic; messages are matched by run time.
@@ -167,12 +168,10 @@ def compare(first, second, tolerances, by_clock, as_json):
     A topic agrees if both recordings have the same messages and all their numbers agree within the tolerance. Exit code 0 if all topics
     agree, 1 otherwise. Diagnostics are text and are not compared.
     """
-    from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.compare import compare
 
     general, own = _tolerances(tolerances)
-    with as_usage_error(RecordingError), as_file_error():
-        differences, skipped = compare(first, second, general, own, by_clock, lambda text: click.echo(text, err=True))
+    differences, skipped = compare(first, second, general, own, by_clock, lambda text: click.echo(text, err=True))
     if not differences:
         raise UsageError(f"{first} and {second} have no messages to compare")
     unknown = [topic for topic in own if f"/{topic.lstrip('/')}" not in {difference.topic for difference in differences}]
@@ -238,19 +237,18 @@ def _print_comparison(first, second, differences, skipped, agree) -> None:
     click.echo("the recordings agree" if agree else "the recordings differ")
 
 
-@click.command("recover", cls=WritingCommand)
+@command("recover")
 @click.argument("broken", type=click.Path(path_type=Path, dir_okay=False), metavar="BROKEN.mcap")
-@click.option("-o", "--out", required=True, type=OutputFile(), metavar="GOOD.mcap", help="Recovered file.")
+@option("-o", "--out", "Recovered file.", OutputFile(), required=True, metavar="GOOD.mcap")
 @json_option
 def recover(broken, out, as_json):
     """Recover everything readable from BROKEN.mcap into GOOD.mcap: a file of a killed writer (RUN.mcap.active), truncated or damaged.
 
     Works with any MCAP file. Messages keep their bytes, times and order; BROKEN.mcap is not changed.
     """
-    from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.recovery import recover
 
-    with as_usage_error(RecordingError), as_file_error(), progress_bar(f"recovering {broken.name}", 1.0) as progress:
+    with progress_bar(f"recovering {broken.name}", 1.0) as progress:
         found = recover(broken, out, progress)
         size = out.path.stat().st_size
     lost = "nothing known to be missing" if found.is_sound else found.ends or "parts of it were damaged"
@@ -270,33 +268,31 @@ def recover(broken, out, as_json):
 
 def with_excerpt(command: Callable) -> Callable:
     """Add the options that select the part of a recording to export."""
-    for option in (
+    for add in (
         json_option,
-        click.option("--to", "last", type=float, metavar="S", help="Last simulated time [default: the end]."),
-        click.option("--from", "first", type=float, metavar="S", help="First simulated time [default: the beginning]."),
-        click.option("--every", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="Export one of N samples."),
-        click.option("--no-rollers", is_flag=True, help="Omit the observables of single rollers."),
-        click.option("--column", "columns", multiple=True, metavar="NAME", help="Export this observable; can be repeated [default: all]."),
-        click.argument("recording", type=click.Path(path_type=Path), metavar="RUN.mcap"),
+        option("--to", "last", "Last simulated time [default: the end].", float, metavar="S"),
+        option("--from", "first", "First simulated time [default: the beginning].", float, metavar="S"),
+        option("--every", "Export one of N samples.", IntRange(min=1), default=1, metavar="N"),
+        flag("--no-rollers", "Omit the observables of single rollers."),
+        option("--column", "columns", "Export this observable; can be repeated [default: all].", multiple=True, metavar="NAME"),
+        click.argument("recording", type=PATH, metavar="RUN.mcap"),
     ):
-        command = option(command)
+        command = add(command)
     return command
 
 
 def export(kind: str, recording: Path, out: Output, columns, no_rollers, every, first, last, as_json) -> None:
     """Export a recording as a table of a kind, ``csv`` or ``parquet``, and report it."""
-    from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.reader import Recording
-    from bearing_sim.recording.table import Excerpt, TableError, write_csv, write_parquet
+    from bearing_sim.recording.table import Excerpt, write_csv, write_parquet
 
     write = {"csv": write_csv, "parquet": write_parquet}[kind]
     infinity = float("inf")
     excerpt = Excerpt(tuple(columns), not no_rollers, every, -infinity if first is None else first, infinity if last is None else last)
-    with as_usage_error(RecordingError, TableError), as_file_error():
-        source = Recording(recording, allow_partial=True)
-        with progress_bar(f"writing {out.path.name}", source.duration) as progress, out.draft() as draft:
-            rows = write(source, draft, excerpt, progress)
-        size = out.path.stat().st_size
+    source = Recording(recording, allow_partial=True)
+    with progress_bar(f"writing {out.path.name}", source.duration) as progress, out.draft() as draft:
+        rows = write(source, draft, excerpt, progress)
+    size = out.path.stat().st_size
     tell_use(source.tally, recording)
     if as_json:
         print_json({"recording": str(recording), "out": str(out), "rows": rows, "size": size, "read": source.tally.report()})
@@ -304,9 +300,9 @@ def export(kind: str, recording: Path, out: Output, columns, no_rollers, every, 
         click.echo(f"{out}: {rows} samples, {size / 1e6:.4g} MB")
 
 
-@click.command("to-csv", cls=WritingCommand)
+@command("to-csv")
 @with_excerpt
-@click.option("-o", "--out", required=True, type=OutputFile(), metavar="RUN.csv", help="The table.")
+@option("-o", "--out", "The table.", OutputFile(), required=True, metavar="RUN.csv")
 def to_csv(recording, out, columns, no_rollers, every, first, last, as_json):
     """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a CSV table.
 
@@ -316,9 +312,9 @@ def to_csv(recording, out, columns, no_rollers, every, first, last, as_json):
     export("csv", recording, out, columns, no_rollers, every, first, last, as_json)
 
 
-@click.command("to-parquet", cls=WritingCommand)
+@command("to-parquet")
 @with_excerpt
-@click.option("-o", "--out", required=True, type=OutputFile(), metavar="RUN.parquet", help="The table.")
+@option("-o", "--out", "The table.", OutputFile(), required=True, metavar="RUN.parquet")
 def to_parquet(recording, out, columns, no_rollers, every, first, last, as_json):
     """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a Parquet table.
 

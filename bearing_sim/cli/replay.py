@@ -7,10 +7,11 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import click
+from click import FloatRange
 
 from bearing_sim.cli.estimation import band_numbers, band_rows, response_with_progress
-from bearing_sim.cli.options import allow_outside_option, channel_sources, json_option, log_options, set_option, verbose_option
-from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
+from bearing_sim.cli.options import PATH, allow_outside_option, channel_sources, flag, json_option, log_options, option, set_option, verbose_option
+from bearing_sim.cli.outputs import OutputFile, OutputRecording, recording_into
 from bearing_sim.cli.reporting import (
     FailedRun,
     UsageError,
@@ -29,27 +30,26 @@ from bearing_sim.cli.reporting import (
     warn_of_scene,
     warnings_report,
 )
+from bearing_sim.cli.results import command
 from bearing_sim.scene.display import hours
 
 
-@click.command("replay", cls=WritingCommand)
-@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="IN.mcap...")
+@command("replay")
+@click.argument("logs", type=PATH, nargs=-1, required=True, metavar="IN.mcap...")
 @allow_outside_option
-@click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file.")
-@click.option(
-    "--from-recording", is_flag=True, help="Compute a recorded run again from its recording alone: scene, start and inputs, sample by sample."
-)
+@option("--scene", "scene_name", "Bundled scene or YAML file.", metavar="SCENE")
+@flag("--from-recording", "Compute a recorded run again from its recording alone: scene, start and inputs, sample by sample.")
 @set_option
-@click.option("-o", "--out", type=OutputRecording(), metavar="OUT.mcap", help="Record inputs and outputs [default: no recording].")
-@click.option("--rrd", type=OutputFile(), metavar="RUN.rrd", help="Also write a view for rerun.")
-@click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Outputs per simulated second [default: one per stamp].")
-@click.option(
+@option("-o", "--out", "Record inputs and outputs [default: no recording].", OutputRecording(), metavar="OUT.mcap")
+@option("--rrd", "Also write a view for rerun.", OutputFile(), metavar="RUN.rrd")
+@option("--rate", "Outputs per simulated second [default: one per stamp].", FloatRange(min=0, min_open=True), metavar="HZ")
+@option(
     "--state-file",
-    type=click.Path(path_type=Path),
+    "Count the log for the bearing whose state is stored there, but no instant twice; without it no state is touched.",
+    PATH,
     metavar="STATE.json",
-    help="Count the log for the bearing whose state is stored there, but no instant twice; without it no state is touched.",
 )
-@click.option("--serial", default="", metavar="NUMBER", help="Serial number of that bearing; a state of another one is refused.")
+@option("--serial", "Serial number of that bearing; a state of another one is refused.", default="", metavar="NUMBER")
 @log_options
 @verbose_option
 @json_option

@@ -109,14 +109,31 @@ def as_failed_run(*kinds: type[Exception]) -> Iterator[None]:
         raise FailedRun(str(error)) from None
 
 
+_FAILURES = ("IntegrationError", "NoWebViewer")  # errors of the package that no other argument or input would have avoided
+_DISK_FAILED = (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)
+
+
 @contextmanager
-def as_file_error() -> Iterator[None]:
-    """Convert an OSError: a disk that fails or is full to a `FailedRun`, any other, such as a file that cannot be opened, to a `UsageError`."""
+def as_ending() -> Iterator[None]:
+    """Convert the errors that the package raises on purpose, and OSError, to an `Ending`: all others are faults of the program.
+
+    A run that failed, and a disk that fails or is full, end with a `FailedRun`, anything else, such as a file that cannot be opened or a scene that
+    is not valid, with a `UsageError`.
+    """
     try:
         yield
+    except (click.ClickException, BrokenPipeError):
+        raise
     except OSError as error:
-        failed = error.errno in (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)
-        raise (FailedRun if failed else UsageError)(str(error)) from None
+        raise (FailedRun if error.errno in _DISK_FAILED else UsageError)(str(error)) from None
+    except Exception as error:
+        kind = type(error)
+        if not kind.__module__.startswith("bearing_sim.") or kind.__name__.startswith("_"):
+            raise
+        raise (FailedRun if kind.__name__ in _FAILURES else UsageError)(str(error)) from None
+
+
+as_file_error = as_ending
 
 
 @contextmanager

@@ -2,26 +2,26 @@
 """``bearing-sim study``: studies of the model itself, and the results of Deng 2017."""
 
 import math
-from pathlib import Path
 
 import click
+from click import Choice, FloatRange, IntRange
 
 from bearing_sim.cli.options import (
+    PATH,
     allow_outside_option,
     csv_option,
     json_option,
+    option,
     picture_option,
     scene_argument,
     set_option,
 )
-from bearing_sim.cli.outputs import OutputJournal, OutputTable, WritingCommand
+from bearing_sim.cli.outputs import OutputJournal, OutputTable
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
     UsageError,
     announce_compilation,
-    as_failed_run,
-    as_file_error,
     as_usage_error,
     column_texts,
     command_line,
@@ -36,36 +36,34 @@ from bearing_sim.cli.reporting import (
     warn_of_scene,
     write_csv,
 )
+from bearing_sim.cli.results import command
 from bearing_sim.scene.display import number as number_text
 
 
 def _write(table, rows, picture, draw) -> None:
     """Write the rows of a study to a table and let ``draw`` draw into a picture, each where it is asked for."""
-    with as_file_error():
-        if table is not None:
-            write_csv(table, rows)
-        if picture is not None:
-            with picture.draft() as draft:
-                draw(draft)
+    if table is not None:
+        write_csv(table, rows)
+    if picture is not None:
+        with picture.draft() as draft:
+            draw(draft)
 
 
-@click.command("damage")
-@click.argument("log", type=click.Path(path_type=Path), metavar="IN.mcap")
+@command("damage")
+@click.argument("log", type=PATH, metavar="IN.mcap")
 @allow_outside_option
-@click.option("--scene", "scene_name", required=True, metavar="SCENE", help="Name of a bundled scene, or a scene file.")
+@option("--scene", "scene_name", "Name of a bundled scene, or a scene file.", required=True, metavar="SCENE")
 @set_option
-@click.option("--windows", default=10, show_default=True, type=click.IntRange(1, 1000), help="Number of windows that level planar computes.")
-@click.option("--length", default=1.0, show_default=True, type=click.FloatRange(min=0.01), metavar="S", help="Length of a window.")
+@option("--windows", "Number of windows that level planar computes.", IntRange(1, 1000), default=10)
+@option("--length", "Length of a window.", FloatRange(min=0.01), default=1.0, metavar="S")
 @json_option
 def damage(log, scene_name, overrides, windows, length, as_json):
     """Run the inputs in IN.mcap at levels steady and slip, and at level planar in windows spread evenly over them."""
-    from bearing_sim.inputs.log import InputLogError, read_input_log
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.simulation import IntegrationError
+    from bearing_sim.inputs.log import read_input_log
+    from bearing_sim.scene.loader import load_scene
 
-    with as_usage_error(SceneError, InputLogError), as_file_error():
-        scene = load_scene(scene_name, [*overrides, "level=steady"])
-        course = judged(read_input_log(log), scene)
+    scene = load_scene(scene_name, [*overrides, "level=steady"])
+    course = judged(read_input_log(log), scene)
     from bearing_sim.cli.table import build_with_progress
     from bearing_sim.studies.damage import damages
 
@@ -73,7 +71,7 @@ def damage(log, scene_name, overrides, windows, length, as_json):
     kelvin = scene.lubricant.temperature
     table = build_with_progress(scene, None if "oil_temperature" in course.stamps else (kelvin, kelvin))[0]
     run = course.segment(None, kelvin)
-    with progress_bar(f"running {log.name}", course.end * 1e-9) as show, as_usage_error(SceneError), as_failed_run(IntegrationError):
+    with progress_bar(f"running {log.name}", course.end * 1e-9) as show:
         found = damages(
             scene_name, overrides, run.instants * 1e-9, run.inputs, run.in_gap, table=table, windows=windows, length=length, progress=show
         )
@@ -97,20 +95,14 @@ def _print_damage(log, name, found) -> None:
     print_rows(f"{log.name}, {name}: damage in millionths of the life, by level", columns, rows)
 
 
-@click.command("misalignment", cls=WritingCommand)
+@command("misalignment")
 @allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
 @set_option
-@click.option("--largest", default=3.0, show_default=True, type=click.FloatRange(0.0, 20.0), metavar="MRAD", help="Largest misalignment.")
-@click.option("--points", default=7, show_default=True, type=click.IntRange(2, 1000), help="Number of misalignments, starting at 0.")
-@click.option("--crown", "crowns", multiple=True, metavar="LAW", help="Value of bearing.roller.crown; can be repeated [default: none, iso_log].")
-@click.option(
-    "--slices",
-    default=30,
-    show_default=True,
-    type=click.IntRange(5, 400),
-    help="Laminae per roller for life and pressures (ISO/TS 16281: at least 30).",
-)
+@option("--largest", "Largest misalignment.", FloatRange(0.0, 20.0), default=3.0, metavar="MRAD")
+@option("--points", "Number of misalignments, starting at 0.", IntRange(2, 1000), default=7)
+@option("--crown", "crowns", "Value of bearing.roller.crown; can be repeated [default: none, iso_log].", multiple=True, metavar="LAW")
+@option("--slices", "Laminae per roller for life and pressures (ISO/TS 16281: at least 30).", IntRange(5, 400), default=30)
 @csv_option("Write the results to a table.")
 @picture_option("Draw the results")
 @json_option
@@ -118,16 +110,13 @@ def misalignment(scene_name, overrides, largest, points, crowns, slices, table, 
     """Run SCENE at level spatial with its inner ring held at increasing misalignments, with and without a crown."""
     import numpy as np
 
-    from bearing_sim.scene.loader import SceneError
-    from bearing_sim.simulation import IntegrationError
-
     announce_compilation()
     from bearing_sim.studies.misalignment import CROWNS, draw, misalign
 
     crowns = crowns or CROWNS
     done = iter(range(points * len(crowns) + 1))
     amounts = [round(float(each), 9) for each in 1e-3 * np.linspace(0.0, largest, points)]
-    with progress_bar("points", points * len(crowns)) as show, as_usage_error(SceneError, ValueError), as_failed_run(IntegrationError):
+    with progress_bar("points", points * len(crowns)) as show, as_usage_error(ValueError):
         found = misalign(scene_name, overrides, amounts, crowns, slices, progress=lambda name: show(next(done)))
     rows = [_row(one) for one in found]
     title = f"{' '.join([scene_name, *overrides])}: misalignment of the inner ring, {slices} laminae"
@@ -166,14 +155,14 @@ def _print_misalignment(name, rows) -> None:
     click.echo("pressures, tilt and skew: time average of the largest value at each instant; no slip: life by slices in quasi-static equilibrium")
 
 
-@click.command("support", cls=WritingCommand)
+@command("support")
 @allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
 @set_option
-@click.option("--from", "lowest", default=10000.0, show_default=True, type=click.FloatRange(1.0), metavar="RPM", help="Lowest shaft speed.")
-@click.option("--to", "highest", default=52000.0, show_default=True, type=click.FloatRange(1.0), metavar="RPM", help="Highest shaft speed.")
-@click.option("--points", default=29, show_default=True, type=click.IntRange(2, 1000), help="Number of speeds.")
-@click.option("--level", default="planar", show_default=True, type=click.Choice(["planar", "spatial"]), help="Level with vibration.")
+@option("--from", "lowest", "Lowest shaft speed.", FloatRange(1.0), default=10000.0, metavar="RPM")
+@option("--to", "highest", "Highest shaft speed.", FloatRange(1.0), default=52000.0, metavar="RPM")
+@option("--points", "Number of speeds.", IntRange(2, 1000), default=29)
+@option("--level", "Level with vibration.", Choice(["planar", "spatial"]), default="planar")
 @csv_option("Write the results to a table.")
 @picture_option("Draw the results")
 @json_option
@@ -184,15 +173,12 @@ def support(scene_name, overrides, lowest, highest, points, level, table, pictur
     """
     import numpy as np
 
-    from bearing_sim.scene.loader import SceneError
-    from bearing_sim.simulation import IntegrationError
-
     announce_compilation()
     from bearing_sim.studies.support import draw, relative_damage, respond
 
     done = iter(range(3 * points + 1))
     speeds = [float(each) for each in np.linspace(lowest, highest, points) * (math.pi / 30)]
-    with progress_bar("points", 3 * points) as show, as_usage_error(SceneError), as_failed_run(IntegrationError):
+    with progress_bar("points", 3 * points) as show:
         found = respond(scene_name, overrides, speeds, level, progress=lambda name: show(next(done)))
     relative = relative_damage(found)
     rows = [_response_row(one, relative) for one in found]
@@ -206,14 +192,14 @@ def support(scene_name, overrides, lowest, highest, points, level, table, pictur
         print_rows(f"{scene_name}: response over speed, level {level}", columns, texts, words=("model",))
 
 
-@click.command("resonances", cls=WritingCommand)
+@command("resonances")
 @allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
 @set_option
-@click.option("--from", "lowest", type=click.FloatRange(1.0), metavar="RPM", help="Lowest shaft speed [default: 0.5 of the scene's].")
-@click.option("--to", "highest", type=click.FloatRange(1.0), metavar="RPM", help="Highest shaft speed [default: 1.3 of the scene's].")
-@click.option("--points", default=33, show_default=True, type=click.IntRange(2, 1000), help="Number of speeds.")
-@click.option("--level", default="planar", show_default=True, type=click.Choice(["planar", "spatial"]), help="Level with vibration.")
+@option("--from", "lowest", "Lowest shaft speed [default: 0.5 of the scene's].", FloatRange(1.0), metavar="RPM")
+@option("--to", "highest", "Highest shaft speed [default: 1.3 of the scene's].", FloatRange(1.0), metavar="RPM")
+@option("--points", "Number of speeds.", IntRange(2, 1000), default=33)
+@option("--level", "Level with vibration.", Choice(["planar", "spatial"]), default="planar")
 @csv_option("Write the results to a table.")
 @picture_option("Draw the results")
 @json_option
@@ -221,10 +207,9 @@ def resonances(scene_name, overrides, lowest, highest, points, level, table, pic
     """Show over speed where the passing rollers make the inner ring of SCENE vibrate on its contacts, and in which states it stays."""
     import numpy as np
 
-    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.scene.loader import load_scene
 
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, [*overrides, f"level={level}"])
+    scene = load_scene(scene_name, [*overrides, f"level={level}"])
     announce_compilation(scene)
     from bearing_sim.studies.resonances import draw, resonances
 
@@ -277,12 +262,10 @@ def _response_row(one, relative) -> dict:
     }
 
 
-@click.command("friction", cls=WritingCommand)
+@command("friction")
 @scene_argument
 @set_option
-@click.option(
-    "--series", metavar="SERIES", help="Series of SCENE's bearing: 10, 2, 3, 4, 22, 23, or NCF 22, NCF 29, NCF 30 [default: by its designation]."
-)
+@option("--series", "Series of SCENE's bearing: 10, 2, 3, 4, 22, 23, or NCF 22, NCF 29, NCF 30 [default: by its designation].", metavar="SERIES")
 @json_option
 def friction(scene_name, overrides, series, as_json):
     """Compare the friction of SCENE at its operating point with makers' models.
@@ -290,21 +273,19 @@ def friction(scene_name, overrides, series, as_json):
     With heat.law network SCENE is in thermal equilibrium, as in `bearing-sim run`; where there is none, the command fails and says why.
     """
     from bearing_sim.scene.display import force, number, power
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.simulation import IntegrationError
+    from bearing_sim.scene.loader import load_scene
     from bearing_sim.studies.friction import SERIES, compare, series_of
     from bearing_sim.studies.sheet import temperatures, temperatures_text
 
     announce_compilation()
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, overrides)
+    scene = load_scene(scene_name, overrides)
     refuse_idle_temperature(scene, overrides)
     series = " ".join(series.upper().split()) if series else series_of(scene.bearing.designation or scene.bearing.name)
     if series not in SERIES:
         named = scene.bearing.designation or scene.bearing.name
         raise UsageError(f"--series: makers publish constants for series {', '.join(SERIES)}; name that of {named!r}, or the nearest")
     warn_of_scene(scene, before_results=False)
-    with as_usage_error(ValueError), as_failed_run(IntegrationError):
+    with as_usage_error(ValueError):
         found = compare(scene, series)
     warm = temperatures(found.temperatures)
     if as_json:
@@ -323,13 +304,13 @@ def friction(scene_name, overrides, series, as_json):
     print_table(title, [(name, power(watts)) for name, watts in rows] + warmth)
 
 
-@click.command("clearance", cls=WritingCommand)
+@command("clearance")
 @scene_argument
 @set_option
-@click.option("--speed", "speeds", metavar="START:STOP:N", help="Shaft speeds [default: 9 from 20 to 120 % of the scene's].")
-@click.option("--load", "loads", metavar="START:STOP:N", help="Radial loads, or one [default: 7 from 0.5 to 3.5 times the scene's].")
-@click.option("--life-above", default="10 h", show_default=True, metavar="LIFE", help="Life below which it counts as lost.")
-@click.option("-o", "--out", type=OutputTable(), metavar="PATH.parquet", help="Also write the table, and PATH.csv.")
+@option("--speed", "speeds", "Shaft speeds [default: 9 from 20 to 120 % of the scene's].", metavar="START:STOP:N")
+@option("--load", "loads", "Radial loads, or one [default: 7 from 0.5 to 3.5 times the scene's].", metavar="START:STOP:N")
+@option("--life-above", "Life below which it counts as lost.", default="10 h", metavar="LIFE")
+@option("-o", "--out", "Also write the table, and PATH.csv.", OutputTable(), metavar="PATH.parquet")
 @picture_option("Draw the map; lines with one load")
 @json_option
 def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as_json):
@@ -342,11 +323,10 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as
     """
     from pydantic_core import ValidationError
 
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.sweep.grid import FieldError, read_axis
+    from bearing_sim.scene.loader import load_scene
+    from bearing_sim.sweep.grid import read_axis
 
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, overrides)
+    scene = load_scene(scene_name, overrides)
     warn_of_scene(scene)
     announce_compilation()
     from bearing_sim.studies.clearance_map import LOAD, SPEED, draw, in_words, map_clearance
@@ -357,7 +337,7 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as
         (SPEED, speeds or _from_to(operating.shaft_speed, 0.2, 1.2, 9, "rad/s")),
         (LOAD, loads or _from_to(operating.radial_load, 0.5, 3.5, 7, "N")),
     )
-    with as_usage_error(FieldError, ValueError):
+    with as_usage_error(ValueError):
         grid = [sorted(read_axis(f"{field}={text}", written=True).values) for field, text in defaults]
         least = quantity_of("--life-above", life_above, "h")
     files, study = [], study_digest("clearance", scene, grid, least)
@@ -365,15 +345,14 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as
         require_same_study(out, study)
     with progress_bar("points", math.prod(map(len, grid))) as show, as_usage_error(ValidationError):
         found = map_clearance(scene, *grid, least, show)
-    with as_file_error():
-        if out is not None:
-            require_same_study(out, study)
-            table = found.table._replace(about=found.table.about | {"command": command_line(), "study": study})
-            files += write_table(out.path, table)
-        if picture is not None:
-            with picture.draft() as draft:
-                draw(draft, _title(scene, overrides), found)
-            files.append(picture.path)
+    if out is not None:
+        require_same_study(out, study)
+        table = found.table._replace(about=found.table.about | {"command": command_line(), "study": study})
+        files += write_table(out.path, table)
+    if picture is not None:
+        with picture.draft() as draft:
+            draw(draft, _title(scene, overrides), found)
+        files.append(picture.path)
     words = in_words(found)
     if as_json:
         losses = [each._asdict() for each in found.losses]
@@ -421,13 +400,13 @@ def _print_clearances(table) -> None:
     print_rows(title, headings, zip(*columns), words=("status",), keys=2)
 
 
-@click.command("extremes", cls=WritingCommand)
+@command("extremes")
 @scene_argument
 @set_option
-@click.option("--samples", default=100, show_default=True, type=click.IntRange(1, 1_000_000), help="Number of variants.")
-@click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the variants.")
-@click.option("--journal", type=OutputJournal(), metavar="PATH", help="File from which an interrupted study resumes.")
-@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
+@option("--samples", "Number of variants.", IntRange(1, 1_000_000), default=100)
+@option("--seed", "Seed of the variants.", IntRange(0), default=0)
+@option("--journal", "File from which an interrupted study resumes.", OutputJournal(), metavar="PATH")
+@option("--workers", "Number of processes [default: all cores].", IntRange(1, 1024), metavar="N")
 @json_option
 @picture_option("Draw the map")
 @csv_option("Write all runs, one per line.")
@@ -438,12 +417,10 @@ def extremes(scene_name, overrides, samples, seed, journal, workers, as_json, pi
     cages, narrow and wide pockets and lands, under steady inputs, starts, stops, reversals, steps and ripples. Every variant runs for at
     least 50 turns of its cage, or until it settles; then its books of energy are checked. Exit code 1 if any run fails.
     """
-    from bearing_sim.scene.loader import SceneError
     from bearing_sim.studies.extremes import counts, draw, run_extremes, table_rows
-    from bearing_sim.sweep.tasks import JournalInUse
 
     announce_compilation()
-    with as_file_error(), as_usage_error(SceneError, JournalInUse), Points("variants", samples) as points:
+    with Points("variants", samples) as points:
         outcomes = run_extremes(scene_name, overrides, samples, seed, journal and journal.path, workers, points.update)
     found = counts(outcomes)
     _write(table, table_rows(outcomes), picture, lambda draft: draw(draft, f"{scene_name}: {samples} variants at its extremes", outcomes))

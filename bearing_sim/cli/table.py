@@ -9,50 +9,36 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import click
+from click import IntRange
 
-from bearing_sim.cli.options import json_option, scene_argument, set_option
-from bearing_sim.cli.outputs import OutputFile, WritingCommand
+from bearing_sim.cli.options import PATH, flag, json_option, option, scene_argument, set_option
+from bearing_sim.cli.outputs import OutputFile
 from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
-    as_failed_run,
     as_usage_error,
     print_json,
     print_table,
     progress_bar,
 )
+from bearing_sim.cli.results import command
 from bearing_sim.scene.display import SHOWN, force, number, quantity_text, shown
 
 _LINE_EVERY = 10.0  # [s], of progress where nothing can change a line
 
 
-@click.command("table", cls=WritingCommand)
+@command("table")
 @scene_argument
 @set_option
-@click.option("--rebuild", is_flag=True, help="Build the table even if it exists.")
-@click.option("--workers", type=click.IntRange(1, 256), metavar="N", help="Number of threads [default: all cores].")
-@click.option(
-    "--at", "points", multiple=True, metavar="RPM,N[,DEGC[,DEG]]", help="Show this operating point, interpolated and solved; can be repeated."
-)
-@click.option("-o", "--out", type=OutputFile(), metavar="FILE.npz", help="Also write the table to this file, for another machine.")
-@click.option(
-    "--from",
-    "shared",
-    type=click.Path(path_type=Path),
-    metavar="FILE.npz",
-    help="Build nothing: keep the table that another machine has written for this scene with -o.",
-)
-@click.option(
-    "--against-slip",
-    type=click.IntRange(1, 10_000),
-    metavar="N",
-    help="Instead compare the solver with level slip at N random operating points.",
-)
-@click.option("--seed", default=2017, show_default=True, help="Seed of the random points.")
-@click.option(
-    "--bands", is_flag=True, help="Instead build the response to the uncertain fields, from which bands and calibration follow, or show it."
-)
-@click.option("--dask", metavar="ADDRESS", help="Compute that response on this Dask cluster, such as tcp://10.0.0.1:8786.")
+@flag("--rebuild", "Build the table even if it exists.")
+@option("--workers", "Number of threads [default: all cores].", IntRange(1, 256), metavar="N")
+@option("--at", "points", "Show this operating point, interpolated and solved; can be repeated.", multiple=True, metavar="RPM,N[,DEGC[,DEG]]")
+@option("-o", "--out", "Also write the table to this file, for another machine.", OutputFile(), metavar="FILE.npz")
+@option("--from", "shared", "Build nothing: keep the table that another machine has written for this scene with -o.", PATH, metavar="FILE.npz")
+@option("--against-slip", "Instead compare the solver with level slip at N random operating points.", IntRange(1, 10_000), metavar="N")
+@option("--seed", "Seed of the random points.", default=2017)
+@flag("--bands", "Instead build the response to the uncertain fields, from which bands and calibration follow, or show it.")
+@option("--dask", "Compute that response on this Dask cluster, such as tcp://10.0.0.1:8786.", metavar="ADDRESS")
 @json_option
 def table(scene_name, overrides, rebuild, workers, points, out, shared, against_slip, seed, bands, dask, as_json):
     """Build the table of operating points of SCENE at level steady, or show the existing one.
@@ -60,10 +46,9 @@ def table(scene_name, overrides, rebuild, workers, points, out, shared, against_
     Its range is given in the scene's block `table` (maximum_speed, maximum_load, minimum_temperature, maximum_temperature, tolerance);
     it covers all directions of the load. A point of --at is as warm as a run there: with heat.law network in thermal equilibrium.
     """
-    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.scene.loader import load_scene
 
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, [*overrides, "level=steady"])
+    scene = load_scene(scene_name, [*overrides, "level=steady"])
     if (bands or against_slip is not None) and (out is not None or shared is not None):
         raise UsageError("-o and --from are for the table itself; leave --bands and --against-slip out")
     if shared is not None and rebuild:
@@ -130,9 +115,7 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
     rebuild : whether to build it even if it exists.
     """
     from bearing_sim.levels.steady.table_builder import cached_table, obtain_table
-    from bearing_sim.scene.loader import SceneError
     from bearing_sim.studies.correction import obtain_correction
-    from bearing_sim.sweep.tasks import JournalInUse
 
     kept = None if rebuild else cached_table(scene, temperatures)
     if kept is not None:
@@ -140,7 +123,7 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
     click.echo(f"building the table of operating points of {scene.name}, once for this bearing and oil ...", err=True)
     correction = None
     if (level := scene.table.correction) != "none":
-        with as_usage_error(SceneError, ValueError, JournalInUse), progress_bar(f"operating points at level {level}", 1.0) as show:
+        with as_usage_error(ValueError), progress_bar(f"operating points at level {level}", 1.0) as show:
             correction = obtain_correction(scene, temperatures, workers, lambda done, most: show(done / most), rebuild)
     with _points_solved() as show:
         return obtain_table(scene, temperatures, workers, show, rebuild, correction and (lambda: correction))
@@ -172,11 +155,9 @@ def _points_solved() -> Iterator[Callable[[int, int], None]]:
 
 def _taken(path, scene):
     """Return the table of a file that another machine has written, and its quality, and keep it for the scene."""
-    from bearing_sim.files.limits import FileError
     from bearing_sim.levels.steady.shared_table import take_table
 
-    with as_usage_error(FileError, OSError):
-        return take_table(path, scene)
+    return take_table(path, scene)
 
 
 def _condition(text, scene) -> tuple[float, float, float, float]:
@@ -197,14 +178,13 @@ def _answers(scene, table, condition) -> dict:
     from bearing_sim.levels.steady.operating_point import ANSWER
     from bearing_sim.levels.steady.table_builder import holds, look_up
     from bearing_sim.model.sample import NODE_OBSERVABLES
-    from bearing_sim.simulation import Inputs, IntegrationError
+    from bearing_sim.simulation import Inputs
     from bearing_sim.studies.sheet import temperatures
     from bearing_sim.sweep.thermal import operating_state, solved_answer, table_condition
 
     speed, load, kelvin, angle = condition
     inputs = Inputs(speed, load * math.cos(angle), load * math.sin(angle), kelvin)
-    with as_failed_run(IntegrationError):
-        state = operating_state(scene, inputs)
+    state = operating_state(scene, inputs)
     place = table_condition(state, inputs)
     solved, interpolated = solved_answer(state, inputs), look_up(table, [place])[0]
     named = {name: [float(interpolated[column]), float(solved[column])] for name, column in ANSWER._asdict().items()}

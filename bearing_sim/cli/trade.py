@@ -17,7 +17,7 @@ from bearing_sim.cli.options import (
     scene_argument,
     set_option,
 )
-from bearing_sim.cli.outputs import OutputJournal, WritingCommand
+from bearing_sim.cli.outputs import OutputJournal
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
@@ -30,6 +30,7 @@ from bearing_sim.cli.reporting import (
     print_rows,
     write_csv,
 )
+from bearing_sim.cli.results import command
 from bearing_sim.scene.quantity import in_digits
 
 _COURSES = ("manoeuvre", "run_down", "start", "idle")
@@ -47,7 +48,7 @@ _ERRORS = {
 _FASTER, _CLOSER = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
 
 
-@click.command("trade", cls=WritingCommand)
+@command("trade")
 @scene_argument
 @set_option
 @click.option("--level", "levels", multiple=True, type=level_type, help="Measure this level; can be repeated [default: all].")

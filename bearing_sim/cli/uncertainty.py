@@ -2,16 +2,15 @@
 """``bearing-sim uncertainty``: bands of slip and life where nobody knows some fields, and which field they come from."""
 
 import time
-from pathlib import Path
 
 import click
+from click import IntRange
 
-from bearing_sim.cli.options import csv_option_of, executor_options, json_option, level_type, picture_option, scene_argument, set_option
-from bearing_sim.cli.outputs import OutputWithJournal, WritingCommand
+from bearing_sim.cli.options import PATH, csv_option_of, executor_options, json_option, level_type, option, picture_option, scene_argument, set_option
+from bearing_sim.cli.outputs import OutputWithJournal
 from bearing_sim.cli.reporting import (
     Points,
     announce_compilation,
-    as_file_error,
     as_usage_error,
     judged,
     print_json,
@@ -21,20 +20,19 @@ from bearing_sim.cli.reporting import (
     warn_of_scene,
     write_csv,
 )
+from bearing_sim.cli.results import command
 
 SEED = 2017
 
 
-@click.command("uncertainty", cls=WritingCommand)
+@command("uncertainty")
 @scene_argument
 @set_option
-@click.option(
-    "--samples", default=256, show_default=True, type=click.IntRange(2, 65536), help="Size of each of the two samples; rounded up to a power of two."
-)
-@click.option("--seed", default=SEED, show_default=True, type=click.IntRange(0), help="Seed of the samples.")
-@click.option("--level", type=level_type, help="Level of fidelity [default: the fastest that supports the scene].")
-@click.option("--log", type=click.Path(path_type=Path), metavar="IN.mcap", help="Compute the ranges over time, for speed and load in a log.")
-@click.option("--stretches", default=24, show_default=True, type=click.IntRange(1, 10_000), help="Number of intervals into which the log is divided.")
+@option("--samples", "Size of each of the two samples; rounded up to a power of two.", IntRange(2, 65536), default=256)
+@option("--seed", "Seed of the samples.", IntRange(0), default=SEED)
+@option("--level", "Level of fidelity [default: the fastest that supports the scene].", level_type)
+@option("--log", "Compute the ranges over time, for speed and load in a log.", PATH, metavar="IN.mcap")
+@option("--stretches", "Number of intervals into which the log is divided.", IntRange(1, 10_000), default=24)
 @executor_options
 @csv_option_of(OutputWithJournal(), "Write all points; also written: PATH.journal, from which an interrupted run resumes.")
 @picture_option("Draw ranges and shares")
@@ -47,36 +45,33 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     unless the scene has another one for them.
     To change a range: --set "uncertainty.lubricant.temperature=[90 degC, 130 degC]"; to remove one: --set uncertainty.FIELD=null.
     """
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.sweep.tasks import Journal, JournalInUse
+    from bearing_sim.scene.loader import load_scene
+    from bearing_sim.sweep.tasks import Journal
 
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, overrides)
+    scene = load_scene(scene_name, overrides)
     refuse_idle_temperature(scene, overrides)
     warn_of_scene(scene, before_results=False)
     scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
-    with as_file_error(), as_usage_error(JournalInUse):
-        from bearing_sim.studies.uncertainty import rounded_up
-        from bearing_sim.sweep.table import note_points, same_points, study_digest
+    from bearing_sim.studies.uncertainty import rounded_up
+    from bearing_sim.sweep.table import note_points, same_points, study_digest
 
-        conditions = course and (course.seconds.tolist(), course.conditions.tolist())
-        digest = study_digest("uncertainty", scene, rounded_up(samples), seed, level, conditions)
+    conditions = course and (course.seconds.tolist(), course.conditions.tolist())
+    digest = study_digest("uncertainty", scene, rounded_up(samples), seed, level, conditions)
+    if table is not None:
+        table = same_points(table, digest)
+    with Journal(table and table.path.with_suffix(".journal")) as journal:
+        found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
         if table is not None:
-            table = same_points(table, digest)
-        with Journal(table and table.path.with_suffix(".journal")) as journal:
-            found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
-            if table is not None:
-                write_csv(table, _rows(found))
-                note_points(journal, digest, table.path)
-    with as_file_error():
-        if picture is not None:
-            from bearing_sim.studies.run_plot import life_label
-            from bearing_sim.studies.uncertainty import draw
+            write_csv(table, _rows(found))
+            note_points(journal, digest, table.path)
+    if picture is not None:
+        from bearing_sim.studies.run_plot import life_label
+        from bearing_sim.studies.uncertainty import draw
 
-            ranges = f"{len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
-            with picture.draft() as draft:
-                title = f"{scene.name}{'' if log is None else f' under {log.name}'}: {ranges}"
-                draw(draft, title, found, life_label([scene]), course and course.middles)
+        ranges = f"{len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
+        with picture.draft() as draft:
+            title = f"{scene.name}{'' if log is None else f' under {log.name}'}: {ranges}"
+            draw(draft, title, found, life_label([scene]), course and course.middles)
     if as_json:
         print_json({"scene": scene.name, "log": log and log.name, **report, **unknown})
     else:
@@ -94,17 +89,12 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, w
     course : `bearing_sim.studies.uncertainty.Stretches`, or None.
     """
     announce_compilation()
-    from bearing_sim.studies.uncertainty import UncertaintyError, lowest_level, rounded_up, study, varied_ranges
-    from bearing_sim.sweep.tasks import ClusterError
+    from bearing_sim.studies.uncertainty import lowest_level, rounded_up, study, varied_ranges
 
     base = rounded_up(samples)
     began, given = time.perf_counter(), (course.conditions, course.seconds) if course is not None else None
-    with as_usage_error(UncertaintyError):
-        fields = len(varied_ranges(lowest_level(scene, level)[0]))
-    with (
-        Points(f"uncertainty of {scene.name}", base * (fields + 2)) as points,
-        as_usage_error(UncertaintyError, ClusterError, ValueError),
-    ):
+    fields = len(varied_ranges(lowest_level(scene, level)[0]))
+    with Points(f"uncertainty of {scene.name}", base * (fields + 2)) as points, as_usage_error(ValueError):
         found = study(scene, base, seed, level=level, course=given, journal=journal, workers=workers, dask=dask, progress=points.update)
     return found, {**_report(scene, found, seed, time.perf_counter() - began, course), "kept_from_before": points.kept}
 
@@ -113,12 +103,11 @@ def _course(log, scene, count):
     """Return the scene, without ranges of fields that the log gives, the log's inputs in intervals, and for how long they are unknown."""
     import math
 
-    from bearing_sim.inputs.log import InputLogError, read_input_log
+    from bearing_sim.inputs.log import read_input_log
     from bearing_sim.scene.uncertainty import without_range
     from bearing_sim.studies.uncertainty import stretches
 
-    with as_usage_error(InputLogError), as_file_error():
-        course = judged(read_input_log(log), scene)
+    course = judged(read_input_log(log), scene)
     kelvin = math.nan  # the scene's own, which may be uncertain
     if "oil_temperature" in course.stamps and any(one.field == "lubricant.temperature" for one in scene.uncertainty):
         click.echo("the log gives the oil temperature: its range in the scene is not used", err=True)

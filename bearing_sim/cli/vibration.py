@@ -8,7 +8,6 @@ import click
 import numpy as np
 
 from bearing_sim.cli.options import allow_outside_option, csv_option, json_option, picture_option
-from bearing_sim.cli.outputs import WritingCommand
 from bearing_sim.cli.reporting import (
     UsageError,
     as_file_error,
@@ -20,6 +19,7 @@ from bearing_sim.cli.reporting import (
     tell_use,
     write_csv,
 )
+from bearing_sim.cli.results import command
 
 _LARGEST_PARTS = 100_000
 _MARGIN = 1.5  # times the largest slip of the model and of draws of its uncertain fields (assumption: draws are few)
@@ -27,7 +27,7 @@ _CAGE = "the cage, or a roller at each turn of the cage"
 _SOURCES = {"lines": "by its own lines", "recorded": "as recorded", "given": "as given; it has no clear lines of its own"}
 
 
-@click.command("vibration", cls=WritingCommand)
+@command("vibration")
 @click.argument("data", type=click.Path(path_type=Path), metavar="FILE")
 @allow_outside_option
 @click.option("--bearing", metavar="BEARING", help="Designation such as 'NU 205', or a bundled bearing; its rollers and diameters are used.")
