@@ -13,30 +13,32 @@ from bearing_sim.cli.reporting import (
     announce_compilation,
     as_failed_run,
     as_usage_error,
-    print_json,
     print_table,
     refuse_idle_temperature,
+    scene_of,
     warn_of_limits,
     warn_of_scene,
     warnings_report,
 )
-from bearing_sim.cli.results import command
+from bearing_sim.cli.results import Result, command, picture_into
 
 
 @command("scenes")
 @json_option
-def scenes(as_json):
+def scenes():
     """List the bundled scenes, bearings, oils, greases and CSV mappings."""
     from bearing_sim.scene.loader import catalog_names, load_scene, scene_names
 
     found = {"scenes": {name: load_scene(name).description for name in scene_names()}}
     found |= {kind: catalog_names(kind) for kind in ("bearings", "oils", "greases", "mappings")}
-    if as_json:
-        print_json(found)
-        return
-    print_table("scenes", found["scenes"].items())
-    print_table("catalog", [(kind, ", ".join(found[kind])) for kind in ("bearings", "oils", "greases", "mappings")])
-    click.echo("any designation, such as NU 210 ECP/C3, is a bearing, too (bearing-sim catalog), and ISO VG 2 to 3200 are oils")
+
+    def show():
+        print_table("scenes", found["scenes"].items())
+        print_table("catalog", [(kind, ", ".join(found[kind])) for kind in ("bearings", "oils", "greases", "mappings")])
+
+    return Result(
+        found, show, remarks=["any designation, such as NU 210 ECP/C3, is a bearing, too (bearing-sim catalog), and ISO VG 2 to 3200 are oils"]
+    )
 
 
 @command("loads")
@@ -52,9 +54,7 @@ def loads(scene_name, overrides, slices, picture, verbose, as_json):
     With heat.law network the bearing is in thermal equilibrium, as in `bearing-sim run`; where there is none, the command fails and says why.
     A moment or a misalignment requires level spatial, in the scene or by --set level=spatial.
     """
-    from bearing_sim.scene.loader import load_scene
-
-    scene = load_scene(scene_name, overrides)
+    scene = scene_of(scene_name, overrides)
     refuse_idle_temperature(scene, overrides)
     warn_of_scene(scene)
     announce_compilation()
@@ -70,13 +70,10 @@ def loads(scene_name, overrides, slices, picture, verbose, as_json):
         from bearing_sim.studies.statics import draw
 
         operating = (quantity_text(name, getattr(scene.operating, name)) for name in ("radial_load", "shaft_speed"))
-        with picture.draft() as draft:
-            draw(draft, f"{scene.name}: {' at '.join(operating)}", found)
+        picture_into(picture, draw, f"{scene.name}: {' at '.join(operating)}", found)
     warnings = graded(scene, outside(scene, found.sample), found.sample[0])
-    if as_json:
-        print_json({**_report_loads(scene, slices, found), **warnings_report(scene, warnings), "picture": picture and str(picture)})
-    else:
-        _print_loads(scene, slices, found)
+    report = {**_report_loads(scene, slices, found), **warnings_report(scene, warnings), "picture": picture and str(picture)}
+    Result(report, lambda: _print_loads(scene, slices, found)).deliver(as_json)
     warn_of_limits(scene, warnings, verbose)
 
 
@@ -242,12 +239,8 @@ def machine(
     if picture is not None:
         from bearing_sim.studies.machining import draw
 
-        with picture.draft() as draft:
-            draw(draft, section, pressing, machined)
-    if as_json:
-        print_json({**report, "out": out and str(out), "picture": picture and str(picture)})
-    else:
-        _print_machine(report)
+        picture_into(picture, draw, section, pressing, machined)
+    Result({**report, "out": out and str(out), "picture": picture and str(picture)}, lambda: _print_machine(report)).deliver(as_json)
     if len(machined.lows) != arcs:
         click.echo(f"note: {arcs} arcs give {len(machined.lows)} low points: the turned arc has removed a lobe", err=True)
 

@@ -11,13 +11,12 @@ from bearing_sim.cli.reporting import (
     announce_compilation,
     as_usage_error,
     judged,
-    print_json,
     print_table,
     progress_bar,
     unknown_report,
     warn_of_scene,
 )
-from bearing_sim.cli.results import command
+from bearing_sim.cli.results import Result, command
 
 _EXPECTED = 30  # evaluations of a typical search, for the progress bar
 _UNLIKELY = 0.01
@@ -43,9 +42,7 @@ _UNLIKELY = 0.01
 )
 @option("--cage-joint", "Name of the cage's joint in JointState messages.", default="cage", metavar="NAME")
 @json_option
-def calibrate(
-    log, scene_name, overrides, fields, batch, confidence, out, picture, cage, joint, cage_joint, stamps, longest_gap, as_json, **channels
-):  # fmt: skip
+def calibrate(log, scene_name, overrides, fields, batch, confidence, out, cage, joint, cage_joint, stamps, longest_gap, **channels):
     """Fit fields of a scene to the cage speed measured in RUN.mcap, within their ranges in the scene's block `uncertainty`.
 
     RUN.mcap is any rosbag2 recording in MCAP with shaft speed, radial load and measured cage speed: from bearing-sim, from any bag, or
@@ -55,7 +52,7 @@ def calibrate(
     warn_of_scene(scene, before_results=False)
     measured, lines, unknown = _measured(log, scene, channels, cage, joint, stamps, cage_joint, longest_gap)
     announce_compilation(scene)
-    from bearing_sim.studies.calibration import block_length, calibrate, cut
+    from bearing_sim.studies.calibration import block_length, calibrate, cut, draw
 
     length = batch or block_length(measured.times[-1] - measured.times[0])
     blocks = cut(measured, scene.bearing.diameter_ratio, scene.thresholds.slip_from_speed, length)
@@ -64,15 +61,8 @@ def calibrate(
         found = calibrate(scene, asked, blocks, confidence=confidence, progress=show)
     if out is not None:
         _write(out, log, found)
-    if picture is not None:
-        from bearing_sim.studies.calibration import draw
-
-        with picture.draft() as draft:
-            draw(draft, f"{scene.name} calibrated by {log.name}", found)
-    if as_json:
-        print_json({**_report(log, scene, found), **unknown})
-    else:
-        _print(log, scene, found, lines, out)
+    title = f"{scene.name} calibrated by {log.name}"
+    return Result({**_report(log, scene, found), **unknown}, lambda: _print(title, scene, found, lines, out), lambda draft: draw(draft, title, found))
 
 
 def _scene(log, scene_name, overrides):
@@ -158,7 +148,7 @@ def _report(log, scene, found) -> dict:
     }
 
 
-def _print(log, scene, found, lines, out) -> None:
+def _print(title, scene, found, lines, out) -> None:
     from bearing_sim.scene.uncertainty import quantities
 
     known, blocks = quantities(type(scene)), found.blocks
@@ -188,7 +178,7 @@ def _print(log, scene, found, lines, out) -> None:
     ]
     if scene.level not in ("steady", "slip"):
         rows.append(("level", f"fitted at level steady; the slip of the scene's level {scene.level} differs by what `bearing-sim trade` shows"))
-    print_table(f"{scene.name} calibrated by {log.name}", rows)
+    print_table(title, rows)
 
 
 def _points(found) -> str:

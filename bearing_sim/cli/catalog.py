@@ -9,8 +9,8 @@ from click import Choice
 
 from bearing_sim.cli.options import json_option, level_type, option, picture_option
 from bearing_sim.cli.outputs import OutputFile
-from bearing_sim.cli.reporting import UsageError, command_line, print_json, print_rows, print_table, quantity_of
-from bearing_sim.cli.results import command
+from bearing_sim.cli.reporting import UsageError, command_line, print_rows, print_table, quantity_of
+from bearing_sim.cli.results import Result, command, picture_into
 
 _COLUMNS = ("designation", "d", "D", "B", "C [kN]", "C_0 [kN]", "C_u [kN]", "limiting speed [rpm]", "ratings by")
 _WORDS = ("designation", "ratings by")
@@ -51,7 +51,7 @@ def _above_option(name: str, unit: str, meaning: str, example: str):
 @_above_option("--limiting-speed-above", "rad/s", "Limiting speed", "6000rpm")
 @picture_option("Draw the bearing")
 @json_option
-def catalog(designation, types, series, bore, outside, width, dynamic_rating_above, static_rating_above, limiting_speed_above, picture, as_json):
+def catalog(designation, types, series, bore, outside, width, dynamic_rating_above, static_rating_above, limiting_speed_above, picture):
     """List the cylindrical roller bearings of the catalogue, or show the one of DESIGNATION, such as "NU 210 ECP/C3".
 
     Options choose from the list.  Wherever a scene names a bearing, a designation may stand.
@@ -62,27 +62,27 @@ def catalog(designation, types, series, bore, outside, width, dynamic_rating_abo
     if designation is None:
         if picture is not None:
             raise UsageError("--picture draws one bearing; give its designation, such as: bearing-sim catalog 'NU 210' --picture nu210.png")
-        _list(types, series, bounds, least, as_json)
-        return
+        return _list(types, series, bounds, least)
     if chosen:
         raise UsageError("options that choose from the list do not go with a designation; give one or the other")
-    _show(designation, picture, as_json)
+    return _show(designation, picture)
 
 
-def _list(types, series, bounds, least, as_json) -> None:
+def _list(types, series, bounds, least) -> Result:
     from bearing_sim.scene.designation import SERIES, TYPES
 
     _check_words("--type", types, TYPES)
     _check_words("--series", series, SERIES)
     kinds = {each.upper() for each in types}
     found = [row for row in _rows(kinds, series, bounds) if all(low is None or (row[name] or 0.0) >= low for name, low in least.items())]
-    if as_json:
-        print_json({"bearings": found})
-        return
-    if not found:
-        click.echo("no bearing of the catalogue is like that; see bearing-sim catalog --help", err=True)
-        return
-    print_rows(f"{len(found)} bearings, lengths in mm", _COLUMNS, [_cells(row) for row in found], _WORDS)
+
+    def show():
+        if found:
+            print_rows(f"{len(found)} bearings, lengths in mm", _COLUMNS, [_cells(row) for row in found], _WORDS)
+        else:
+            click.echo("no bearing of the catalogue is like that; see bearing-sim catalog --help", err=True)
+
+    return Result({"bearings": found}, show)
 
 
 def _check_words(option: str, given, known) -> None:
@@ -132,7 +132,7 @@ def _cells(row) -> tuple[str, ...]:
     return row["designation"], *lengths, *forces, speed, row["ratings_by"]
 
 
-def _show(designation: str, picture, as_json) -> None:
+def _show(designation: str, picture) -> Result:
     from bearing_sim.scene.loader import load_bearing
     from bearing_sim.studies.bearing_facts import facts, rows
 
@@ -140,14 +140,12 @@ def _show(designation: str, picture, as_json) -> None:
     if picture is not None:
         from bearing_sim.studies.bearing_drawing import draw
 
-        with picture.draft() as draft:
-            draw(draft, bearing)
-    if as_json:
-        print_json({**facts(bearing), "picture": picture and str(picture)})
-        return
-    print_table(bearing.designation or bearing.name, rows(bearing))
-    if picture is None:
-        click.echo("--picture bearing.png draws it; bearing-sim new writes a scene with it")
+        picture_into(picture, draw, bearing)
+    return Result(
+        {**facts(bearing), "picture": picture and str(picture)},
+        lambda: print_table(bearing.designation or bearing.name, rows(bearing)),
+        remarks=[] if picture else ["--picture bearing.png draws it; bearing-sim new writes a scene with it"],
+    )
 
 
 @command("new")

@@ -9,14 +9,13 @@ from bearing_sim.cli.options import allow_outside_option, json_option, option, p
 from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
-    print_json,
     print_rows,
     progress_bar,
     quantity_of,
     seconds_of,
     warn_of_scene,
 )
-from bearing_sim.cli.results import command
+from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.display import force, number
 
 
@@ -31,7 +30,7 @@ from bearing_sim.scene.display import force, number
 @option("--rise", "Time in which the load rises, at most 10 s.", default="1 s", metavar="S")
 @picture_option("Draw the courses", "-o", "--out")
 @json_option
-def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise, picture, as_json):
+def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise, picture):
     """Follow SCENE from a cold start: it idles, its losses warm it, then the load comes, until it is near thermal equilibrium.
 
     Once from ideal rolling and once from a skid.  A second table says what the load does to the cage if it comes earlier, and to a warm machine that
@@ -58,17 +57,12 @@ def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise, 
     announce_compilation(scene, with_states=True)
     with progress_bar("cold start", len(newtons or SHARES)) as show:
         found = follow(scene, newtons, afterwards, seconds, kelvin, rising, show)
-    if picture is not None:
-        with picture.draft() as draft:
-            draw_courses(found, draft, f"{scene.name}: cold start from {kelvin - 273.15:g} °C")
-    if as_json:
-        print_json(_report(scene, found))
-        return
-    for load in dict.fromkeys(course.load for course in found.courses):
-        share = f"{number(100 * load / found.minimum_load, 3)} % of the minimum load"
-        _print_course(f"{scene.name}: idling under {force(load)}, {share}, then {force(found.loaded)}", found, load)
-    if picture is not None:
-        click.echo(picture.path)
+    return Result(
+        _report(scene, found),
+        lambda: [_print_course(scene, found, load) for load in dict.fromkeys(course.load for course in found.courses)],
+        lambda draft: draw_courses(found, draft, f"{scene.name}: cold start from {kelvin - 273.15:g} °C"),
+        remarks=[str(picture.path)] if picture else [],
+    )
 
 
 def _report(scene, found) -> dict:
@@ -87,9 +81,11 @@ def _report(scene, found) -> dict:
 _SHOWN = 12  # instants of a course
 
 
-def _print_course(title, found, load) -> None:
+def _print_course(scene, found, load) -> None:
     from bearing_sim.studies.cold_start import ROLLING, SKID
 
+    share = f"{number(100 * load / found.minimum_load, 3)} % of the minimum load"
+    title = f"{scene.name}: idling under {force(load)}, {share}, then {force(found.loaded)}"
     pair = {course.start: course for course in found.courses if course.load == load}
     skid, rolling = pair[SKID], pair[ROLLING]
     marked = {round(k * (len(skid.instants) - 1) / (_SHOWN - 1)) for k in range(_SHOWN)}

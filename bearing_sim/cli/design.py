@@ -8,14 +8,12 @@ from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
-    command_line,
-    print_json,
     print_rows,
     quantity_of,
     refuse_idle_temperature,
     warn,
 )
-from bearing_sim.cli.results import command
+from bearing_sim.cli.results import Result, command, picture_into, resumed, signed
 
 _NONE = "none"
 
@@ -74,7 +72,6 @@ def design(
     workers,
     dask,
     picture,
-    as_json,
 ):
     """Map which low-point radii and D values keep the slip of SCENE below a limit and its life above another, and verify them.
 
@@ -88,7 +85,6 @@ def design(
     from bearing_sim.model.plausibility import plausibility
     from bearing_sim.scene.loader import load_scene
     from bearing_sim.sweep.grid import read_axis
-    from bearing_sim.sweep.tasks import Journal
 
     scene = load_scene(scene_name, overrides)
     level = level or _cheapest(scene)
@@ -99,7 +95,7 @@ def design(
     announce_compilation(scene)
     from bearing_sim.studies import design as studied
     from bearing_sim.sweep.point import DURATION
-    from bearing_sim.sweep.table import require_same_study, study_digest
+    from bearing_sim.sweep.table import study_digest
 
     axes = list(studied.default_axes(scene))
     for place, (path, text) in enumerate(((studied.LOW, radii), (studied.D_VALUE, d_values))):
@@ -109,21 +105,15 @@ def design(
     verify_level = _verify_level(verify_level, scene)
     raceways = Points("raceways", 0)
     study = study_digest("design", scene, limits, [(axis.field.path, axis.values) for axis in axes], DURATION, verify_level)
-    require_same_study(out, study, studied.TABLES)
-    with Journal(out.path.with_suffix(".journal")) as journal, raceways:
+    with resumed(out, study, raceways, parts=studied.TABLES) as journal:
         designed = studied.design(scene_name, overrides, limits, *axes, journal, DURATION, workers, dask, raceways.update, verify_level=verify_level)
-    designed.grid.about.update(command=command_line(), study=study)
-    require_same_study(out, study, studied.TABLES)
+    designed.grid.about.update(signed(designed.grid, study).about)
     files = studied.write_design(out.path, designed)
     if picture is not None:
-        with picture.draft() as draft:
-            studied.draw(draft, designed)
+        picture_into(picture, studied.draw, designed)
         files.append(picture.path)
     report = _report_design(scene, designed, files)
-    if as_json:
-        print_json(report)
-    else:
-        _print_design(report)
+    return Result(report, lambda: _print_design(report))
 
 
 def _cheapest(scene) -> str:

@@ -23,12 +23,10 @@ from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
-    command_line,
-    print_json,
     print_rows,
     warn,
 )
-from bearing_sim.cli.results import command
+from bearing_sim.cli.results import Result, command, resumed, signed
 
 _SHOWN = ("bearing", "running_hours", "revolutions", "slip_mean", "slip_p95", "slip_maximum", "above_slip_warning", "damage", "life", "status")
 _MOST_SHOWN = 40
@@ -46,7 +44,7 @@ _MOST_SHOWN = 40
 @table_option("fleet.parquet", "Results; also written: PATH.csv and")
 @executor_options
 @json_option
-def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, joint, stamps, longest_gap, out, workers, dask, as_json, **channels):
+def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, joint, stamps, longest_gap, out, workers, dask, **channels):
     """Run the model on many LOGS at once, one bearing each, and write one table: hours, revolutions, slip, life used, warnings.
 
     LOGS are recordings (MCAP, SQLite, bags) and measured tables (CSV, Parquet), or folders that are searched for them. Tables need a
@@ -65,8 +63,7 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     from bearing_sim.fleet.bearings import bearings_of, read_bearings
     from bearing_sim.fleet.logs import find_logs
     from bearing_sim.fleet.replay import OK, PARTLY, replay_fleet
-    from bearing_sim.sweep.table import require_same_study, study_digest, write_table
-    from bearing_sim.sweep.tasks import Journal
+    from bearing_sim.sweep.table import study_digest, write_table
 
     if not paths and bearings_path is None:
         raise UsageError("no logs; give files or folders, or --bearings TABLE.csv")
@@ -88,25 +85,17 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     announce_compilation()
     reading_bar, replay_bar = Points("reading", len(bearings)), Points("replay", len(bearings))
     bars = {"reading": reading_bar, "replay": replay_bar}
-    require_same_study(out, study)
-    with Journal(out.path.with_suffix(".journal")) as journal, reading_bar, replay_bar:
+    with resumed(out, study, reading_bar, replay_bar) as journal:
         table = replay_fleet(
             bearings, longest_gap, journal, workers, dask, lambda act, done, total: bars[act].update(done, total), _build_table, _respond
         )
-    require_same_study(out, study)
-    files = write_table(out.path, table._replace(about=table.about | {"command": command_line(), "study": study}))
-    report = _report(table, replay_bar, files)
-    if as_json:
-        print_json(report | {"bearings": table.rows})
-    else:
-        _print(table, report)
-    without = [row for row in table.rows if row["status"] not in (OK, PARTLY)]
-    if without:
-        raise FailedRun(f"{len(without)} of {len(table.rows)} bearings have no complete result; {files[1]} says why (columns status, reason)")
-    if report["partly_used_bearings"]:
-        raise PartlyUsed(
-            f"of the logs of {report['partly_used_bearings']} bearings only a part was used; {files[1]} says why (columns status, reason)"
-        )
+    files = write_table(out.path, signed(table, study))
+    report, ending = _report(table, replay_bar, files), None
+    if without := [row for row in table.rows if row["status"] not in (OK, PARTLY)]:
+        ending = FailedRun(f"{len(without)} of {len(table.rows)} bearings have no complete result; {files[1]} says why (columns status, reason)")
+    elif partly := report["partly_used_bearings"]:
+        ending = PartlyUsed(f"of the logs of {partly} bearings only a part was used; {files[1]} says why (columns status, reason)")
+    return Result(report | {"bearings": table.rows}, lambda: _print(table, report), ending=ending)
 
 
 def _reading(mapping_name, sources, constants, joint, stamps):

@@ -1,8 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Commands on recordings: ``info``, ``compare``, ``recover``, ``to-csv`` and ``to-parquet``."""
 
-import sys
-from collections.abc import Callable
+import math
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -11,9 +10,8 @@ from click import IntRange
 
 from bearing_sim.cli.options import PATH, flag, json_option, option
 from bearing_sim.cli.outputs import OutputFile
-from bearing_sim.cli.reporting import UsageError, print_json, print_rows, print_table, progress_bar, tell_use
-from bearing_sim.cli.results import command
-from bearing_sim.files.outputs import Output
+from bearing_sim.cli.reporting import UsageError, print_rows, print_table, progress_bar, tell_use
+from bearing_sim.cli.results import Result, command
 
 _OWN = "bearing_sim"
 
@@ -22,7 +20,7 @@ _OWN = "bearing_sim"
 @click.argument("recording", type=PATH, metavar="RUN.mcap")
 @flag("--scene", "prints_scene", "Print only the recorded scene, as YAML.")
 @json_option
-def info(recording, prints_scene, as_json):
+def info(recording, prints_scene):
     """Show what RUN.mcap holds: topics, counts, time span, scene, versions, and whether the file is complete.
 
     RUN.mcap is any MCAP file, finished or not, or a bag's folder; or a bag in SQLite or of ROS 1, which has no checksums. The whole file is read
@@ -42,19 +40,10 @@ def info(recording, prints_scene, as_json):
         if "scene" not in own:
             raise UsageError(f"{recording}: no scene in its metadata; it is not a recording of a bearing-sim run")
         click.echo(own["scene"], nl=False)
-        return
-    if as_json:
-        print_json(
-            {
-                "recording": str(recording),
-                "sound": all(file.is_sound for file in files),
-                "files": [_file_report(file) for file in files],
-                **_origin(own),
-            }
-        )
-    else:
-        _print_info(recording, files, own)
-    sys.exit(0 if all(file.is_sound for file in files) else 1)
+        return None
+    is_sound = all(file.is_sound for file in files)
+    report = {"recording": str(recording), "sound": is_sound, "files": [_file_report(file) for file in files], **_origin(own)}
+    return Result(report, lambda: _print_info(recording, files, own), code=int(not is_sound))
 
 
 def _origin(own) -> dict:
@@ -64,26 +53,16 @@ def _origin(own) -> dict:
     }
 
 
+_FILE = "size profile library ends damaged damage first_ns last_ns seconds out_of_order attachments notes undecodable".split()
+
+
 def _file_report(file) -> dict:
-    return {
+    return attributes(file, *_FILE) | {
         "file": str(file.path),
-        "size": file.size,
-        "profile": file.profile,
-        "library": file.library,
         "finished": file.is_finished,
-        "ends": file.ends,
-        "damaged": file.damaged,
-        "damage": file.damage,
         "checksums": _coverage(file),
-        "first_ns": file.first_ns,
-        "last_ns": file.last_ns,
-        "seconds": file.seconds,
         "messages": file.messages.total(),
-        "out_of_order": file.out_of_order,
-        "attachments": file.attachments,
         "metadata": list(file.metadata),
-        "notes": file.notes,
-        "undecodable": file.undecodable,
         "topics": {topic: {"type": kind, "messages": file.messages[topic]} for topic, kind in sorted(file.types.items())},
     }
 
@@ -159,7 +138,7 @@ def _trouble(file) -> str:
 )
 @flag("--clock", "by_clock", "Match messages by the clock, for runs that began at different moments of one log.")
 @json_option
-def compare(first, second, tolerances, by_clock, as_json):
+def compare(first, second, tolerances, by_clock):
     """Compare two recordings topic by topic; messages are matched by run time.
 
     Two runs of one command are therefore compared from their beginnings on, whenever they were made. Recordings that do not say when their run
@@ -178,11 +157,9 @@ def compare(first, second, tolerances, by_clock, as_json):
     if unknown:
         raise UsageError(f"--tolerance {unknown[0]}=...: unknown topic; the topics are {', '.join(difference.topic for difference in differences)}")
     agree = all(difference.agrees for difference in differences)
-    if as_json:
-        print_json({"agree": agree, "not_compared": skipped, "topics": [_difference_report(difference) for difference in differences]})
-    else:
-        _print_comparison(first, second, differences, skipped, agree)
-    sys.exit(0 if agree else 1)
+    report = {"agree": agree, "not_compared": skipped, "topics": [_difference_report(difference) for difference in differences]}
+    remarks = [*([f"not compared: {', '.join(skipped)}"] if skipped else []), f"the recordings {'agree' if agree else 'differ'}"]
+    return Result(report, lambda: _print_comparison(first, second, differences), remarks=remarks, code=int(not agree))
 
 
 def _tolerances(given) -> tuple[float, dict[str, float]]:
@@ -220,7 +197,7 @@ def _difference_report(difference) -> dict:
     }
 
 
-def _print_comparison(first, second, differences, skipped, agree) -> None:
+def _print_comparison(first, second, differences) -> None:
     rows, start = [], min(difference.first_ns for difference in differences)
     for difference in differences:
         found = _difference_report(difference)
@@ -232,16 +209,13 @@ def _print_comparison(first, second, differences, skipped, agree) -> None:
         rows.append((difference.topic, *counts, *numbers, f"{difference.tolerance:g}", *where, verdict))
     columns = ("topic", "messages", "alone", "differing", "largest", "over magnitude", "tolerance", "in", "after [s]", "")
     print_rows(f"{first} against {second}", columns, rows, words=("topic", "in", ""), width=170)
-    if skipped:
-        click.echo(f"not compared: {', '.join(skipped)}")
-    click.echo("the recordings agree" if agree else "the recordings differ")
 
 
 @command("recover")
 @click.argument("broken", type=click.Path(path_type=Path, dir_okay=False), metavar="BROKEN.mcap")
 @option("-o", "--out", "Recovered file.", OutputFile(), required=True, metavar="GOOD.mcap")
 @json_option
-def recover(broken, out, as_json):
+def recover(broken, out):
     """Recover everything readable from BROKEN.mcap into GOOD.mcap: a file of a killed writer (RUN.mcap.active), truncated or damaged.
 
     Works with any MCAP file. Messages keep their bytes, times and order; BROKEN.mcap is not changed.
@@ -252,73 +226,53 @@ def recover(broken, out, as_json):
         found = recover(broken, out, progress)
         size = out.path.stat().st_size
     lost = "nothing known to be missing" if found.is_sound else found.ends or "parts of it were damaged"
-    if as_json:
-        report = {"broken": str(broken), "out": str(out), "broken_size": found.size, "size": size, "seconds": found.seconds}
-        report |= {"messages": found.messages.total(), "messages_by_topic": dict(found.messages), "metadata": list(found.metadata)}
-        print_json({**report, "damaged": found.damaged, "damage": found.damage, "was_finished": found.is_finished, "ends": found.ends})
-        return
+    report = {"broken": str(broken), "out": str(out), "broken_size": found.size, "size": size, "was_finished": found.is_finished}
+    report |= {"messages": found.messages.total(), "messages_by_topic": dict(found.messages), "metadata": list(found.metadata)}
+    report |= attributes(found, "seconds", "damaged", "damage", "ends")
     rows = [
         ("the file", f"{found.size / 1e6:.4g} MB; {lost}"),
         ("damaged parts", "; ".join([str(found.damaged), *found.damage[:3], *(["..."] if found.damaged > 3 else [])])),
         ("saved", f"{found.messages.total()} messages over {found.seconds:.6g} s, {len(found.metadata)} metadata records"),
         *((topic, f"{count} messages") for topic, count in sorted(found.messages.items())),
     ]
-    print_table(f"{broken} recovered into {out}", rows)
+    return Result(report, lambda: print_table(f"{broken} recovered into {out}", rows))
 
 
-def with_excerpt(command: Callable) -> Callable:
-    """Add the options that select the part of a recording to export."""
-    for add in (
-        json_option,
-        option("--to", "last", "Last simulated time [default: the end].", float, metavar="S"),
-        option("--from", "first", "First simulated time [default: the beginning].", float, metavar="S"),
-        option("--every", "Export one of N samples.", IntRange(min=1), default=1, metavar="N"),
-        flag("--no-rollers", "Omit the observables of single rollers."),
-        option("--column", "columns", "Export this observable; can be repeated [default: all].", multiple=True, metavar="NAME"),
-        click.argument("recording", type=PATH, metavar="RUN.mcap"),
-    ):
-        command = add(command)
-    return command
+def _exporting(kind: str, detail: str) -> click.Command:
+    """Return the command that exports a recording as a table of a kind, ``csv`` or ``parquet``."""
+    name = {"csv": "a CSV", "parquet": "a Parquet"}[kind]
+
+    @command(f"to-{kind}", help=_EXPORT.format(name=name, detail=detail))
+    @click.argument("recording", type=PATH, metavar="RUN.mcap")
+    @option("--column", "columns", "Export this observable; can be repeated [default: all].", multiple=True, metavar="NAME")
+    @flag("--no-rollers", "Omit the observables of single rollers.")
+    @option("--every", "Export one of N samples.", IntRange(min=1), default=1, metavar="N")
+    @option("--from", "first", "First simulated time [default: the beginning].", float, metavar="S")
+    @option("--to", "last", "Last simulated time [default: the end].", float, metavar="S")
+    @json_option
+    @option("-o", "--out", "The table.", OutputFile(), required=True, metavar=f"RUN.{kind}")
+    def export(recording, out, columns, no_rollers, every, first, last):
+        from bearing_sim.recording import table
+        from bearing_sim.recording.reader import Recording
+
+        write = {"csv": table.write_csv, "parquet": table.write_parquet}[kind]
+        ends = -math.inf if first is None else first, math.inf if last is None else last
+        excerpt = table.Excerpt(tuple(columns), not no_rollers, every, *ends)
+        source = Recording(recording, allow_partial=True)
+        with progress_bar(f"writing {out.path.name}", source.duration) as progress, out.draft() as draft:
+            rows = write(source, draft, excerpt, progress)
+        size = out.path.stat().st_size
+        tell_use(source.tally, recording)
+        report = {"recording": str(recording), "out": str(out), "rows": rows, "size": size, "read": source.tally.report()}
+        return Result(report, lambda: click.echo(f"{out}: {rows} samples, {size / 1e6:.4g} MB"))
+
+    return export
 
 
-def export(kind: str, recording: Path, out: Output, columns, no_rollers, every, first, last, as_json) -> None:
-    """Export a recording as a table of a kind, ``csv`` or ``parquet``, and report it."""
-    from bearing_sim.recording.reader import Recording
-    from bearing_sim.recording.table import Excerpt, write_csv, write_parquet
+_EXPORT = """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as {name} table.
 
-    write = {"csv": write_csv, "parquet": write_parquet}[kind]
-    infinity = float("inf")
-    excerpt = Excerpt(tuple(columns), not no_rollers, every, -infinity if first is None else first, infinity if last is None else last)
-    source = Recording(recording, allow_partial=True)
-    with progress_bar(f"writing {out.path.name}", source.duration) as progress, out.draft() as draft:
-        rows = write(source, draft, excerpt, progress)
-    size = out.path.stat().st_size
-    tell_use(source.tally, recording)
-    if as_json:
-        print_json({"recording": str(recording), "out": str(out), "rows": rows, "size": size, "read": source.tally.report()})
-    else:
-        click.echo(f"{out}: {rows} samples, {size / 1e6:.4g} MB")
-
-
-@command("to-csv")
-@with_excerpt
-@option("-o", "--out", "The table.", OutputFile(), required=True, metavar="RUN.csv")
-def to_csv(recording, out, columns, no_rollers, every, first, last, as_json):
-    """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a CSV table.
-
-    One row per sample, one column per observable and characteristic frequency, or per roller for observables of rollers (inner_load_07).
-    Units are in the header, numbers are in SI.
-    """
-    export("csv", recording, out, columns, no_rollers, every, first, last, as_json)
-
-
-@command("to-parquet")
-@with_excerpt
-@option("-o", "--out", "The table.", OutputFile(), required=True, metavar="RUN.parquet")
-def to_parquet(recording, out, columns, no_rollers, every, first, last, as_json):
-    """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a Parquet table.
-
-    One row per sample, one column per observable and characteristic frequency, or per roller for observables of rollers (inner_load_07).
-    Units and meanings are in the metadata of the columns, the scene in that of the file; numbers are in SI.
-    """
-    export("parquet", recording, out, columns, no_rollers, every, first, last, as_json)
+One row per sample, one column per observable and characteristic frequency, or per roller for observables of rollers (inner_load_07).
+{detail} numbers are in SI.
+"""
+to_csv = _exporting("csv", "Units are in the header,")
+to_parquet = _exporting("parquet", "Units and meanings are in the metadata of the columns, the scene in that of the file;")

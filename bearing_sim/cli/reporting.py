@@ -162,6 +162,13 @@ def exit_on_sigterm() -> Iterator[None]:
             signal.signal(number, handler)
 
 
+def scene_of(name: str, overrides: Sequence[str], level: str | None = None):
+    """Return a scene by name or file with the overrides of the command line, at another level if one is given."""
+    from bearing_sim.scene.loader import load_scene
+
+    return load_scene(name, [*overrides, *([f"level={level}"] if level else [])])
+
+
 def judged(log, scene, longest_gap: float | None = None):
     """Return the profile of a log for a scene; every result depends on it.
 
@@ -337,6 +344,11 @@ def warnings_report(scene, exceedances: Iterable) -> dict[str, list]:
     from bearing_sim.model.plausibility import plausibility
 
     return {"warnings": [each.report() for each in exceedances], "implausible": plausibility(scene)}
+
+
+def attributes(source, *names: str) -> dict:
+    """Return attributes of an object by their names, for JSON."""
+    return {name: getattr(source, name) for name in names}
 
 
 def print_json(report: Mapping) -> None:

@@ -3,14 +3,16 @@
 
 import functools
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
 import click
 
 from bearing_sim.cli.outputs import OUTPUTS, OutputFile, option_name, paths_in, require_distinct
-from bearing_sim.cli.reporting import Ending, as_ending, exit_on_sigterm, print_json, warn, write_csv
+from bearing_sim.cli.reporting import Ending, Points, as_ending, command_line, exit_on_sigterm, print_json, warn, write_csv
 from bearing_sim.files.outputs import FORCE, Output, protecting_inputs
 
 
@@ -24,7 +26,9 @@ class Result(NamedTuple):
     show: Callable[[], None]  # prints it for people
     draw: Callable[[Path], None] | None = None  # draws it into a file
     rows: Sequence[Mapping] = ()  # of the table
+    remarks: Sequence[str] = ()  # printed after it for people
     warnings: Sequence[str] = ()  # printed on stderr after it
+    code: int = 0  # of exit
     ending: Ending | None = None  # raised at the end: what was found is no success
 
     def deliver(self, as_json: bool = False, picture: Output | None = None, table: Output | None = None) -> None:
@@ -37,15 +41,46 @@ class Result(NamedTuple):
             print_json(self.report)
         else:
             self.show()
+            for remark in self.remarks:
+                click.echo(remark)
         warn(self.warnings)
         if self.ending is not None:
             raise self.ending
+        if self.code:
+            sys.exit(self.code)
 
 
 def picture_into(picture: Output, draw: Callable, *arguments) -> None:
     """Draw a picture: ``draw`` gets the path of its draft and the arguments."""
     with picture.draft() as draft:
         draw(draft, *arguments)
+
+
+@contextmanager
+def resumed(out: Output, study: str, *bars: Points, parts: Sequence[str] = ("",)) -> Iterator:
+    """Yield the journal of a study of many points, from which an interrupted one resumes, and show its bars of progress.
+
+    Tables of another study are refused before it begins, and once more before they are replaced.
+
+    Parameters
+    ----------
+    out : the table; ``parts`` is what is added to its name for all that are written.
+    study : digest of what defines the study (`bearing_sim.sweep.table.study_digest`).
+    """
+    from bearing_sim.sweep.table import require_same_study
+    from bearing_sim.sweep.tasks import Journal
+
+    require_same_study(out, study, parts)
+    with Journal(out.path.with_suffix(".journal")) as journal, ExitStack() as stack:
+        for bar in bars:
+            stack.enter_context(bar)
+        yield journal
+    require_same_study(out, study, parts)
+
+
+def signed(table, study: str):
+    """Return a table of results that names the command and the digest of the study that made it."""
+    return table._replace(about=table.about | {"command": command_line(), "study": study})
 
 
 class Command(click.Command):

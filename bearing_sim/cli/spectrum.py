@@ -22,17 +22,16 @@ from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
-    command_line,
     judged,
-    print_json,
     print_rows,
     print_table,
     refuse_idle_temperature,
+    scene_of,
     seconds_of,
     warn,
     warn_of_scene,
 )
-from bearing_sim.cli.results import command
+from bearing_sim.cli.results import Result, command, picture_into, resumed, signed
 
 _MOST_SHOWN = 20
 _EQUILIBRIUM = "of thermal equilibrium at each point; while a bearing warms up, its oil is thicker and its life longer (bearing-sim replay)"
@@ -51,7 +50,7 @@ _MOST_CLASSES = 1000  # each that a log has time in is a run
 @executor_options
 @picture_option("Draw shares of time, loads and shares of damage")
 @json_option
-def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamps, longest_gap, out, workers, dask, picture, as_json, **channels):
+def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamps, longest_gap, out, workers, dask, picture, **channels):
     """Compute the life of SCENE under a load spectrum, with slip and share of damage at each point.
 
     TABLE.csv has a line for each operating point: its share of the time, or its hours, shaft speed and radial load and, optionally, axial
@@ -65,16 +64,14 @@ def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamp
     Damage adds up by Palmgren and Miner. If a point has no result, no life is given. An interrupted command resumes.
     """
     from bearing_sim.fleet.logs import is_text
-    from bearing_sim.scene.loader import load_scene
     from bearing_sim.studies import spectrum as studied
     from bearing_sim.sweep.conditions import read_spectrum
-    from bearing_sim.sweep.table import require_same_study, study_digest, write_table
-    from bearing_sim.sweep.tasks import Journal
+    from bearing_sim.sweep.table import study_digest, write_table
 
     seconds, counts = seconds_of(duration), _counts(classes)
     names, constants = channel_sources(**channels)
     profile = None
-    scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
+    scene = scene_of(scene_name, overrides, level)
     if is_text(data):
         if names or constants:
             raise UsageError(f"{data} is a table of operating points; --speed, --load and the other options of logs do not go with it")
@@ -89,23 +86,16 @@ def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamp
     warn_of_scene(scene)
     warn(found.notes)
     announce_compilation(scene)
-    points = Points("spectrum", len(found.points))
-    study = study_digest("spectrum", scene, found, seconds)
-    require_same_study(out, study)
-    with Journal(out.path.with_suffix(".journal")) as journal, points:
+    points, study = Points("spectrum", len(found.points)), study_digest("spectrum", scene, found, seconds)
+    with resumed(out, study, points) as journal:
         result = studied.evaluate(scene, found, journal, seconds, workers, dask, points.update)
-    result.table.about.update(command=command_line(), study=study, source=str(data))
+    result.table.about.update(signed(result.table, study).about, source=str(data))
     files = write_table(out.path, result.table)
     if picture is not None:
-        with picture.draft() as draft:
-            studied.draw(draft, result.table)
+        picture_into(picture, studied.draw, result.table)
         files = (*files, picture.path)
     report = _report(scene, data, profile, result, files)
-    if as_json:
-        print_json(report | {"points": result.table.rows})
-    else:
-        _print(scene, report, result)
-    warn(report["warnings"])
+    return Result(report | {"points": result.table.rows}, lambda: _print(scene, report, result), warnings=report["warnings"])
 
 
 def _counts(classes: str) -> tuple[int, int, int]:

@@ -13,14 +13,14 @@ from bearing_sim.cli.reporting import (
     announce_compilation,
     as_usage_error,
     judged,
-    print_json,
     print_table,
     refuse_idle_temperature,
+    scene_of,
     unknown_report,
     warn_of_scene,
     write_csv,
 )
-from bearing_sim.cli.results import command
+from bearing_sim.cli.results import Result, command, picture_into
 
 SEED = 2017
 
@@ -37,7 +37,7 @@ SEED = 2017
 @csv_option_of(OutputWithJournal(), "Write all points; also written: PATH.journal, from which an interrupted run resumes.")
 @picture_option("Draw ranges and shares")
 @json_option
-def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, workers, dask, table, picture, as_json):
+def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, workers, dask, table, picture):
     """Compute quantiles (5, 50 and 95 %) of slip and life of SCENE, with uncertain fields drawn from the ranges in its block `uncertainty`.
 
     With N samples and d ranges the bearing is computed N (d + 2) times; Sobol' indices show which fields the spread comes from.
@@ -45,10 +45,9 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     unless the scene has another one for them.
     To change a range: --set "uncertainty.lubricant.temperature=[90 degC, 130 degC]"; to remove one: --set uncertainty.FIELD=null.
     """
-    from bearing_sim.scene.loader import load_scene
     from bearing_sim.sweep.tasks import Journal
 
-    scene = load_scene(scene_name, overrides)
+    scene = scene_of(scene_name, overrides)
     refuse_idle_temperature(scene, overrides)
     warn_of_scene(scene, before_results=False)
     scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
@@ -64,18 +63,14 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
         if table is not None:
             write_csv(table, _rows(found))
             note_points(journal, digest, table.path)
+    name = scene.name if log is None else f"{scene.name} under {log.name}"
     if picture is not None:
         from bearing_sim.studies.run_plot import life_label
         from bearing_sim.studies.uncertainty import draw
 
-        ranges = f"{len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
-        with picture.draft() as draft:
-            title = f"{scene.name}{'' if log is None else f' under {log.name}'}: {ranges}"
-            draw(draft, title, found, life_label([scene]), course and course.middles)
-    if as_json:
-        print_json({"scene": scene.name, "log": log and log.name, **report, **unknown})
-    else:
-        print_bands(scene.name if log is None else f"{scene.name} under {log.name}", report)
+        title = f"{name}: {len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
+        picture_into(picture, draw, title, found, life_label([scene]), course and course.middles)
+    return Result({"scene": scene.name, "log": log and log.name, **report, **unknown}, lambda: print_bands(name, report))
 
 
 def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, workers=None, dask=None):
