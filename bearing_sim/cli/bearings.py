@@ -13,6 +13,7 @@ from bearing_sim.cli.reporting import (
     announce_compilation,
     as_failed_run,
     as_usage_error,
+    note,
     print_table,
     refuse_idle_temperature,
     scene_of,
@@ -242,7 +243,7 @@ def machine(
         picture_into(picture, draw, section, pressing, machined)
     Result({**report, "out": out and str(out), "picture": picture and str(picture)}, lambda: _print_machine(report)).deliver(as_json)
     if len(machined.lows) != arcs:
-        click.echo(f"note: {arcs} arcs give {len(machined.lows)} low points: the turned arc has removed a lobe", err=True)
+        note(f"note: {arcs} arcs give {len(machined.lows)} low points: the turned arc has removed a lobe")
 
 
 def _about(section, pressing) -> str:

@@ -9,7 +9,7 @@ from click import Choice
 
 from bearing_sim.cli.options import json_option, level_type, option, picture_option
 from bearing_sim.cli.outputs import OutputFile
-from bearing_sim.cli.reporting import UsageError, command_line, print_rows, print_table, quantity_of
+from bearing_sim.cli.reporting import UsageError, command_line, note, print_rows, print_table, quantity_of
 from bearing_sim.cli.results import Result, command, picture_into
 
 _COLUMNS = ("designation", "d", "D", "B", "C [kN]", "C_0 [kN]", "C_u [kN]", "limiting speed [rpm]", "ratings by")
@@ -80,7 +80,7 @@ def _list(types, series, bounds, least) -> Result:
         if found:
             print_rows(f"{len(found)} bearings, lengths in mm", _COLUMNS, [_cells(row) for row in found], _WORDS)
         else:
-            click.echo("no bearing of the catalogue is like that; see bearing-sim catalog --help", err=True)
+            note("no bearing of the catalogue is like that; see bearing-sim catalog --help")
 
     return Result({"bearings": found}, show)
 

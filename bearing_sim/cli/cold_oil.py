@@ -11,7 +11,7 @@ from bearing_sim.cli.reporting import (
     scene_of,
     warn_of_scene,
 )
-from bearing_sim.cli.results import Result, command
+from bearing_sim.cli.results import Result, command, picture_into
 from bearing_sim.scene.display import force, number
 
 
@@ -44,10 +44,11 @@ def cold_oil(scene_name, overrides, supplies, temperatures, loads, picture):
         told, run_up = trends(found), run_ups(scene, found)
     parts = {"points": found.points, "skid_loads": found.skid_loads, "trends": told, "run_ups": run_up}
     report = {"scene": scene.name, "minimum_load": found.minimum_load}
+    if picture is not None:
+        picture_into(picture, lambda draft: draw_map(found, draft, f"{scene.name}: slip with cold oil"))
     return Result(
         report | {name: [one._asdict() for one in each] for name, each in parts.items()},
         lambda: _print(scene, found, told, run_up),
-        lambda draft: draw_map(found, draft, f"{scene.name}: slip with cold oil"),
         remarks=[str(picture.path)] if picture else [],
     )
 

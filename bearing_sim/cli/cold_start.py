@@ -15,7 +15,7 @@ from bearing_sim.cli.reporting import (
     seconds_of,
     warn_of_scene,
 )
-from bearing_sim.cli.results import Result, command
+from bearing_sim.cli.results import Result, command, picture_into
 from bearing_sim.scene.display import force, number
 
 
@@ -57,10 +57,11 @@ def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise, 
     announce_compilation(scene, with_states=True)
     with progress_bar("cold start", len(newtons or SHARES)) as show:
         found = follow(scene, newtons, afterwards, seconds, kelvin, rising, show)
+    if picture is not None:
+        picture_into(picture, lambda draft: draw_courses(found, draft, f"{scene.name}: cold start from {kelvin - 273.15:g} °C"))
     return Result(
         _report(scene, found),
         lambda: [_print_course(scene, found, load) for load in dict.fromkeys(course.load for course in found.courses)],
-        lambda draft: draw_courses(found, draft, f"{scene.name}: cold start from {kelvin - 273.15:g} °C"),
         remarks=[str(picture.path)] if picture else [],
     )
 

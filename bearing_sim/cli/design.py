@@ -8,6 +8,7 @@ from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
+    note,
     print_rows,
     quantity_of,
     refuse_idle_temperature,
@@ -169,9 +170,9 @@ def _verify_level(asked, scene) -> str | None:
         raise UsageError(f"--verify-level {asked}: expected {', '.join([*higher, _NONE])}; the design is at level {scene.level}")
     found = asked or VERIFIED_BY.get(scene.level)
     if found is None:
-        click.echo(f"no level is of higher fidelity than {scene.level}: nothing is verified", err=True)
+        note(f"no level is of higher fidelity than {scene.level}: nothing is verified")
     elif (scene.level, found) in ALIKE:
-        click.echo(ALIKE[scene.level, found], err=True)
+        note(ALIKE[scene.level, found])
     return found
 
 

@@ -3,9 +3,7 @@
 
 import math
 
-import click
-
-from bearing_sim.cli.reporting import progress_bar
+from bearing_sim.cli.reporting import note, progress_bar
 from bearing_sim.scene.display import hours
 
 
@@ -57,7 +55,7 @@ def response_with_progress(scene, rebuild=False, workers=None, dask=None):
 
     if not rebuild and (kept := kept_response(scene)) is not None:
         return kept
-    click.echo(f"building the response of {scene.name} to its uncertain fields, once for this bearing and oil ...", err=True)
+    note(f"building the response of {scene.name} to its uncertain fields, once for this bearing and oil ...")
     with progress_bar("operating points", 1.0) as show:
         return obtain_response(scene, workers, dask, lambda done, total: show(done / max(total, 1)), rebuild)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.reporting import UsageError
+from bearing_sim.cli.reporting import UsageError, note
 from bearing_sim.files.outputs import Output, RefusedOutput
 
 _RECORDINGS = (".mcap", ".active", ".db3", ".bag", ".zstd", ".yaml")  # files of an input folder that no command replaces
@@ -130,13 +130,13 @@ def recording_into(output: Output, sink) -> Iterator:
     sink : a `bearing_sim.recording.writer.McapSink`, which this completes.
     """
     for _, _, text in sink.news():
-        click.echo(f"warning: {text}", err=True)
+        note(f"warning: {text}")
     try:
         with sink:
             yield sink
     except BaseException:
         unfinished = output.path.with_name(f"{output.path.name}.active")
-        click.echo(f"interrupted; what was recorded until then is {unfinished if unfinished.exists() else output}", err=True)
+        note(f"interrupted; what was recorded until then is {unfinished if unfinished.exists() else output}")
         raise
 
 

@@ -8,7 +8,7 @@ from click import Choice, IntRange
 
 from bearing_sim.cli.options import PATH, option, picture_option
 from bearing_sim.cli.outputs import default_output
-from bearing_sim.cli.reporting import Points, UsageError, as_usage_error, progress_bar, tell_use
+from bearing_sim.cli.reporting import Points, UsageError, as_usage_error, note, progress_bar, tell_use
 from bearing_sim.cli.results import command
 
 _TABLES = (".parquet", ".csv")
@@ -144,9 +144,9 @@ def _plot_over_load(path, picture, table) -> None:
     try:
         scene = scene_from_yaml(text) if text else None
     except SceneError as error:
-        click.echo(f"{path}: its scene is of another version, so there is no minimum load: {str(error).splitlines()[0]}", err=True)
+        note(f"{path}: its scene is of another version, so there is no minimum load: {str(error).splitlines()[0]}")
     if not text:
-        click.echo(f"{path}: a CSV table has no scene, so there is no minimum load; draw the .parquet", err=True)
+        note(f"{path}: a CSV table has no scene, so there is no minimum load; draw the .parquet")
     operating = scene.operating.shaft_speed * 30 / math.pi if scene is not None else math.nan
     results = {"cage_slip", life}
     varied = [axis["field"] for axis in table.about.get("axes", ()) if axis["field"] != _LOAD and len(axis["values"]) > 1]

@@ -10,7 +10,7 @@ from click import IntRange
 
 from bearing_sim.cli.options import PATH, flag, json_option, option
 from bearing_sim.cli.outputs import OutputFile
-from bearing_sim.cli.reporting import UsageError, print_rows, print_table, progress_bar, tell_use
+from bearing_sim.cli.reporting import UsageError, attributes, note, print_rows, print_table, progress_bar, tell_use
 from bearing_sim.cli.results import Result, command
 
 _OWN = "bearing_sim"
@@ -150,7 +150,7 @@ def compare(first, second, tolerances, by_clock):
     from bearing_sim.recording.compare import compare
 
     general, own = _tolerances(tolerances)
-    differences, skipped = compare(first, second, general, own, by_clock, lambda text: click.echo(text, err=True))
+    differences, skipped = compare(first, second, general, own, by_clock, lambda text: note(text))
     if not differences:
         raise UsageError(f"{first} and {second} have no messages to compare")
     unknown = [topic for topic in own if f"/{topic.lstrip('/')}" not in {difference.topic for difference in differences}]

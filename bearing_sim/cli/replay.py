@@ -16,9 +16,10 @@ from bearing_sim.cli.reporting import (
     FailedRun,
     UsageError,
     announce_compilation,
-    as_file_error,
+    as_ending,
     as_usage_error,
     command_line,
+    note,
     print_json,
     print_table,
     progress_bar,
@@ -91,18 +92,18 @@ def replay(
         return
     import numpy as np
 
-    from bearing_sim.inputs.log import InputLogError, read_input_log
+    from bearing_sim.inputs.log import read_input_log
     from bearing_sim.inputs.profile import judge
     from bearing_sim.recording.writer import COMMAND, McapSink
     from bearing_sim.runtime.replay import replay
-    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.scene.loader import load_scene
     from bearing_sim.simulation import Inputs, IntegrationError, Simulation
     from bearing_sim.stored_state.keeper import RECORD, StateKeeper
     from bearing_sim.stored_state.state_file import checked_serial
     from bearing_sim.sweep.grading import graded
 
     names, constants = channel_sources(**channels)
-    with as_usage_error(SceneError, InputLogError), as_file_error():
+    with as_ending():
         for log in logs:
             _require_one_log(log, scene_name)
         scene = load_scene(scene_name, overrides)
@@ -142,14 +143,13 @@ def replay(
             result = replay(scene, course, recording, watchers, rate, progress, keeper=keeper, response=response, **choice)
     warnings = graded(scene, result.warnings, result.worst_samples, ("slip", "life"))
     for event in keeper.news(0.0) + keeper.events(0.0) if keeper is not None else []:
-        click.echo(f"{event.level.name.lower().replace('ok', 'note')}: {event.text}", err=True)
+        note(f"{event.level.name.lower().replace('ok', 'note')}: {event.text}")
     jump = result.jump() if scene.level != "steady" else None  # which has no motion of its own: its slip follows the inputs
     if jump is not None:
         finer = float(f"{10.0 / jump.interval:.1g}")
-        click.echo(
+        note(
             f"note: the outputs are coarser than the motion: cage slip changes by {100 * jump.slip:.3g} points within the {jump.interval:.3g} s "
-            f"before {jump.time:.6g} s, drawn as a straight line; take finer outputs with --rate, such as --rate {finer:g}",
-            err=True,
+            f"before {jump.time:.6g} s, drawn as a straight line; take finer outputs with --rate, such as --rate {finer:g}"
         )
     if as_json:
         stored = {} if keeper is None else {"state": keeper.summary()}
@@ -313,14 +313,13 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
     out : the `bearing_sim.files.outputs.Output` of the new recording, or None.
     as_json : whether to print JSON.
     """
-    from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.provenance import git_hash, package_version
     from bearing_sim.recording.reader import Recording
     from bearing_sim.recording.writer import McapSink
     from bearing_sim.runtime import reproduction
     from bearing_sim.stored_state.keeper import RECORD
 
-    with as_usage_error(RecordingError, ValueError), as_file_error(), ExitStack() as stack:
+    with as_usage_error(ValueError), ExitStack() as stack:
         recording = Recording(path, allow_partial=True)
         sink = _Nowhere()
         if out is not None:

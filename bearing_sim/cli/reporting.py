@@ -245,9 +245,9 @@ def announce_compilation(scene=None, with_states: bool = False) -> None:
     from bearing_sim.runtime.precompilation import announcement, builds, compile_for
 
     if scene is not None:
-        compile_for(scene, lambda line: click.echo(line, err=True), with_states)
+        compile_for(scene, lambda line: note(line), with_states)
     elif not any(CACHE_FOLDER.rglob("*.code")):
-        click.echo(f"{announcement(builds(('steady', 'slip', 'planar')))}, each when it is first needed", err=True)
+        note(f"{announcement(builds(('steady', 'slip', 'planar')))}, each when it is first needed")
 
 
 def suggest_level(scene) -> None:
@@ -255,7 +255,7 @@ def suggest_level(scene) -> None:
     from bearing_sim.scene.fidelity import hint
 
     if line := hint(scene):
-        click.echo(line, err=True)
+        note(line)
 
 
 def refuse_idle_temperature(scene, fields: Iterable[str]) -> None:
@@ -292,10 +292,15 @@ def _idle_temperature(scene) -> str:
     return f"no oil flows through (supply {scene.lubricant.supply.law}), and heat.law network computes how warm it gets"
 
 
+def note(line: str) -> None:
+    """Print a line on stderr: what a person wants to know, and what is no result."""
+    click.echo(line, err=True)
+
+
 def warn(lines: Iterable[str]) -> None:
     """Print warnings on stderr, one on a line."""
     for line in lines:
-        click.echo(f"warning: {line}", err=True)
+        note(f"warning: {line}")
 
 
 def warn_of_scene(scene, before_results: bool = True) -> None:
@@ -334,7 +339,7 @@ def warn_of_limits(scene, exceedances: Iterable, verbose: bool = False) -> None:
     for each in exceedances:
         if each.grade != Grade.WARNING:
             if verbose:
-                click.echo(f"note: {each.note}", err=True)
+                note(f"note: {each.note}")
         elif each.law.name not in told and each.text not in implausible:
             warn([each.text])
 
@@ -548,7 +553,7 @@ def _progress_lines(text: str, total: float) -> Iterator[Callable[[float], None]
     def tell() -> None:
         while not ended.wait(_LINE_EVERY):
             if done[0] < total:  # what follows, such as writing, has no measure
-                click.echo(f"{text}: {100.0 * done[0] / total:.0f} % after {time.monotonic() - begun:.0f} s", err=True)
+                note(f"{text}: {100.0 * done[0] / total:.0f} % after {time.monotonic() - begun:.0f} s")
 
     def show(now: float) -> None:
         done[0] = now

@@ -23,6 +23,7 @@ from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
     judged,
+    note,
     print_rows,
     print_table,
     refuse_idle_temperature,
@@ -166,7 +167,7 @@ def _print(scene, report, result) -> None:
         click.echo(f"... and {len(rows) - _MOST_SHOWN} more points; all are in the files")
     for row in rows:
         if row["reason"]:
-            click.echo(f"{row['status']} at {number(row['shaft_speed'], 4)} rpm, {force(row['radial_load'])}: {row['reason']}", err=True)
+            note(f"{row['status']} at {number(row['shaft_speed'], 4)} rpm, {force(row['radial_load'])}: {row['reason']}")
 
     def lasting(share):
         """Return a share of the time in words, with its hours where the spectrum has any."""

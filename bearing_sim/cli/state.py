@@ -7,8 +7,8 @@ import click
 
 from bearing_sim.cli.options import PATH, allow_outside_option, json_option, option, set_option
 from bearing_sim.cli.outputs import OutputFile
-from bearing_sim.cli.reporting import UsageError, as_usage_error, print_json, print_table, tell_use
-from bearing_sim.cli.results import command
+from bearing_sim.cli.reporting import UsageError, as_usage_error, note, print_table, tell_use
+from bearing_sim.cli.results import Result, command
 from bearing_sim.files.outputs import remember_input
 from bearing_sim.scene.display import number
 
@@ -36,7 +36,7 @@ def _read(path: Path):
 
     state, news = read_state(path)
     for each in news:
-        click.echo(f"warning: {each.text}", err=True)
+        note(f"warning: {each.text}")
     return state
 
 
@@ -51,17 +51,15 @@ def _days(path: Path, state) -> list[dict]:
 @command("show")
 @_state_argument
 @json_option
-def show(name, as_json):
+def show(name):
     """Show the stored state of a bearing: life used, hours, starts, hours by regime, extremes, and what else is remembered.
 
     STATE is a state file, or a serial number whose state is in the user's folder for state. A node may use it meanwhile.
     """
     path = _path_of(name)
     state = _read(path)
-    if as_json:
-        print_json({**state.as_mapping(), "file": str(path)})
-        return
-    print_table(f"stored state of {state.serial or 'a bearing without a serial number'}", _rows(path, state))
+    title = f"stored state of {state.serial or 'a bearing without a serial number'}"
+    return Result({**state.as_mapping(), "file": str(path)}, lambda: print_table(title, _rows(path, state)))
 
 
 def _rows(path: Path, state) -> list[tuple[str, str]]:
@@ -152,7 +150,7 @@ def export(name, out):
 @_state_argument
 @click.argument("recordings", type=PATH, nargs=-1, required=True, metavar="RUN.mcap...")
 @json_option
-def merge(name, recordings, as_json):
+def merge(name, recordings):
     """Fill gaps of a stored state by recordings of bearing-sim: each instant counts once, however often it is merged.
 
     The node must not use the state meanwhile. Logs of other programs are counted by `bearing-sim replay --state-file`.
@@ -166,14 +164,13 @@ def merge(name, recordings, as_json):
         filled[str(each)] = fill(path, recording)
         tell_use(recording.tally, each)
     state = _read(path)
-    if as_json:
-        print_json({"state": str(path), "damage": state.totals.damage, "merged": {run: each._asdict() for run, each in filled.items()}})
-        return
+    report = {"state": str(path), "damage": state.totals.damage, "merged": {run: each._asdict() for run, each in filled.items()}}
     rows = [
         (run, f"{number(each.recorded, 6)} s recorded, {number(each.added, 6)} s of them were missing: {number(100.0 * each.damage, 6)} % of life")
         for run, each in filled.items()
     ]
-    print_table(f"merged into {path}", [*rows, ("life used", f"{number(100.0 * state.totals.damage, 6)} %")])
+    rows.append(("life used", f"{number(100.0 * state.totals.damage, 6)} %"))
+    return Result(report, lambda: print_table(f"merged into {path}", rows))
 
 
 @command("adopt")

@@ -17,11 +17,13 @@ from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
     as_usage_error,
-    print_json,
+    attributes,
+    note,
     print_table,
     progress_bar,
+    scene_of,
 )
-from bearing_sim.cli.results import command
+from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.display import SHOWN, force, number, quantity_text, shown
 
 _LINE_EVERY = 10.0  # [s], of progress where nothing can change a line
@@ -40,15 +42,13 @@ _LINE_EVERY = 10.0  # [s], of progress where nothing can change a line
 @flag("--bands", "Instead build the response to the uncertain fields, from which bands and calibration follow, or show it.")
 @option("--dask", "Compute that response on this Dask cluster, such as tcp://10.0.0.1:8786.", metavar="ADDRESS")
 @json_option
-def table(scene_name, overrides, rebuild, workers, points, out, shared, against_slip, seed, bands, dask, as_json):
+def table(scene_name, overrides, rebuild, workers, points, out, shared, against_slip, seed, bands, dask):
     """Build the table of operating points of SCENE at level steady, or show the existing one.
 
     Its range is given in the scene's block `table` (maximum_speed, maximum_load, minimum_temperature, maximum_temperature, tolerance);
     it covers all directions of the load. A point of --at is as warm as a run there: with heat.law network in thermal equilibrium.
     """
-    from bearing_sim.scene.loader import load_scene
-
-    scene = load_scene(scene_name, [*overrides, "level=steady"])
+    scene = scene_of(scene_name, overrides, "steady")
     if (bands or against_slip is not None) and (out is not None or shared is not None):
         raise UsageError("-o and --from are for the table itself; leave --bands and --against-slip out")
     if shared is not None and rebuild:
@@ -56,13 +56,11 @@ def table(scene_name, overrides, rebuild, workers, points, out, shared, against_
     if bands:
         if points or against_slip is not None:
             raise UsageError("--bands goes with --rebuild, --workers and --dask only; leave --at and --against-slip out")
-        _show_response(scene, rebuild, workers, dask, as_json)
-        return
+        return _response(scene, rebuild, workers, dask)
     if dask is not None:
         raise UsageError("--dask goes with --bands only: the table itself is built by the threads of this machine; leave --dask out, or add --bands")
     if against_slip is not None:
-        _compare(scene, against_slip, seed, as_json)
-        return
+        return _compare(scene, against_slip, seed)
     asked = [_condition(text, scene) for text in points]
     if shared is not None:
         table, quality = _taken(shared, scene)
@@ -74,13 +72,10 @@ def table(scene_name, overrides, rebuild, workers, points, out, shared, against_
 
         out.write_bytes(shared_table(scene, table, quality))
     report = _report(scene, table, quality, [_answers(scene, table, condition) for condition in asked])
-    if as_json:
-        print_json(report)
-    else:
-        _print(report)
+    return Result(report, lambda: _print(report))
 
 
-def _show_response(scene, rebuild, workers, dask, as_json) -> None:
+def _response(scene, rebuild, workers, dask) -> Result:
     """Build the response of a scene to its uncertain fields, or take the one that is kept, and show what it is good for."""
     from bearing_sim.cli.estimation import response_with_progress
     from bearing_sim.estimation.response import bundled_path, response_path
@@ -89,10 +84,7 @@ def _show_response(scene, rebuild, workers, dask, as_json) -> None:
     found = response_with_progress(scene, rebuild, workers, dask)
     places = response_path(scene), bundled_path(scene)
     domain, path = found.domain, str(next(filter(Path.exists, places), places[0]))
-    if as_json:
-        report = {"scene": scene.name, "file": path, "fields": list(found.names), "points": found.points, "seconds": found.seconds}
-        print_json({**report, "domain": domain._asdict()})
-        return
+    report = {"scene": scene.name, "file": path, "fields": list(found.names), "domain": domain._asdict(), **attributes(found, "points", "seconds")}
     rpm, celsius = [speed * 30 / math.pi for speed in domain.speeds], [kelvin - 273.15 for kelvin in domain.temperatures]
     rows = [
         ("uncertain fields", ", ".join(found.names)),
@@ -101,7 +93,7 @@ def _show_response(scene, rebuild, workers, dask, as_json) -> None:
         ("oil temperature", f"{number(celsius[0])} to {number(celsius[1])} °C"),
         ("built", f"from {found.points} settled points in {found.seconds:.3g} s; {path}"),
     ]
-    print_table(f"response of {scene.name} to its uncertain fields", rows)
+    return Result(report, lambda: print_table(f"response of {scene.name} to its uncertain fields", rows))
 
 
 def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
@@ -120,7 +112,7 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
     kept = None if rebuild else cached_table(scene, temperatures)
     if kept is not None:
         return kept
-    click.echo(f"building the table of operating points of {scene.name}, once for this bearing and oil ...", err=True)
+    note(f"building the table of operating points of {scene.name}, once for this bearing and oil ...")
     correction = None
     if (level := scene.table.correction) != "none":
         with as_usage_error(ValueError), progress_bar(f"operating points at level {level}", 1.0) as show:
@@ -188,8 +180,7 @@ def _answers(scene, table, condition) -> dict:
     place = table_condition(state, inputs)
     solved, interpolated = solved_answer(state, inputs), look_up(table, [place])[0]
     named = {name: [float(interpolated[column]), float(solved[column])] for name, column in ANSWER._asdict().items()}
-    rpm, degrees = speed * 30 / math.pi, math.degrees(angle)
-    where = {"speed_rpm": rpm, "load": load, "oil_temperature_c": kelvin - 273.15, "load_angle_deg": degrees}
+    where = _place(*condition)
     where |= temperatures(dict(zip(NODE_OBSERVABLES, state.temperatures.tolist())))
     return {**where, "held": holds(table, *place[:3], growth=place[4]), "table_and_solution": named}
 
@@ -221,28 +212,22 @@ def _correction_of(scene) -> dict | None:
     found = read_correction(correction_path(scene, correction_domain(scene))) if scene.table.correction != "none" else None
     if found is None:
         return None
-    return {
+    return attributes(found, "failed", "seconds", "slip_error", "life_error") | {
         "level": scene.table.correction,
         "points": len(found.conditions),
-        "failed": found.failed,
-        "seconds": found.seconds,
-        "slip_error": found.slip_error,
-        "life_error": found.life_error,
         "two_states": [
-            {
-                "speed_rpm": speed * 30 / math.pi,
-                "load": load,
-                "oil_temperature_c": kelvin - 273.15,
-                "load_angle_deg": math.degrees(angle),
-                "slip": own,
-                "slip_from_more": other,
-            }
+            _place(speed, load, kelvin, angle) | {"slip": own, "slip_from_more": other}
             for speed, load, kelvin, angle, own, other in found.two_states.tolist()
         ],
     }
 
 
-def _compare(scene, count, seed, as_json) -> None:
+def _place(speed, load, kelvin, angle) -> dict:
+    """Return an operating point for JSON, in the units of its names."""
+    return {"speed_rpm": speed * 30 / math.pi, "load": load, "oil_temperature_c": kelvin - 273.15, "load_angle_deg": math.degrees(angle)}
+
+
+def _compare(scene, count, seed) -> Result:
     from bearing_sim.studies.steady_check import compare
 
     announce_compilation(scene)
@@ -251,15 +236,17 @@ def _compare(scene, count, seed, as_json) -> None:
         for row in compare(scene, count, seed):
             rows.append(row._asdict() | {"agrees": row.agrees})
             progress(len(rows))
-    if as_json:
-        print_json({"scene": scene.name, "agreeing": sum(row["agrees"] for row in rows), "points": rows})
-        return
+    agreeing = sum(row["agrees"] for row in rows)
+    remark = f"{agreeing} of {count} agree: slip within 2 % or 0.05 points, and life within 2 %"
+    return Result({"scene": scene.name, "agreeing": agreeing, "points": rows}, lambda: _print_comparison(rows), remarks=[remark])
+
+
+def _print_comparison(rows) -> None:
     for row in rows:
         slip = f"slip {100 * row['marched_slip']:8.4f} % simulated, {100 * row['solved_slip']:8.4f} % solved"
         life = f"life {row['marched_life']:9.4g} h, {100 * (row['solved_life'] / row['marched_life'] - 1):+.2f} %"
         where = f"{row['speed_rpm']:7.0f} rpm {row['load']:6.0f} N {row['load_angle_deg']:5.0f} deg {row['oil_temperature_c']:4.0f} °C"
         click.echo(f"{where}: {slip}; {life}{'' if row['agrees'] else '; differs'}")
-    click.echo(f"{sum(row['agrees'] for row in rows)} of {count} agree: slip within 2 % or 0.05 points, and life within 2 %")
 
 
 def _row_of(name, of_table, solved) -> tuple[str, str]:

@@ -3,7 +3,6 @@
 
 import time
 
-import click
 from click import IntRange
 
 from bearing_sim.cli.options import PATH, csv_option_of, executor_options, json_option, level_type, option, picture_option, scene_argument, set_option
@@ -13,6 +12,7 @@ from bearing_sim.cli.reporting import (
     announce_compilation,
     as_usage_error,
     judged,
+    note,
     print_table,
     refuse_idle_temperature,
     scene_of,
@@ -105,7 +105,7 @@ def _course(log, scene, count):
     course = judged(read_input_log(log), scene)
     kelvin = math.nan  # the scene's own, which may be uncertain
     if "oil_temperature" in course.stamps and any(one.field == "lubricant.temperature" for one in scene.uncertainty):
-        click.echo("the log gives the oil temperature: its range in the scene is not used", err=True)
+        note("the log gives the oil temperature: its range in the scene is not used")
         scene = without_range(scene, "lubricant.temperature")
     run = course.segment(None, kelvin)
     return scene, stretches(run.instants * 1e-9, run.inputs, run.in_gap, count), unknown_report(course)

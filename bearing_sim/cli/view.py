@@ -10,7 +10,7 @@ from click import IntRange
 
 from bearing_sim.cli.options import PATH, flag, option, size_option
 from bearing_sim.cli.outputs import OutputFile, default_output
-from bearing_sim.cli.reporting import FailedRun, UsageError, as_usage_error, progress_bar, tell_use
+from bearing_sim.cli.reporting import FailedRun, UsageError, as_usage_error, note, progress_bar, tell_use
 from bearing_sim.cli.results import command
 from bearing_sim.files.outputs import Output
 
@@ -141,11 +141,11 @@ def _write_bag(recording: Path, out: Path, seconds: float | None, lines: dict, c
     found = read_bag_series(recording, lines, constants)
     tell_use(found.tally, recording)
     _require_within(seconds, 0.0, found.duration)
-    click.echo(f"shown as a bag from another source ({why}); not shown:", err=True)
+    note(f"shown as a bag from another source ({why}); not shown:")
     for line in found.left_out[:_MOST_LEFT_OUT]:
-        click.echo(f"  {line}", err=True)
+        note(f"  {line}")
     if (more := len(found.left_out) - _MOST_LEFT_OUT) > 0:
-        click.echo(f"  and {more} more, which the view lists", err=True)
+        note(f"  and {more} more, which the view lists")
     write_bag_view(out, recording.name, found)
     return 0.0, found.duration
 

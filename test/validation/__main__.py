@@ -17,8 +17,8 @@ from bearing_sim.cli.reporting import (  # noqa: E402
     Points,
     UsageError,
     announce_compilation,
+    as_ending,
     as_failed_run,
-    as_file_error,
     as_usage_error,
     command_line,
     print_json,
@@ -76,7 +76,7 @@ def report(out, names, tests, recordings, quick):
     with progress_bar("checks", len(chosen)) as show:
         results = [*run(chosen, quick, show), *held_by_tests]
     page = (markdown_page if out.path.suffix.lower() == _MARKDOWN else html_page)(results, command_line())
-    with as_file_error():
+    with as_ending():
         out.write_text(page)
     for each in results:
         if each.verdict != "holds":
@@ -249,7 +249,7 @@ def nightly(levels, samples, first, seed, corners, long, journal, table, workers
 
     announce_compilation()
     wanted = {level: SAMPLES[level] if samples is None else samples for level in levels or SAMPLES}
-    with as_file_error(), as_usage_error(JournalInUse), Points("nightly", 0) as points:
+    with as_ending(), as_usage_error(JournalInUse), Points("nightly", 0) as points:
         report = run_nightly(wanted, seed, corners, long, journal and journal.path, workers, points.update, first)
         if table is not None:
             write_csv(table, report.cases)
@@ -301,7 +301,7 @@ def friction(overrides, table, as_json):
     found, speeds = moment_table(overrides=overrides), thermal_speeds(overrides=overrides)
     rows = [{**one._asdict(), "simple": one.simple, "ratio": one.ratio} for one in found]
     if table is not None:
-        with as_file_error():
+        with as_ending():
             write_csv(table, rows)
     with progress_bar("film ratios", len(FILM_BEARINGS)) as show:
         ratios = part_ratios(lambda name: show(FILM_BEARINGS.index(name)), overrides, FILM_BEARINGS)
@@ -387,7 +387,7 @@ def extremes(samples, levels, seed, long, workers, as_json, picture, table):
 
     with progress_bar("extremes", 1.0) as progress:
         report, outcomes = run_extremes(samples, levels, seed, long, lambda text: click.echo(f"{text} ...", err=True), progress, workers)
-    with as_file_error():
+    with as_ending():
         if table is not None:
             write_csv(table, table_rows(outcomes))
         if picture is not None:
