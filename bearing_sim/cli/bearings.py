@@ -6,7 +6,7 @@ import math
 import click
 from click import IntRange
 
-from bearing_sim.cli.options import json_option, option, picture_option, scene_argument, set_option, verbose_option
+from bearing_sim.cli.options import json_option, option, picture_option, scene_options, verbose_option
 from bearing_sim.cli.outputs import OutputFile
 from bearing_sim.cli.reporting import (
     UsageError,
@@ -43,8 +43,7 @@ def scenes():
 
 
 @command("loads")
-@scene_argument
-@set_option
+@scene_options
 @option("--slices", "Slices per roller, for their loads and the life [default: life.laminae of the scene].", IntRange(5, 400), metavar="N")
 @picture_option("Draw the loads")
 @verbose_option

@@ -17,6 +17,8 @@ from bearing_sim.cli.reporting import (
     warn_of_scene,
 )
 from bearing_sim.cli.results import Result, command
+from bearing_sim.scene.loader import load_scene, scene_from_yaml, scene_to_yaml
+from bearing_sim.scene.uncertainty import quantities
 
 _EXPECTED = 30  # evaluations of a typical search, for the progress bar
 _UNLIKELY = 0.01
@@ -69,7 +71,6 @@ def _scene(log, scene_name, overrides):
     """Return the scene to calibrate: the named one, or that of the recording, with overrides."""
     from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.reader import Recording
-    from bearing_sim.scene.loader import load_scene, scene_from_yaml, scene_to_yaml
 
     if scene_name is not None:
         return load_scene(scene_name, overrides)
@@ -107,7 +108,6 @@ def _override(found) -> list[str]:
 
 def _write(out, log, found) -> None:
     from bearing_sim.recording.provenance import package_version
-    from bearing_sim.scene.loader import scene_to_yaml
 
     fields = ", ".join(one.range.field for one in found.fitted)
     head = f"# Calibrated by bearing_sim {package_version()}: {fields} fitted to the cage speed in {log.name}, {len(found.blocks.slip)} blocks.\n"
@@ -149,8 +149,6 @@ def _report(log, scene, found) -> dict:
 
 
 def _print(title, scene, found, lines, out) -> None:
-    from bearing_sim.scene.uncertainty import quantities
-
     known, blocks = quantities(type(scene)), found.blocks
     percent = f"{100 * found.confidence:g} %"
     rows = [*lines]
@@ -187,8 +185,6 @@ def _points(found) -> str:
 
 
 def _dependence(scene, found) -> list[tuple[str, str]]:
-    from bearing_sim.scene.uncertainty import quantities
-
     known, effects = quantities(type(scene)), []
     for other, ends in found.depends.items():
         one = next(each for each in scene.uncertainty if each.field == other)

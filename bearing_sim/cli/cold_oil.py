@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim study cold-oil``: slip and skid load of an idling bearing over load, temperature and supply of oil."""
 
-from bearing_sim.cli.options import json_option, option, picture_option, scene_argument, set_option
+from bearing_sim.cli.options import json_option, option, picture_option, scene_options
 from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
@@ -16,8 +16,7 @@ from bearing_sim.scene.display import force, number
 
 
 @command("cold-oil")
-@scene_argument
-@set_option
+@scene_options
 @option("--supply", "supplies", "Supply of oil; can be repeated  [default: oil_bath, circulating, oil_jet].", multiple=True)
 @option("--temperature", "temperatures", "Oil temperature; can be repeated  [default: 0 to 80 °C].", multiple=True, metavar="VALUE")
 @option("--load", "loads", "Radial load; can be repeated  [default: 0.08 to 3 times the minimum load].", multiple=True, metavar="VALUE")

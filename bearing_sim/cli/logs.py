@@ -19,6 +19,7 @@ from bearing_sim.cli.reporting import (
     tell_use,
 )
 from bearing_sim.cli.results import Result, command
+from bearing_sim.scene.loader import did_you_mean, load_scene
 
 
 @command("import-csv")
@@ -113,8 +114,6 @@ _FIELDS = (
 
 def _pairs(option, texts, known=()) -> dict[str, str]:
     """Return the pairs of an option that is repeated, ``NAME=VALUE``; ``known`` names, if they are not free."""
-    from bearing_sim.scene.loader import did_you_mean
-
     found = {}
     for text in texts:
         name, equals, value = text.partition("=")
@@ -213,7 +212,6 @@ def mission(out, duration, rate, start, machine, overrides):
     import time
 
     from bearing_sim.inputs.mission import write_mission
-    from bearing_sim.scene.loader import load_scene
 
     if overrides and machine is None:
         raise UsageError("--set changes the scene of --cage; give that, too")

@@ -34,6 +34,17 @@ def flag(*about: str, **settings) -> Callable:
     return option(*about, is_flag=True, **settings)
 
 
+def together(*decorators: Callable) -> Callable:
+    """Return a decorator that adds several options and arguments, in the order in which help lists them."""
+
+    def add(command: Callable) -> Callable:
+        for each in reversed(decorators):
+            command = each(command)
+        return command
+
+    return add
+
+
 level_type = click.Choice(LEVELS)
 
 
@@ -68,12 +79,11 @@ allow_outside_option = flag(
 )
 
 
-def scene_argument(command: Callable) -> Callable:
-    """Add the argument for a scene, ``scene_name``, and the option that allows it to name files outside of its folder."""
-    return click.argument("scene_name", metavar="SCENE")(allow_outside_option(command))
-
-
-_LOG_OPTIONS = (
+scene_argument = together(click.argument("scene_name", metavar="SCENE"), allow_outside_option)
+"""The argument for a scene, ``scene_name``, and the option that allows it to name files outside of its folder."""
+scene_options = together(scene_argument, set_option)
+"""The scene, and overrides of its fields, ``overrides``."""
+log_options = together(
     option(
         "--speed",
         "--speed-topic",
@@ -112,11 +122,7 @@ _LOG_OPTIONS = (
 )
 
 
-def log_options(command: Callable) -> Callable:
-    """Add the options that say where a log holds what: topics, units, constants, stamps and gaps (see `channel_sources`)."""
-    for add in reversed(_LOG_OPTIONS):
-        command = add(command)
-    return command
+"""The options that say where a log holds what: topics, units, constants, stamps and gaps (see `channel_sources`)."""
 
 
 def channel_sources(
@@ -141,10 +147,11 @@ def channel_sources(
         return {channel: source(channel, text, unit) for channel, text, unit in given if (text or unit) and channel not in constants}, constants
 
 
-def executor_options(command: Callable) -> Callable:
-    """Add the options that choose where points are computed."""
-    command = option("--dask", "Compute on this Dask cluster, such as tcp://10.0.0.1:8786.", metavar="ADDRESS")(command)
-    return option("--workers", "Number of processes [default: all cores].", IntRange(1, 1024), metavar="N")(command)
+executor_options = together(
+    option("--workers", "Number of processes [default: all cores].", IntRange(1, 1024), metavar="N"),
+    option("--dask", "Compute on this Dask cluster, such as tcp://10.0.0.1:8786.", metavar="ADDRESS"),
+)
+"""The options that choose where points are computed."""
 
 
 def table_option(default: str, beside: str, *parts: str) -> Callable:
@@ -160,18 +167,10 @@ def table_option(default: str, beside: str, *parts: str) -> Callable:
     return option("-o", "--out", text, OutputTable(*parts), default=default, metavar="PATH.parquet")
 
 
-def csv_option(written: str) -> Callable:
-    """Return the option for the path of a CSV table; ``written`` is its help."""
-    return csv_option_of(OutputFile(), written)
-
-
-def csv_option_of(kind: OutputFile, written: str) -> Callable:
-    """Return the option for the path of a CSV table of a type of output; ``written`` is its help."""
-
-    def add(command: Callable) -> Callable:
-        return option("-o", "--out", "table", written, kind, metavar="PATH.csv")(removed_option("--csv", "-o, --out")(command))
-
-    return add
+def csv_option(written: str, kind: OutputFile | None = None) -> Callable:
+    """Return the option for the path of a CSV table, ``table``; ``written`` is its help, ``kind`` its type unless it is simply a file."""
+    table = option("-o", "--out", "table", written, kind or OutputFile(), metavar="PATH.csv")
+    return together(table, removed_option("--csv", "-o, --out"))
 
 
 def removed_option(name: str, successor: str) -> Callable:

@@ -18,6 +18,7 @@ from bearing_sim.cli.reporting import (
     announce_compilation,
     as_ending,
     as_usage_error,
+    attributes,
     command_line,
     note,
     print_json,
@@ -203,6 +204,22 @@ def _choice(scene, course) -> dict:
     return {"model": partial(Simulation, table=table), "laws": laws_of_table(scene, ends)}
 
 
+_KEPT = (
+    "damage",
+    "sim_seconds",
+    "gap_seconds",
+    "wall_seconds",
+    "cpu_seconds",
+    "real_time_factor",
+    "steps",
+    "rejected_steps",
+    "non_finite_steps",
+    "failed_ticks",
+    "samples",
+    "given_up",
+)
+
+
 def _report(result, course, recorded, scene, out) -> dict:
     from bearing_sim.inputs.log import anomalies
     from bearing_sim.model.plausibility import minimum_load
@@ -222,7 +239,6 @@ def _report(result, course, recorded, scene, out) -> dict:
         "life_method": scene.life.method,
         "life_hours": use.life_hours,
         "least_rating_life_hours": result.least_rating_life,
-        "damage": result.damage,
         **band_numbers(result.band_statistics()),
         "turning_seconds": use.turning_seconds,
         "skid_seconds": use.skid_seconds,
@@ -230,21 +246,11 @@ def _report(result, course, recorded, scene, out) -> dict:
         "seconds_below_minimum_load": below,
         **unknown_report(course),
         "life_and_damage_are": "at most, at least" if course.verdict else "as given",
-        "sim_seconds": result.sim_seconds,
         "gaps": len(course.gaps),
-        "gap_seconds": result.gap_seconds,
-        "wall_seconds": result.wall_seconds,
-        "cpu_seconds": result.cpu_seconds,
-        "real_time_factor": result.real_time_factor,
-        "steps": result.steps,
-        "rejected_steps": result.rejected_steps,
-        "non_finite_steps": result.non_finite_steps,
-        "failed_ticks": result.failed_ticks,
-        "samples": result.samples,
         "inputs_anomalies": {channel: anomalies(series)._asdict() for channel, series in recorded.series.items()},
         "inputs_stamped_by": {channel: series.stamped_by for channel, series in recorded.series.items()},
         "events": dict(result.events),
-        "given_up": result.given_up,
+        **attributes(result, *_KEPT),
     }
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from click import Choice, FloatRange, IntRange
 
 from bearing_sim.cli.estimation import estimation_with_progress, live_band_numbers, live_band_rows
-from bearing_sim.cli.options import json_option, option, scene_argument, set_option, verbose_option
+from bearing_sim.cli.options import json_option, option, scene_options, verbose_option
 from bearing_sim.cli.outputs import OutputFile, OutputRecording, recording_into
 from bearing_sim.cli.reporting import (
     Unsettled,
@@ -37,8 +37,7 @@ _LEAST_SAMPLES = 100  # of the shortest run that can be judged
 
 
 @command("run")
-@scene_argument
-@set_option
+@scene_options
 @option("--duration", "Simulated time, such as 0.5 or '300 ms' [default: until slip and life rest, at least 0.5 s].", metavar="S")
 @option("--at-most", "End a run without --duration here [default: 1000 s, or 2000 cage turns if these take longer].", metavar="S")
 @option("--level", "Level of fidelity, instead of the scene's.", metavar="LEVEL")

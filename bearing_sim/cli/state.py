@@ -11,6 +11,7 @@ from bearing_sim.cli.reporting import UsageError, as_usage_error, note, print_ta
 from bearing_sim.cli.results import Result, command
 from bearing_sim.files.outputs import remember_input
 from bearing_sim.scene.display import number
+from bearing_sim.stored_state.state_file import StateFile, checked_serial, default_path, known_serials, previous_path, read_state
 
 _TABLES = (".csv", ".parquet")
 _state_argument = click.argument("name", metavar="STATE")
@@ -18,8 +19,6 @@ _state_argument = click.argument("name", metavar="STATE")
 
 def _path_of(name: str) -> Path:
     """Return the state file that a path or a serial number names; raise `UsageError` if there is none."""
-    from bearing_sim.stored_state.state_file import checked_serial, default_path, known_serials, previous_path
-
     path = Path(name).expanduser()
     if path.exists() or previous_path(path).exists():
         return path
@@ -32,8 +31,6 @@ def _path_of(name: str) -> Path:
 
 def _read(path: Path):
     """Return the state in a file; what had to be done about it is told on stderr."""
-    from bearing_sim.stored_state.state_file import read_state
-
     state, news = read_state(path)
     for each in news:
         note(f"warning: {each.text}")
@@ -185,7 +182,6 @@ def adopt(name, scene_name, overrides, serial):
     The totals stay: what was counted by the earlier scene is not computed again.
     """
     from bearing_sim.scene.loader import load_scene
-    from bearing_sim.stored_state.state_file import StateFile, checked_serial
 
     path = _path_of(name)
     scene, serial = load_scene(scene_name, overrides), checked_serial(serial)

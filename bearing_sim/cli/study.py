@@ -6,7 +6,17 @@ import math
 import click
 from click import Choice, FloatRange, IntRange
 
-from bearing_sim.cli.options import PATH, allow_outside_option, csv_option, json_option, option, picture_option, scene_argument, set_option
+from bearing_sim.cli.options import (
+    PATH,
+    allow_outside_option,
+    csv_option,
+    json_option,
+    option,
+    picture_option,
+    scene_options,
+    set_option,
+    together,
+)
 from bearing_sim.cli.outputs import OutputJournal, OutputTable
 from bearing_sim.cli.reporting import (
     FailedRun,
@@ -72,13 +82,8 @@ def _print_damage(log, name, found) -> None:
     print_rows(f"{log.name}, {name}: damage in millionths of the life, by level", columns, rows)
 
 
-def _varied_scene(study):
-    """Add what the studies have in common that run a scene at several points: scene, overrides, table, picture and JSON."""
-    for add in (json_option, picture_option("Draw the results"), csv_option("Write the results to a table.")):
-        study = add(study)
-    return study
-
-
+_varied_scene = together(csv_option("Write the results to a table."), picture_option("Draw the results"), json_option)
+"""What the studies have in common that run a scene at several points."""
 _scene_or_paper = click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
 _vibrating_level = option("--level", "Level with vibration.", Choice(["planar", "spatial"]), default="planar")
 
@@ -240,8 +245,7 @@ def _resonance_rows(speed) -> list[dict]:
 
 
 @command("friction")
-@scene_argument
-@set_option
+@scene_options
 @option("--series", "Series of SCENE's bearing: 10, 2, 3, 4, 22, 23, or NCF 22, NCF 29, NCF 30 [default: by its designation].", metavar="SERIES")
 @json_option
 def friction(scene_name, overrides, series):
@@ -285,8 +289,7 @@ def friction(scene_name, overrides, series):
 
 
 @command("clearance")
-@scene_argument
-@set_option
+@scene_options
 @option("--speed", "speeds", "Shaft speeds [default: 9 from 20 to 120 % of the scene's].", metavar="START:STOP:N")
 @option("--load", "loads", "Radial loads, or one [default: 7 from 0.5 to 3.5 times the scene's].", metavar="START:STOP:N")
 @option("--life-above", "Life below which it counts as lost.", default="10 h", metavar="LIFE")
@@ -374,8 +377,7 @@ def _print_clearances(table) -> None:
 
 
 @command("extremes")
-@scene_argument
-@set_option
+@scene_options
 @option("--samples", "Number of variants.", IntRange(1, 1_000_000), default=100)
 @option("--seed", "Seed of the variants.", IntRange(0), default=0)
 @option("--journal", "File from which an interrupted study resumes.", OutputJournal(), metavar="PATH")

@@ -2,16 +2,12 @@
 """``bearing-sim table``: the table of operating points of level ``steady``."""
 
 import math
-import sys
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import click
 from click import IntRange
 
-from bearing_sim.cli.options import PATH, flag, json_option, option, scene_argument, set_option
+from bearing_sim.cli.options import PATH, flag, json_option, option, scene_options
 from bearing_sim.cli.outputs import OutputFile
 from bearing_sim.cli.reporting import (
     UsageError,
@@ -26,12 +22,9 @@ from bearing_sim.cli.reporting import (
 from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.display import SHOWN, force, number, quantity_text, shown
 
-_LINE_EVERY = 10.0  # [s], of progress where nothing can change a line
-
 
 @command("table")
-@scene_argument
-@set_option
+@scene_options
 @flag("--rebuild", "Build the table even if it exists.")
 @option("--workers", "Number of threads [default: all cores].", IntRange(1, 256), metavar="N")
 @option("--at", "points", "Show this operating point, interpolated and solved; can be repeated.", multiple=True, metavar="RPM,N[,DEGC[,DEG]]")
@@ -117,32 +110,8 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
     if (level := scene.table.correction) != "none":
         with as_usage_error(ValueError), progress_bar(f"operating points at level {level}", 1.0) as show:
             correction = obtain_correction(scene, temperatures, workers, lambda done, most: show(done / most), rebuild)
-    with _points_solved() as show:
-        return obtain_table(scene, temperatures, workers, show, rebuild, correction and (lambda: correction))
-
-
-@contextmanager
-def _points_solved() -> Iterator[Callable[[int, int], None]]:
-    """Tell on stderr how many operating points are solved, of how many, and how long the rest takes; yields the function that takes both numbers.
-
-    The grid is refined in rounds until it is good enough: the rest is that of the present round.  A terminal gets one line that changes, anything
-    else a line every ten seconds.
-    """
-    begun = told = time.monotonic()
-    is_terminal = sys.stderr.isatty()
-
-    def show(solved: int, wanted: int) -> None:
-        nonlocal told
-        if (now := time.monotonic()) - told >= (1.0 if is_terminal else _LINE_EVERY):
-            told = now
-            left = (wanted - solved) * (now - begun) / max(solved, 1)
-            done = f"operating points: {number(solved, 9)} of {number(wanted, 9)} after {now - begun:.0f} s"
-            line = f"{done}, about {number(left, 2)} s left in this round of refinement"
-            click.echo(f"\r{line}\033[K" if is_terminal else line, err=True, nl=not is_terminal)
-
-    yield show
-    if is_terminal and told > begun:
-        click.echo("\r\033[K", err=True, nl=False)
+    with progress_bar("operating points", 1.0) as show:
+        return obtain_table(scene, temperatures, workers, lambda done, most: show(done / most), rebuild, correction and (lambda: correction))
 
 
 def _taken(path, scene):

@@ -16,8 +16,7 @@ from bearing_sim.cli.options import (
     option,
     picture_option,
     quick_option,
-    scene_argument,
-    set_option,
+    scene_options,
 )
 from bearing_sim.cli.outputs import OutputJournal
 from bearing_sim.cli.reporting import (
@@ -50,8 +49,7 @@ _FASTER, _CLOSER = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
 
 
 @command("trade")
-@scene_argument
-@set_option
+@scene_options
 @option("--level", "levels", "Measure this level; can be repeated [default: all].", level_type, multiple=True)
 @option("--against", "Level of the reference [default: planar, or the highest that can compute the scene].", level_type)
 @option(

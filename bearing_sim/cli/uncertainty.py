@@ -5,12 +5,13 @@ import time
 
 from click import IntRange
 
-from bearing_sim.cli.options import PATH, csv_option_of, executor_options, json_option, level_type, option, picture_option, scene_argument, set_option
+from bearing_sim.cli.options import PATH, csv_option, executor_options, json_option, level_type, option, picture_option, scene_options
 from bearing_sim.cli.outputs import OutputWithJournal
 from bearing_sim.cli.reporting import (
     Points,
     announce_compilation,
     as_usage_error,
+    attributes,
     judged,
     note,
     print_table,
@@ -21,20 +22,21 @@ from bearing_sim.cli.reporting import (
     write_csv,
 )
 from bearing_sim.cli.results import Result, command, picture_into
+from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import quantities, shown, without_dimensions, without_range
 
 SEED = 2017
 
 
 @command("uncertainty")
-@scene_argument
-@set_option
+@scene_options
 @option("--samples", "Size of each of the two samples; rounded up to a power of two.", IntRange(2, 65536), default=256)
 @option("--seed", "Seed of the samples.", IntRange(0), default=SEED)
 @option("--level", "Level of fidelity [default: the fastest that supports the scene].", level_type)
 @option("--log", "Compute the ranges over time, for speed and load in a log.", PATH, metavar="IN.mcap")
 @option("--stretches", "Number of intervals into which the log is divided.", IntRange(1, 10_000), default=24)
 @executor_options
-@csv_option_of(OutputWithJournal(), "Write all points; also written: PATH.journal, from which an interrupted run resumes.")
+@csv_option("Write all points; also written: PATH.journal, from which an interrupted run resumes.", OutputWithJournal())
 @picture_option("Draw ranges and shares")
 @json_option
 def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, workers, dask, table, picture):
@@ -99,7 +101,6 @@ def _course(log, scene, count):
     import math
 
     from bearing_sim.inputs.log import read_input_log
-    from bearing_sim.scene.uncertainty import without_range
     from bearing_sim.studies.uncertainty import stretches
 
     course = judged(read_input_log(log), scene)
@@ -124,10 +125,7 @@ def _report(scene, found, seed, seconds, course) -> dict:
         "evaluations": len(found.design.points),
         "without_answer": found.absent,
         "wall_seconds": seconds,
-        "ranges": {
-            one.field: {"low": one.low, "high": one.high, "distribution": one.distribution, "mode": one.mode, "source": one.source}
-            for one in found.ranges
-        },
+        "ranges": {one.field: attributes(one, "low", "high", "distribution", "mode", "source") for one in found.ranges},
     }
     for name, band in found.bands.items():
         shares = found.indices[name]
@@ -161,7 +159,6 @@ def _report(scene, found, seed, seconds, course) -> dict:
 def band_rows(report) -> list[tuple[str, str]]:
     """Return table rows: the quantiles with their sampling errors, and the fields they depend on, most important first."""
     from bearing_sim.scene.display import number
-    from bearing_sim.scene.uncertainty import without_dimensions
 
     rows, note = [], without_dimensions(report["ranges"])
     for name, label, scale, unit in (("cage_slip", "cage slip", 100.0, "%"), ("life_hours", "life", 1.0, "h")):
@@ -213,9 +210,6 @@ def _share(share: float, interval, samples: int) -> str:
 
 def print_bands(name, report) -> None:
     """Print a report as a table."""
-    from bearing_sim.scene.scene import Scene
-    from bearing_sim.scene.uncertainty import quantities, shown
-
     known = quantities(Scene)
     ranges = [
         f"{field}: {shown(known, field, one['low'])} to {shown(known, field, one['high'])}, {one['distribution']}"
@@ -241,9 +235,6 @@ def print_bands(name, report) -> None:
 
 
 def _rows(found) -> list[dict]:
-    from bearing_sim.scene.scene import Scene
-    from bearing_sim.scene.uncertainty import quantities
-
     known = quantities(Scene)
     columns = [f"{one.field} [{known[one.field].unit if one.field in known and known[one.field].unit else '1'}]" for one in found.ranges]
     answers = zip(found.answers["cage_slip"].tolist(), found.answers["life_hours"].tolist())

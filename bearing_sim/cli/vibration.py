@@ -16,6 +16,7 @@ from bearing_sim.cli.reporting import (
     tell_use,
 )
 from bearing_sim.cli.results import Result, command
+from bearing_sim.scene.loader import load_bearing, load_scene
 
 _LARGEST_PARTS = 100_000
 _MARGIN = 1.5  # times the largest slip of the model and of draws of its uncertain fields (assumption: draws are few)
@@ -143,8 +144,6 @@ def _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, mea
         return Geometry(rollers, size, True, f"{rollers} rollers")
     if roller_diameter is not None or pitch_diameter is not None:
         raise UsageError("--roller-diameter and --pitch-diameter go with --rollers")
-    from bearing_sim.scene.loader import load_bearing, load_scene
-
     chosen = load_bearing(bearing) if bearing is not None else load_scene(scene_name).bearing
     return Geometry(chosen.roller.count, chosen.roller.diameter / chosen.pitch_diameter, measured, chosen.designation or chosen.name)
 
@@ -161,7 +160,6 @@ def _largest_slip(text, scene_name, shaft_speed, record) -> float:
     if scene_name is None:
         return LARGEST_SLIP
     from bearing_sim.cli.reporting import announce_compilation
-    from bearing_sim.scene.loader import load_scene
     from bearing_sim.simulation import IntegrationError, scene_inputs
     from bearing_sim.studies.uncertainty import UncertaintyError, largest_slip
 
