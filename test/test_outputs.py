@@ -16,7 +16,8 @@ from click.testing import CliRunner
 from output_cases import CASES, commands, file_name, outputs
 
 from bearing_sim.cli.main import main
-from bearing_sim.cli.outputs import OutputFile, OutputFolder, OutputJournal, OutputWithJournal, WritingCommand
+from bearing_sim.cli.outputs import OutputFile, OutputFolder, OutputJournal, OutputWithJournal
+from bearing_sim.cli.results import Command
 from bearing_sim.files.outputs import Output, RefusedOutput, protecting_inputs, remember_input, rename_without_replacing, replaced
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, require_same_study, study_digest, write_table
@@ -69,7 +70,7 @@ def test_every_option_with_a_path_is_known_as_an_output_or_an_input_and_every_ou
     }
     assert plain == INPUTS, "an output has a type of bearing_sim.cli.outputs"
     assert {name for name, _ in OUTPUTS} == set(CASES)
-    assert all(isinstance(command, WritingCommand) for name, command in commands() if name in CASES)
+    assert all(isinstance(command, Command) for name, command in commands() if name in CASES)
 
 
 @pytest.mark.parametrize(("name", "option"), OUTPUTS, ids=NAMES)
@@ -233,7 +234,7 @@ def usual_handlers():
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
 def test_a_signal_unwinds_a_command_that_writes(tmp_path, usual_handlers, number):
-    @click.command(cls=WritingCommand)
+    @click.command(cls=Command)
     @click.option("--out", type=OutputFile())
     def write(out):
         with out.draft() as draft:

@@ -4,46 +4,47 @@
 import math
 
 import click
+from click import IntRange
 
-from bearing_sim.cli.options import json_option, picture_option, scene_argument, set_option, verbose_option
-from bearing_sim.cli.outputs import OutputFile, WritingCommand
+from bearing_sim.cli.options import json_option, option, picture_option, scene_options, verbose_option
+from bearing_sim.cli.outputs import OutputFile
 from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
     as_failed_run,
-    as_file_error,
     as_usage_error,
-    print_json,
+    note,
     print_table,
     refuse_idle_temperature,
+    scene_of,
     warn_of_limits,
     warn_of_scene,
     warnings_report,
 )
+from bearing_sim.cli.results import Result, command, picture_into
 
 
-@click.command("scenes")
+@command("scenes")
 @json_option
-def scenes(as_json):
+def scenes():
     """List the bundled scenes, bearings, oils, greases and CSV mappings."""
     from bearing_sim.scene.loader import catalog_names, load_scene, scene_names
 
     found = {"scenes": {name: load_scene(name).description for name in scene_names()}}
     found |= {kind: catalog_names(kind) for kind in ("bearings", "oils", "greases", "mappings")}
-    if as_json:
-        print_json(found)
-        return
-    print_table("scenes", found["scenes"].items())
-    print_table("catalog", [(kind, ", ".join(found[kind])) for kind in ("bearings", "oils", "greases", "mappings")])
-    click.echo("any designation, such as NU 210 ECP/C3, is a bearing, too (bearing-sim catalog), and ISO VG 2 to 3200 are oils")
+
+    def show():
+        print_table("scenes", found["scenes"].items())
+        print_table("catalog", [(kind, ", ".join(found[kind])) for kind in ("bearings", "oils", "greases", "mappings")])
+
+    return Result(
+        found, show, remarks=["any designation, such as NU 210 ECP/C3, is a bearing, too (bearing-sim catalog), and ISO VG 2 to 3200 are oils"]
+    )
 
 
-@click.command("loads", cls=WritingCommand)
-@scene_argument
-@set_option
-@click.option(
-    "--slices", type=click.IntRange(5, 400), metavar="N", help="Slices per roller, for their loads and the life [default: life.laminae of the scene]."
-)
+@command("loads")
+@scene_options
+@option("--slices", "Slices per roller, for their loads and the life [default: life.laminae of the scene].", IntRange(5, 400), metavar="N")
 @picture_option("Draw the loads")
 @verbose_option
 @json_option
@@ -53,11 +54,7 @@ def loads(scene_name, overrides, slices, picture, verbose, as_json):
     With heat.law network the bearing is in thermal equilibrium, as in `bearing-sim run`; where there is none, the command fails and says why.
     A moment or a misalignment requires level spatial, in the scene or by --set level=spatial.
     """
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.simulation import IntegrationError
-
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, overrides)
+    scene = scene_of(scene_name, overrides)
     refuse_idle_temperature(scene, overrides)
     warn_of_scene(scene)
     announce_compilation()
@@ -66,20 +63,17 @@ def loads(scene_name, overrides, slices, picture, verbose, as_json):
     from bearing_sim.sweep.grading import graded
 
     slices = slices or scene.life.laminae
-    with as_failed_run(IntegrationError, ArithmeticError):
+    with as_failed_run(ArithmeticError):
         found = statics(scene, slices)
     if picture is not None:
         from bearing_sim.scene.display import quantity_text
         from bearing_sim.studies.statics import draw
 
         operating = (quantity_text(name, getattr(scene.operating, name)) for name in ("radial_load", "shaft_speed"))
-        with as_file_error(), picture.draft() as draft:
-            draw(draft, f"{scene.name}: {' at '.join(operating)}", found)
+        picture_into(picture, draw, f"{scene.name}: {' at '.join(operating)}", found)
     warnings = graded(scene, outside(scene, found.sample), found.sample[0])
-    if as_json:
-        print_json({**_report_loads(scene, slices, found), **warnings_report(scene, warnings), "picture": picture and str(picture)})
-    else:
-        _print_loads(scene, slices, found)
+    report = {**_report_loads(scene, slices, found), **warnings_report(scene, warnings), "picture": picture and str(picture)}
+    Result(report, lambda: _print_loads(scene, slices, found)).deliver(as_json)
     warn_of_limits(scene, warnings, verbose)
 
 
@@ -191,11 +185,11 @@ def _option(name, default, unit, meaning, minimum, maximum, shown_in):
     return click.option(f"--{name}", metavar="QUANTITY", callback=read, help=f"{meaning[0].upper()}{meaning[1:]}.", **shown)
 
 
-@click.command("machine", cls=WritingCommand)
+@command("machine")
 @_option("pressure", "2.0 MPa", "Pa", "mean pressure on the arcs", 1e3, 1e9, "MPa")
 @_option("arc-turn", "0 deg", "rad", "angle by which one arc is turned from its even position, phi_f", -math.pi / 2, math.pi / 2, "deg")
 @_option("arc-width", "60 deg", "rad", "width of each pressed arc", 1e-3, math.pi, "deg")
-@click.option("--arcs", default=3, show_default=True, type=click.IntRange(2, 12), help="Number of pressed arcs, one per lobe.")
+@option("--arcs", "Number of pressed arcs, one per lobe.", IntRange(2, 12), default=3)
 @_option("mean-radius", "35.8 mm", "m", "mean radius of the ring blank", 1e-3, 2.0, "mm")
 @_option("width", "12 mm", "m", "width of the ring", 1e-4, 1.0, "mm")
 @_option("pressed-width", None, "m", "width that the pressure acts on [default: the ring's]", 1e-4, 1.0, "mm")
@@ -203,7 +197,7 @@ def _option(name, default, unit, meaning, minimum, maximum, shown_in):
 @_option("modulus", "206 GPa", "Pa", "Young's modulus", 1e9, 1e12, "GPa")
 @_option("low-radius", None, "m", "smallest radius of the finished raceway [default: 34.8625 mm unless --ground-radius is given]", 1e-3, 2.0, "mm")
 @_option("ground-radius", None, "m", "radius to which the pressed ring is ground", 1e-3, 2.0, "mm")
-@click.option("-o", "--out", type=OutputFile(), metavar="CONTOUR.csv", help="Contour file for bearing.outer_raceway.contour_file.")
+@option("-o", "--out", "Contour file for bearing.outer_raceway.contour_file.", OutputFile(), metavar="CONTOUR.csv")
 @picture_option("Draw the contour")
 @json_option
 def machine(
@@ -239,20 +233,15 @@ def machine(
     with as_usage_error(ValueError):
         machined = machine(section, pressing, ground_radius=ground_radius, low_radius=low_radius)
     report = _report_machine(section, pressing, machined)
-    with as_file_error():
-        if out is not None:
-            out.write_text(contour_text(machined, _about(section, pressing)))
-        if picture is not None:
-            from bearing_sim.studies.machining import draw
+    if out is not None:
+        out.write_text(contour_text(machined, _about(section, pressing)))
+    if picture is not None:
+        from bearing_sim.studies.machining import draw
 
-            with picture.draft() as draft:
-                draw(draft, section, pressing, machined)
-    if as_json:
-        print_json({**report, "out": out and str(out), "picture": picture and str(picture)})
-    else:
-        _print_machine(report)
+        picture_into(picture, draw, section, pressing, machined)
+    Result({**report, "out": out and str(out), "picture": picture and str(picture)}, lambda: _print_machine(report)).deliver(as_json)
     if len(machined.lows) != arcs:
-        click.echo(f"note: {arcs} arcs give {len(machined.lows)} low points: the turned arc has removed a lobe", err=True)
+        note(f"note: {arcs} arcs give {len(machined.lows)} low points: the turned arc has removed a lobe")
 
 
 def _about(section, pressing) -> str:

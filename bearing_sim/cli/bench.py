@@ -4,19 +4,21 @@
 import time
 
 import click
+from click import IntRange
 
-from bearing_sim.cli.options import json_option, level_type, quick_option
-from bearing_sim.cli.reporting import announce_compilation, print_json, print_rows, progress_bar
+from bearing_sim.cli.options import flag, json_option, level_type, option, quick_option
+from bearing_sim.cli.reporting import announce_compilation, note, print_rows, progress_bar
+from bearing_sim.cli.results import Result, command
 
 _WORDS = ("level", "integrator")  # columns of text
 
 
-@click.command("levels")
-@click.option("--level", "levels", multiple=True, type=level_type, help="Measure this level; can be repeated [default: all].")
-@click.option("--cold", is_flag=True, help="Also measure the very first start, which compiles.")
+@command("levels")
+@option("--level", "levels", "Measure this level; can be repeated [default: all].", level_type, multiple=True)
+@flag("--cold", "Also measure the very first start, which compiles.")
 @quick_option
 @json_option
-def levels(levels, cold, quick, as_json):
+def levels(levels, cold, quick):
     """Measure how fast each level is with error control and with a fixed step, what work it does, and how large its errors are.
 
     Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Takes less than a minute per level once compiled, and longer for level spatial.
@@ -24,11 +26,8 @@ def levels(levels, cold, quick, as_json):
     announce_compilation()
     from bearing_sim.studies.bench import run_bench
 
-    report = run_bench(quick, cold, lambda text: click.echo(f"{text} ...", err=True), levels)
-    if as_json:
-        print_json(report)
-    else:
-        _print_levels(report)
+    report = run_bench(quick, cold, lambda text: note(f"{text} ..."), levels)
+    return Result(report, lambda: _print_levels(report))
 
 
 def _print_levels(report) -> None:
@@ -88,20 +87,15 @@ _SPEEDS = (1500.0, 15_000.0, 45_000.0)  # rpm
 _SECONDS, _QUICK_SECONDS = 5.0, 0.5  # per run
 
 
-@click.command("fleet")
-@click.option(
-    "--level", "levels", multiple=True, default=("steady", "slip", "planar"), show_default=True, type=level_type, help="Level; can be repeated."
-)
+@command("fleet")
+@option("--level", "levels", "Level; can be repeated.", level_type, multiple=True, default=("steady", "slip", "planar"))
 @quick_option
 @json_option
-def fleet(levels, quick, as_json):
+def fleet(levels, quick):
     """Run more and more bearings deng2017_table1 on one core, at 1500, 15,000 and 45,000 rpm, until it no longer holds real time."""
     announce_compilation()
     report = _measure(levels, quick)
-    if as_json:
-        print_json(report)
-    else:
-        _print_fleet(report)
+    return Result(report, lambda: _print_fleet(report))
 
 
 def _measure(levels, quick) -> dict:
@@ -115,7 +109,7 @@ def _measure(levels, quick) -> dict:
     with one_core() as core:
         for level in levels:
             for speed in _SPEEDS[:1] if quick else _SPEEDS:
-                click.echo(f"{level} at {speed:g} rpm ...", err=True)
+                note(f"{level} at {speed:g} rpm ...")
                 scene = load_scene("deng2017_table1", [f"level={level}", f"operating.shaft_speed={speed} rpm"])
                 cases.append(_case(level, speed, most_bearings(scene, _QUICK_SECONDS if quick else _SECONDS)))
     return {"bearing": "deng2017_table1", "core": core, "load_average": os.getloadavg()[0], "quick": quick, "cases": cases}
@@ -144,10 +138,10 @@ def _print_fleet(report) -> None:
     click.echo(f"core {report['core']}, load average {report['load_average']:.2f}; 0 held: the machine was busy")
 
 
-@click.command("compile")
-@click.option("--level", "levels", multiple=True, type=level_type, help="Compile this level; can be repeated [default: all].")
-@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of processes [default: one per core].")
-@click.option("--prune", is_flag=True, help="Afterwards remove the compiled code of other versions of bearing_sim.")
+@command("compile")
+@option("--level", "levels", "Compile this level; can be repeated [default: all].", level_type, multiple=True)
+@option("--workers", "Number of processes [default: one per core].", IntRange(min=1), metavar="N")
+@flag("--prune", "Afterwards remove the compiled code of other versions of bearing_sim.")
 def compile_levels(levels, workers, prune):
     """Compile levels now instead of at their first run, in parallel on all cores.
 
@@ -158,10 +152,10 @@ def compile_levels(levels, workers, prune):
 
     wanted, began = builds(levels or tuple(LEVELS)), time.monotonic()
     if missing := [build for build in wanted if not is_compiled(build.level)]:
-        click.echo(announcement(missing), err=True)
+        note(announcement(missing))
     with progress_bar("compiling", len(wanted)) as show:
         for done, build in enumerate(compile_all(wanted, workers), 1):
-            click.echo(f"{build}: compiled ({time.monotonic() - began:.0f} s)", err=True)
+            note(f"{build}: compiled ({time.monotonic() - began:.0f} s)")
             show(done)
     if prune:
-        click.echo(f"{remove_other_versions() / 1e6:.0f} MB of other versions removed", err=True)
+        note(f"{remove_other_versions() / 1e6:.0f} MB of other versions removed")

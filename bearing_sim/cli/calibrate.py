@@ -1,56 +1,50 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim calibrate``: fit fields of a scene to the measured cage speed of a recording."""
 
-from pathlib import Path
-
 import click
+from click import FloatRange
 
-from bearing_sim.cli.options import allow_outside_option, channel_sources, json_option, log_options, picture_option, set_option
-from bearing_sim.cli.outputs import OutputFile, WritingCommand
+from bearing_sim.cli.options import PATH, allow_outside_option, channel_sources, json_option, log_options, option, picture_option, set_option
+from bearing_sim.cli.outputs import OutputFile
 from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
-    as_file_error,
     as_usage_error,
     judged,
-    print_json,
     print_table,
     progress_bar,
     unknown_report,
     warn_of_scene,
 )
+from bearing_sim.cli.results import Result, command
+from bearing_sim.scene.loader import load_scene, scene_from_yaml, scene_to_yaml
+from bearing_sim.scene.uncertainty import quantities
 
 _EXPECTED = 30  # evaluations of a typical search, for the progress bar
 _UNLIKELY = 0.01
 
 
-@click.command("calibrate", cls=WritingCommand)
-@click.argument("log", type=click.Path(path_type=Path), metavar="RUN.mcap")
+@command("calibrate")
+@click.argument("log", type=PATH, metavar="RUN.mcap")
 @allow_outside_option
-@click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file [default: the scene in the recording].")
+@option("--scene", "scene_name", "Bundled scene or YAML file [default: the scene in the recording].", metavar="SCENE")
 @set_option
-@click.option("--fit", "fields", multiple=True, metavar="FIELD", help="Fit this field; can be repeated [default: lubricant.mixture_fraction].")
-@click.option("--batch", type=click.FloatRange(min=0.01), metavar="S", help="Length of the averaged blocks [default: 1 s, less for short runs].")
-@click.option(
-    "--confidence", default=0.95, show_default=True, type=click.FloatRange(0.5, 0.999), metavar="FRACTION", help="Level of the confidence intervals."
-)
-@click.option(
-    "-o", "--out", type=OutputFile(".yaml", ".yml"), metavar="SCENE.yaml", help="Write the scene with the fitted values and their intervals."
-)
+@option("--fit", "fields", "Fit this field; can be repeated [default: lubricant.mixture_fraction].", multiple=True, metavar="FIELD")
+@option("--batch", "Length of the averaged blocks [default: 1 s, less for short runs].", FloatRange(min=0.01), metavar="S")
+@option("--confidence", "Level of the confidence intervals.", FloatRange(0.5, 0.999), default=0.95, metavar="FRACTION")
+@option("-o", "--out", "Write the scene with the fitted values and their intervals.", OutputFile(".yaml", ".yml"), metavar="SCENE.yaml")
 @picture_option("Draw measured and predicted slip")
 @log_options
-@click.option(
+@option(
     "--cage",
     "--cage-topic",
     "cage",
+    "Measured cage speed: /topic, or /topic.field[0] of any type, in the unit of --speed-unit [default: /cage_speed_measured].",
     metavar="TOPIC",
-    help="Measured cage speed: /topic, or /topic.field[0] of any type, in the unit of --speed-unit [default: /cage_speed_measured].",
 )
-@click.option("--cage-joint", default="cage", show_default=True, metavar="NAME", help="Name of the cage's joint in JointState messages.")
+@option("--cage-joint", "Name of the cage's joint in JointState messages.", default="cage", metavar="NAME")
 @json_option
-def calibrate(
-    log, scene_name, overrides, fields, batch, confidence, out, picture, cage, joint, cage_joint, stamps, longest_gap, as_json, **channels
-):  # fmt: skip
+def calibrate(log, scene_name, overrides, fields, batch, confidence, out, cage, joint, cage_joint, stamps, longest_gap, **channels):
     """Fit fields of a scene to the cage speed measured in RUN.mcap, within their ranges in the scene's block `uncertainty`.
 
     RUN.mcap is any rosbag2 recording in MCAP with shaft speed, radial load and measured cage speed: from bearing-sim, from any bag, or
@@ -60,53 +54,43 @@ def calibrate(
     warn_of_scene(scene, before_results=False)
     measured, lines, unknown = _measured(log, scene, channels, cage, joint, stamps, cage_joint, longest_gap)
     announce_compilation(scene)
-    from bearing_sim.studies.calibration import CalibrationError, block_length, calibrate, cut
+    from bearing_sim.studies.calibration import block_length, calibrate, cut, draw
 
     length = batch or block_length(measured.times[-1] - measured.times[0])
     blocks = cut(measured, scene.bearing.diameter_ratio, scene.thresholds.slip_from_speed, length)
     asked = fields or ("lubricant.mixture_fraction",)
-    with progress_bar(f"calibrating {scene.name}", _EXPECTED) as show, as_usage_error(CalibrationError):
+    with progress_bar(f"calibrating {scene.name}", _EXPECTED) as show:
         found = calibrate(scene, asked, blocks, confidence=confidence, progress=show)
-    with as_file_error():
-        if out is not None:
-            _write(out, log, found)
-        if picture is not None:
-            from bearing_sim.studies.calibration import draw
-
-            with picture.draft() as draft:
-                draw(draft, f"{scene.name} calibrated by {log.name}", found)
-    if as_json:
-        print_json({**_report(log, scene, found), **unknown})
-    else:
-        _print(log, scene, found, lines, out)
+    if out is not None:
+        _write(out, log, found)
+    title = f"{scene.name} calibrated by {log.name}"
+    return Result({**_report(log, scene, found), **unknown}, lambda: _print(title, scene, found, lines, out), lambda draft: draw(draft, title, found))
 
 
 def _scene(log, scene_name, overrides):
     """Return the scene to calibrate: the named one, or that of the recording, with overrides."""
     from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.reader import Recording
-    from bearing_sim.scene.loader import SceneError, load_scene, scene_from_yaml, scene_to_yaml
 
-    with as_usage_error(SceneError), as_file_error():
-        if scene_name is not None:
-            return load_scene(scene_name, overrides)
-        try:
-            recorded = Recording(log).scene
-        except RecordingError as error:
-            raise UsageError(f"{error}; give the scene to calibrate with --scene") from None
-        return scene_from_yaml(scene_to_yaml(recorded), overrides, origin=f"{log}: scene in the metadata")
+    if scene_name is not None:
+        return load_scene(scene_name, overrides)
+    try:
+        recorded = Recording(log).scene
+    except RecordingError as error:
+        raise UsageError(f"{error}; give the scene to calibrate with --scene") from None
+    return scene_from_yaml(scene_to_yaml(recorded), overrides, origin=f"{log}: scene in the metadata")
 
 
 def _measured(log, scene, channels, cage, joint, stamps, cage_joint, longest_gap):
     """Return the measured data, table rows that say where they come from, and for how long inputs are unknown."""
     import math
 
-    from bearing_sim.inputs.log import REQUIRED, InputLogError, read_input_log, source, summary_lines
+    from bearing_sim.inputs.log import REQUIRED, read_input_log, source, summary_lines
     from bearing_sim.messages.topics import MEASURED
     from bearing_sim.studies.calibration import Measured
 
     names, constants = channel_sources(**channels)
-    with as_usage_error(InputLogError, ValueError), as_file_error():
+    with as_usage_error(ValueError):
         if cage is not None:
             names[MEASURED] = source(MEASURED, cage, channels["speed_unit"])
         recorded = read_input_log(log, names, joint, stamps, cage_joint, (*REQUIRED, MEASURED), constants)
@@ -124,7 +108,6 @@ def _override(found) -> list[str]:
 
 def _write(out, log, found) -> None:
     from bearing_sim.recording.provenance import package_version
-    from bearing_sim.scene.loader import scene_to_yaml
 
     fields = ", ".join(one.range.field for one in found.fitted)
     head = f"# Calibrated by bearing_sim {package_version()}: {fields} fitted to the cage speed in {log.name}, {len(found.blocks.slip)} blocks.\n"
@@ -165,9 +148,7 @@ def _report(log, scene, found) -> dict:
     }
 
 
-def _print(log, scene, found, lines, out) -> None:
-    from bearing_sim.scene.uncertainty import quantities
-
+def _print(title, scene, found, lines, out) -> None:
     known, blocks = quantities(type(scene)), found.blocks
     percent = f"{100 * found.confidence:g} %"
     rows = [*lines]
@@ -195,7 +176,7 @@ def _print(log, scene, found, lines, out) -> None:
     ]
     if scene.level not in ("steady", "slip"):
         rows.append(("level", f"fitted at level steady; the slip of the scene's level {scene.level} differs by what `bearing-sim trade` shows"))
-    print_table(f"{scene.name} calibrated by {log.name}", rows)
+    print_table(title, rows)
 
 
 def _points(found) -> str:
@@ -204,8 +185,6 @@ def _points(found) -> str:
 
 
 def _dependence(scene, found) -> list[tuple[str, str]]:
-    from bearing_sim.scene.uncertainty import quantities
-
     known, effects = quantities(type(scene)), []
     for other, ends in found.depends.items():
         one = next(each for each in scene.uncertainty if each.field == other)

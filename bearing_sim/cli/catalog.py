@@ -5,10 +5,12 @@ import math
 from collections.abc import Iterator
 
 import click
+from click import Choice
 
-from bearing_sim.cli.options import json_option, level_type, picture_option
-from bearing_sim.cli.outputs import OutputFile, WritingCommand
-from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, command_line, print_json, print_rows, print_table, quantity_of
+from bearing_sim.cli.options import json_option, level_type, option, picture_option
+from bearing_sim.cli.outputs import OutputFile
+from bearing_sim.cli.reporting import UsageError, command_line, note, print_rows, print_table, quantity_of
+from bearing_sim.cli.results import Result, command, picture_into
 
 _COLUMNS = ("designation", "d", "D", "B", "C [kN]", "C_0 [kN]", "C_u [kN]", "limiting speed [rpm]", "ratings by")
 _WORDS = ("designation", "ratings by")
@@ -16,7 +18,7 @@ _WORDS = ("designation", "ratings by")
 
 def _range_option(name: str, meaning: str):
     text = f"{meaning}: a length such as 50mm, or a range such as 50mm:80mm."
-    return click.option(name, metavar="LENGTH", callback=_read_range, help=text)
+    return option(name, text, metavar="LENGTH", callback=_read_range)
 
 
 def _read_range(context, option, text):
@@ -34,13 +36,13 @@ def _above_option(name: str, unit: str, meaning: str, example: str):
     def read(context, option, text):
         return None if text is None else quantity_of(name, text, unit)
 
-    return click.option(name, metavar="QUANTITY", callback=read, help=f"{meaning} of at least this, such as {example}.")
+    return option(name, f"{meaning} of at least this, such as {example}.", metavar="QUANTITY", callback=read)
 
 
-@click.command("catalog", cls=WritingCommand)
+@command("catalog")
 @click.argument("designation", required=False)
-@click.option("--type", "types", multiple=True, metavar="TYPE", help="Type, such as NU; can be repeated.")
-@click.option("--series", "series", multiple=True, metavar="SERIES", help="Dimension series, such as 2 or 23; can be repeated.")
+@option("--type", "types", "Type, such as NU; can be repeated.", multiple=True, metavar="TYPE")
+@option("--series", "series", "Dimension series, such as 2 or 23; can be repeated.", multiple=True, metavar="SERIES")
 @_range_option("--bore", "Bore diameter d")
 @_range_option("--outside", "Outside diameter D")
 @_range_option("--width", "Width B")
@@ -49,7 +51,7 @@ def _above_option(name: str, unit: str, meaning: str, example: str):
 @_above_option("--limiting-speed-above", "rad/s", "Limiting speed", "6000rpm")
 @picture_option("Draw the bearing")
 @json_option
-def catalog(designation, types, series, bore, outside, width, dynamic_rating_above, static_rating_above, limiting_speed_above, picture, as_json):
+def catalog(designation, types, series, bore, outside, width, dynamic_rating_above, static_rating_above, limiting_speed_above, picture):
     """List the cylindrical roller bearings of the catalogue, or show the one of DESIGNATION, such as "NU 210 ECP/C3".
 
     Options choose from the list.  Wherever a scene names a bearing, a designation may stand.
@@ -60,27 +62,27 @@ def catalog(designation, types, series, bore, outside, width, dynamic_rating_abo
     if designation is None:
         if picture is not None:
             raise UsageError("--picture draws one bearing; give its designation, such as: bearing-sim catalog 'NU 210' --picture nu210.png")
-        _list(types, series, bounds, least, as_json)
-        return
+        return _list(types, series, bounds, least)
     if chosen:
         raise UsageError("options that choose from the list do not go with a designation; give one or the other")
-    _show(designation, picture, as_json)
+    return _show(designation, picture)
 
 
-def _list(types, series, bounds, least, as_json) -> None:
+def _list(types, series, bounds, least) -> Result:
     from bearing_sim.scene.designation import SERIES, TYPES
 
     _check_words("--type", types, TYPES)
     _check_words("--series", series, SERIES)
     kinds = {each.upper() for each in types}
     found = [row for row in _rows(kinds, series, bounds) if all(low is None or (row[name] or 0.0) >= low for name, low in least.items())]
-    if as_json:
-        print_json({"bearings": found})
-        return
-    if not found:
-        click.echo("no bearing of the catalogue is like that; see bearing-sim catalog --help", err=True)
-        return
-    print_rows(f"{len(found)} bearings, lengths in mm", _COLUMNS, [_cells(row) for row in found], _WORDS)
+
+    def show():
+        if found:
+            print_rows(f"{len(found)} bearings, lengths in mm", _COLUMNS, [_cells(row) for row in found], _WORDS)
+        else:
+            note("no bearing of the catalogue is like that; see bearing-sim catalog --help")
+
+    return Result({"bearings": found}, show)
 
 
 def _check_words(option: str, given, known) -> None:
@@ -130,42 +132,38 @@ def _cells(row) -> tuple[str, ...]:
     return row["designation"], *lengths, *forces, speed, row["ratings_by"]
 
 
-def _show(designation: str, picture, as_json) -> None:
-    from bearing_sim.scene.loader import SceneError, load_bearing
+def _show(designation: str, picture) -> Result:
+    from bearing_sim.scene.loader import load_bearing
     from bearing_sim.studies.bearing_facts import facts, rows
 
-    with as_usage_error(SceneError):
-        bearing = load_bearing(designation)
+    bearing = load_bearing(designation)
     if picture is not None:
         from bearing_sim.studies.bearing_facts import draw
 
-        with as_file_error():
-            with picture.draft() as draft:
-                draw(draft, bearing)
-    if as_json:
-        print_json({**facts(bearing), "picture": picture and str(picture)})
-        return
-    print_table(bearing.designation or bearing.name, rows(bearing))
-    if picture is None:
-        click.echo("--picture bearing.png draws it; bearing-sim new writes a scene with it")
+        picture_into(picture, draw, bearing)
+    return Result(
+        {**facts(bearing), "picture": picture and str(picture)},
+        lambda: print_table(bearing.designation or bearing.name, rows(bearing)),
+        remarks=[] if picture else ["--picture bearing.png draws it; bearing-sim new writes a scene with it"],
+    )
 
 
-@click.command("new", cls=WritingCommand)
+@command("new")
 @click.argument("bearing", metavar="DESIGNATION")
-@click.option("--oil", metavar="OIL", help="Oil by name, such as 'ISO VG 68' or 'ISO VG 220 PAO'.")
-@click.option("--grease", metavar="GREASE", help="Grease by name, instead of an oil.")
-@click.option("--supply", metavar="SUPPLY", help="How the lubricant gets in [default: oil_bath, or oil_jet where n d_m is 400,000 mm/min or more].")
-@click.option("--speed", required=True, metavar="QUANTITY", help="Shaft speed, such as 3000rpm.")
-@click.option("--load", required=True, metavar="QUANTITY", help="Radial load, such as 5kN.")
-@click.option("--temperature", metavar="QUANTITY", help="Temperature of bearing and oil, such as 70degC [default: computed from the losses].")
-@click.option("--level", type=level_type, default="slip", show_default=True, help="Level of fidelity.")
-@click.option(
+@option("--oil", "Oil by name, such as 'ISO VG 68' or 'ISO VG 220 PAO'.", metavar="OIL")
+@option("--grease", "Grease by name, instead of an oil.", metavar="GREASE")
+@option("--supply", "How the lubricant gets in [default: oil_bath, or oil_jet where n d_m is 400,000 mm/min or more].", metavar="SUPPLY")
+@option("--speed", "Shaft speed, such as 3000rpm.", required=True, metavar="QUANTITY")
+@option("--load", "Radial load, such as 5kN.", required=True, metavar="QUANTITY")
+@option("--temperature", "Temperature of bearing and oil, such as 70degC [default: computed from the losses].", metavar="QUANTITY")
+@option("--level", "Level of fidelity.", level_type, default="slip")
+@option(
     "--shaft",
-    type=click.Choice(["free", "motor", "gear", "cold"]),
-    help="What heats or cools the shaft behind the bearing [default: nothing does; a run says where that is unsafe].",
+    "What heats or cools the shaft behind the bearing [default: nothing does; a run says where that is unsafe].",
+    Choice(["free", "motor", "gear", "cold"]),
 )
-@click.option("--mass", metavar="QUANTITY", help="Mass of shaft and rotor that moves with the inner ring [default: estimated].")
-@click.option("-o", "--out", type=OutputFile(), metavar="SCENE.yaml", help="File to write [default: standard output].")
+@option("--mass", "Mass of shaft and rotor that moves with the inner ring [default: estimated].", metavar="QUANTITY")
+@option("-o", "--out", "File to write [default: standard output].", OutputFile(), metavar="SCENE.yaml")
 def new(bearing, oil, grease, supply, speed, load, temperature, level, shaft, mass, out):
     """Write the scene of a bearing by DESIGNATION in an oil or a grease, with a comment for every choice that was made for you.
 
@@ -183,21 +181,19 @@ def new(bearing, oil, grease, supply, speed, load, temperature, level, shaft, ma
     if supply is not None:
         lubricant["supply"] = {"law": supply}
     options, bare = (("--load", load, "N"), ("--temperature", temperature, "K"), ("--mass", mass, "kg")), []
-    for option, given, unit in options:  # the loader asks for the unit of a speed
+    for name, given, unit in options:  # the loader asks for the unit of a speed
         if given is not None and (reason := Quantity(unit, "").why_unit_is_needed(given)):
-            bare.append(InvalidField(option, "", reason))
+            bare.append(InvalidField(name, "", reason))
     wish = Wish(bearing, lubricant, speed, load, temperature, level, mass, shaft)
-    with as_usage_error(SceneError):
-        try:
-            text, scene = new_scene(wish, default_name(out and out.path), command_line())
-        except SceneError as error:
-            raise SceneError(error.origin, (*bare, *error.errors)) from None
-        if bare:
-            raise SceneError("new scene", bare)
+    try:
+        text, scene = new_scene(wish, default_name(out and out.path), command_line())
+    except SceneError as error:
+        raise SceneError(error.origin, (*bare, *error.errors)) from None
+    if bare:
+        raise SceneError("new scene", bare)
     if out is None:
         click.echo(text, nl=False)
         return
-    with as_file_error():
-        out.write_text(text)
+    out.write_text(text)
     estimated = f"; {len(scene.bearing.estimated)} of its dimensions are estimated, see the comments" if scene.bearing.estimated else ""
     click.echo(f"{out} written{estimated}\nnext: bearing-sim run {out}")

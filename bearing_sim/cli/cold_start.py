@@ -5,45 +5,38 @@ import math
 
 import click
 
-from bearing_sim.cli.options import allow_outside_option, json_option, picture_option, set_option
-from bearing_sim.cli.outputs import WritingCommand
+from bearing_sim.cli.options import allow_outside_option, json_option, option, picture_option, set_option
 from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
-    as_failed_run,
-    as_file_error,
-    as_usage_error,
-    print_json,
     print_rows,
     progress_bar,
     quantity_of,
     seconds_of,
     warn_of_scene,
 )
+from bearing_sim.cli.results import Result, command, picture_into
 from bearing_sim.scene.display import force, number
 
 
-@click.command("cold-start", cls=WritingCommand)
+@command("cold-start")
 @allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", required=False)
 @set_option
-@click.option(
-    "--load", "loads", multiple=True, metavar="VALUE", help="Load while idling; can be repeated  [default: 5 and 30 % of the minimum load]."
-)
-@click.option("--loaded", metavar="VALUE", help="Load afterwards  [default: 0.1 of the dynamic load rating].")
-@click.option("--idling", default="1 h", show_default=True, metavar="S", help="Time under the first load.")
-@click.option("--temperature", default="0 degC", show_default=True, metavar="VALUE", help="Of all parts, the oil and the air at the start.")
-@click.option("--rise", default="1 s", show_default=True, metavar="S", help="Time in which the load rises, at most 10 s.")
+@option("--load", "loads", "Load while idling; can be repeated  [default: 5 and 30 % of the minimum load].", multiple=True, metavar="VALUE")
+@option("--loaded", "Load afterwards  [default: 0.1 of the dynamic load rating].", metavar="VALUE")
+@option("--idling", "Time under the first load.", default="1 h", metavar="S")
+@option("--temperature", "Of all parts, the oil and the air at the start.", default="0 degC", metavar="VALUE")
+@option("--rise", "Time in which the load rises, at most 10 s.", default="1 s", metavar="S")
 @picture_option("Draw the courses", "-o", "--out")
 @json_option
-def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise, picture, as_json):
+def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise, picture):
     """Follow SCENE from a cold start: it idles, its losses warm it, then the load comes, until it is near thermal equilibrium.
 
     Once from ideal rolling and once from a skid.  A second table says what the load does to the cage if it comes earlier, and to a warm machine that
     idles again: the largest sliding power of a contact, before and while the load rises.  Without SCENE: the NU 232 of a wind gearbox, in a bath.
     """
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.simulation import IntegrationError
+    from bearing_sim.scene.loader import load_scene
     from bearing_sim.studies.cold_start import DEFAULT_OVERRIDES, DEFAULT_SCENE, SHARES, cold_scene, draw_courses
     from bearing_sim.studies.cold_start import cold_start as follow
 
@@ -53,29 +46,24 @@ def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise, 
         raise UsageError(f"--rise {rise}: expected 1 ms to 10 s")
     newtons = [quantity_of("--load", each, "N") for each in loads]
     afterwards = None if loaded is None else quantity_of("--loaded", loaded, "N")
-    for option, value in (*(("--load", each) for each in newtons), ("--loaded", afterwards)):
+    for name, value in (*(("--load", each) for each in newtons), ("--loaded", afterwards)):
         if value is not None and not 0.0 < value <= 1e8:
-            raise UsageError(f"{option} {value:g} N: expected more than 0 and at most 1e8 N")
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name or DEFAULT_SCENE, [*(() if scene_name else DEFAULT_OVERRIDES), *overrides])
-        scene = cold_scene(scene, kelvin)
+            raise UsageError(f"{name} {value:g} N: expected more than 0 and at most 1e8 N")
+    scene = load_scene(scene_name or DEFAULT_SCENE, [*(() if scene_name else DEFAULT_OVERRIDES), *overrides])
+    scene = cold_scene(scene, kelvin)
     if not scene.operating.shaft_speed:
         raise UsageError("operating.shaft_speed: 0; a cold start is followed while the shaft turns: give a speed")
     warn_of_scene(scene, before_results=False)
     announce_compilation(scene, with_states=True)
-    with progress_bar("cold start", len(newtons or SHARES)) as show, as_failed_run(IntegrationError):
+    with progress_bar("cold start", len(newtons or SHARES)) as show:
         found = follow(scene, newtons, afterwards, seconds, kelvin, rising, show)
     if picture is not None:
-        with as_file_error(), picture.draft() as draft:
-            draw_courses(found, draft, f"{scene.name}: cold start from {kelvin - 273.15:g} °C")
-    if as_json:
-        print_json(_report(scene, found))
-        return
-    for load in dict.fromkeys(course.load for course in found.courses):
-        share = f"{number(100 * load / found.minimum_load, 3)} % of the minimum load"
-        _print_course(f"{scene.name}: idling under {force(load)}, {share}, then {force(found.loaded)}", found, load)
-    if picture is not None:
-        click.echo(picture.path)
+        picture_into(picture, lambda draft: draw_courses(found, draft, f"{scene.name}: cold start from {kelvin - 273.15:g} °C"))
+    return Result(
+        _report(scene, found),
+        lambda: [_print_course(scene, found, load) for load in dict.fromkeys(course.load for course in found.courses)],
+        remarks=[str(picture.path)] if picture else [],
+    )
 
 
 def _report(scene, found) -> dict:
@@ -94,9 +82,11 @@ def _report(scene, found) -> dict:
 _SHOWN = 12  # instants of a course
 
 
-def _print_course(title, found, load) -> None:
+def _print_course(scene, found, load) -> None:
     from bearing_sim.studies.cold_start import ROLLING, SKID
 
+    share = f"{number(100 * load / found.minimum_load, 3)} % of the minimum load"
+    title = f"{scene.name}: idling under {force(load)}, {share}, then {force(found.loaded)}"
     pair = {course.start: course for course in found.courses if course.load == load}
     skid, rolling = pair[SKID], pair[ROLLING]
     marked = {round(k * (len(skid.instants) - 1) / (_SHOWN - 1)) for k in range(_SHOWN)}

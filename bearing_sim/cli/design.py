@@ -1,63 +1,56 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim design``: outer raceways with slip and life within limits, verified at a level of higher fidelity."""
 
-from pathlib import Path
-
 import click
 
-from bearing_sim.cli.options import executor_options, json_option, picture_option, scene_argument, set_option, table_option
-from bearing_sim.cli.outputs import WritingCommand
+from bearing_sim.cli.options import PATH, executor_options, json_option, option, picture_option, scene_argument, set_option, table_option
 from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
-    as_file_error,
-    as_usage_error,
-    command_line,
-    print_json,
+    note,
     print_rows,
     quantity_of,
     refuse_idle_temperature,
     warn,
 )
+from bearing_sim.cli.results import Result, command, picture_into, resumed, signed
 
 _NONE = "none"
 
 
-@click.command("design", cls=WritingCommand)
+@command("design")
 @scene_argument
-@click.option("--slip-below", required=True, metavar="SLIP", help="Largest cage slip, such as 10%.")
-@click.option("--life-above", required=True, metavar="LIFE", help="Smallest life, such as 300h; the kind of life is chosen in the scene.")
-@click.option("--speed-tolerance", default="2%", show_default=True, metavar="FRACTION", help="Tolerance of the speed, in both directions.")
-@click.option("--load-tolerance", default="10%", show_default=True, metavar="FRACTION", help="Tolerance of the load, in both directions.")
-@click.option(
+@option("--slip-below", "Largest cage slip, such as 10%.", required=True, metavar="SLIP")
+@option("--life-above", "Smallest life, such as 300h; the kind of life is chosen in the scene.", required=True, metavar="LIFE")
+@option("--speed-tolerance", "Tolerance of the speed, in both directions.", default="2%", metavar="FRACTION")
+@option("--load-tolerance", "Tolerance of the load, in both directions.", default="10%", metavar="FRACTION")
+@option(
     "--tolerance",
     "tolerances",
+    "Tolerance of another field, in both directions, such as bearing.roller.diameter=1um; can be repeated.",
     multiple=True,
     metavar="FIELD=AMOUNT",
-    help="Tolerance of another field, in both directions, such as bearing.roller.diameter=1um; can be repeated.",
 )
-@click.option(
+@option(
     "--point",
     "points",
+    "Operating point of a mission with its share of time, such as '45000 rpm, 800 N, 70%'; an oil temperature may follow; repeat it.",
     multiple=True,
     metavar="SPEED,LOAD,WEIGHT",
-    help="Operating point of a mission with its share of time, such as '45000 rpm, 800 N, 70%'; an oil temperature may follow; repeat it.",
 )
-@click.option(
+@option(
     "--points",
     "points_file",
-    type=click.Path(path_type=Path),
+    "Operating points, one a line: shaft_speed [rpm], radial_load [N], weight and, optionally, oil_temperature [degC].",
+    PATH,
     metavar="POINTS.csv",
-    help="Operating points, one a line: shaft_speed [rpm], radial_load [N], weight and, optionally, oil_temperature [degC].",
 )
-@click.option("--low-radius", "radii", metavar="START:STOP:N", help="Radii at the low points [default: 16 values, -2.5 to +5 um about the scene's].")
-@click.option("--d-value", "d_values", metavar="START:STOP:N", help="D values [default: 9 values, 80 to 120 % of the scene's].")
+@option("--low-radius", "radii", "Radii at the low points [default: 16 values, -2.5 to +5 um about the scene's].", metavar="START:STOP:N")
+@option("--d-value", "d_values", "D values [default: 9 values, 80 to 120 % of the scene's].", metavar="START:STOP:N")
 @set_option
-@click.option("--level", metavar="LEVEL", help="Level of fidelity [default: steady if it supports the scene, otherwise the scene's].")
-@click.option(
-    "--verify-level", metavar="LEVEL", help="Level that verifies edges and centre of each interval, or none [default: planar; of planar, spatial]."
-)
+@option("--level", "Level of fidelity [default: steady if it supports the scene, otherwise the scene's].", metavar="LEVEL")
+@option("--verify-level", "Level that verifies edges and centre of each interval, or none [default: planar; of planar, spatial].", metavar="LEVEL")
 @table_option("design.parquet", "Map; also written: PATH.csv, PATH_borders and PATH_checks (.parquet, .csv), and", "_borders", "_checks")
 @executor_options
 @picture_option("Draw the results")
@@ -80,7 +73,6 @@ def design(
     workers,
     dask,
     picture,
-    as_json,
 ):
     """Map which low-point radii and D values keep the slip of SCENE below a limit and its life above another, and verify them.
 
@@ -92,48 +84,37 @@ def design(
     bearing-sim design deng2017_table1 --slip-below 10% --life-above 300h --picture design.png
     """
     from bearing_sim.model.plausibility import plausibility
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.sweep.grid import FieldError, read_axis
-    from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
+    from bearing_sim.scene.loader import load_scene
+    from bearing_sim.sweep.grid import read_axis
 
-    with as_usage_error(SceneError, FieldError):
-        scene = load_scene(scene_name, overrides)
-        level = level or _cheapest(scene)
-        overrides = [*overrides, f"level={level}"]
-        scene = load_scene(scene_name, overrides)
-        _check_design(scene, points or points_file)
-        warn(plausibility(scene))
-        announce_compilation(scene)
-        from bearing_sim.studies import design as studied
-        from bearing_sim.sweep.point import DURATION
-        from bearing_sim.sweep.table import require_same_study, study_digest
+    scene = load_scene(scene_name, overrides)
+    level = level or _cheapest(scene)
+    overrides = [*overrides, f"level={level}"]
+    scene = load_scene(scene_name, overrides)
+    _check_design(scene, points or points_file)
+    warn(plausibility(scene))
+    announce_compilation(scene)
+    from bearing_sim.studies import design as studied
+    from bearing_sim.sweep.point import DURATION
+    from bearing_sim.sweep.table import study_digest
 
-        axes = list(studied.default_axes(scene))
-        for place, (path, text) in enumerate(((studied.LOW, radii), (studied.D_VALUE, d_values))):
-            if text is not None:
-                axes[place] = read_axis(f"{path}={text}", written=True)
+    axes = list(studied.default_axes(scene))
+    for place, (path, text) in enumerate(((studied.LOW, radii), (studied.D_VALUE, d_values))):
+        if text is not None:
+            axes[place] = read_axis(f"{path}={text}", written=True)
     limits = _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tolerances, points, points_file)
     verify_level = _verify_level(verify_level, scene)
     raceways = Points("raceways", 0)
-    with as_file_error(), as_usage_error(SceneError, ClusterError, JournalInUse):
-        study = study_digest("design", scene, limits, [(axis.field.path, axis.values) for axis in axes], DURATION, verify_level)
-        require_same_study(out, study, studied.TABLES)
-        with Journal(out.path.with_suffix(".journal")) as journal, raceways:
-            designed = studied.design(
-                scene_name, overrides, limits, *axes, journal, DURATION, workers, dask, raceways.update, verify_level=verify_level
-            )
-        designed.grid.about.update(command=command_line(), study=study)
-        require_same_study(out, study, studied.TABLES)
-        files = studied.write_design(out.path, designed)
-        if picture is not None:
-            with picture.draft() as draft:
-                studied.draw(draft, designed)
-            files.append(picture.path)
+    study = study_digest("design", scene, limits, [(axis.field.path, axis.values) for axis in axes], DURATION, verify_level)
+    with resumed(out, study, raceways, parts=studied.TABLES) as journal:
+        designed = studied.design(scene_name, overrides, limits, *axes, journal, DURATION, workers, dask, raceways.update, verify_level=verify_level)
+    designed.grid.about.update(signed(designed.grid, study).about)
+    files = studied.write_design(out.path, designed)
+    if picture is not None:
+        picture_into(picture, studied.draw, designed)
+        files.append(picture.path)
     report = _report_design(scene, designed, files)
-    if as_json:
-        print_json(report)
-    else:
-        _print_design(report)
+    return Result(report, lambda: _print_design(report))
 
 
 def _cheapest(scene) -> str:
@@ -152,7 +133,7 @@ def _check_design(scene, has_points) -> None:
 
 def _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tolerances, points, points_file):
     from bearing_sim.studies.design import Limits
-    from bearing_sim.sweep.conditions import Conditions, PointError, read_point, read_points, read_tolerance
+    from bearing_sim.sweep.conditions import Conditions, read_point, read_points, read_tolerance
 
     found = []
     for name, text, unit, factor, most in (
@@ -167,11 +148,10 @@ def _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tole
         found.append(value)
     if points and points_file:
         raise UsageError("--point and --points contradict each other; give one of them")
-    with as_usage_error(PointError), as_file_error():
-        mission = read_points(points_file) if points_file else tuple(map(read_point, points))
-        if any(point.oil_temperature is not None for point in mission):
-            refuse_idle_temperature(scene, ["lubricant.temperature"])
-        off = tuple(read_tolerance(text, scene) for text in tolerances)
+    mission = read_points(points_file) if points_file else tuple(map(read_point, points))
+    if any(point.oil_temperature is not None for point in mission):
+        refuse_idle_temperature(scene, ["lubricant.temperature"])
+    off = tuple(read_tolerance(text, scene) for text in tolerances)
     for name in {each.field for each in off}:
         if sum(each.field == name for each in off) > 1:
             raise UsageError(f"--tolerance {name}: given more than once; give the largest")
@@ -190,9 +170,9 @@ def _verify_level(asked, scene) -> str | None:
         raise UsageError(f"--verify-level {asked}: expected {', '.join([*higher, _NONE])}; the design is at level {scene.level}")
     found = asked or VERIFIED_BY.get(scene.level)
     if found is None:
-        click.echo(f"no level is of higher fidelity than {scene.level}: nothing is verified", err=True)
+        note(f"no level is of higher fidelity than {scene.level}: nothing is verified")
     elif (scene.level, found) in ALIKE:
-        click.echo(ALIKE[scene.level, found], err=True)
+        note(ALIKE[scene.level, found])
     return found
 
 

@@ -3,9 +3,7 @@
 
 import math
 
-import click
-
-from bearing_sim.cli.reporting import as_usage_error, progress_bar
+from bearing_sim.cli.reporting import note, progress_bar
 from bearing_sim.scene.display import hours
 
 
@@ -54,13 +52,11 @@ def response_with_progress(scene, rebuild=False, workers=None, dask=None):
     """
     from bearing_sim.estimation.response import kept_response
     from bearing_sim.studies.response_points import obtain_response
-    from bearing_sim.studies.uncertainty_propagation import UncertaintyError
-    from bearing_sim.sweep.tasks import ClusterError, JournalInUse
 
     if not rebuild and (kept := kept_response(scene)) is not None:
         return kept
-    click.echo(f"building the response of {scene.name} to its uncertain fields, once for this bearing and oil ...", err=True)
-    with as_usage_error(UncertaintyError, ClusterError, JournalInUse), progress_bar("operating points", 1.0) as show:
+    note(f"building the response of {scene.name} to its uncertain fields, once for this bearing and oil ...")
+    with progress_bar("operating points", 1.0) as show:
         return obtain_response(scene, workers, dask, lambda done, total: show(done / max(total, 1)), rebuild)
 
 

@@ -4,15 +4,16 @@
 import click
 
 from bearing_sim.cli.options import json_option
-from bearing_sim.cli.reporting import UsageError, print_json, print_rows
+from bearing_sim.cli.reporting import UsageError, print_rows
+from bearing_sim.cli.results import Result, command
 
 _COLUMNS = ("field", "unit or kind", "default", "range", "meaning")
 
 
-@click.command("fields")
+@command("fields")
 @click.argument("path", required=False, default="", metavar="[PATH]")
 @json_option
-def fields(path, as_json):
+def fields(path):
     """Show the fields of a scene below PATH, such as lubricant or bearing.cage; without PATH the blocks of a scene.
 
     For each: the unit in which messages show it, or what else may stand there; its default; its range; what it means.  A file and --set take any
@@ -34,13 +35,9 @@ def fields(path, as_json):
     if not found:
         known = dict.fromkeys(_bare(fact.path) for each in everything for fact in each.fields)
         raise UsageError(f"{path}: no field of a scene{nearest(path, known)}; bearing-sim fields lists the blocks")
-    if as_json:
-        print_json({"fields": [{"law": each.law or None, **_plain(fact._asdict())} for each in found for fact in each.fields]})
-        return
-    for each in found if path else found[:1]:
-        _print(each)
-    if not path:
-        click.echo("bearing-sim fields BLOCK shows the fields of a block and of those within it, such as: bearing-sim fields lubricant.supply")
+    plain = [{"law": each.law or None, **_plain(fact._asdict())} for each in found for fact in each.fields]
+    more = "bearing-sim fields BLOCK shows the fields of a block and of those within it, such as: bearing-sim fields lubricant.supply"
+    return Result({"fields": plain}, lambda: list(map(_print, found if path else found[:1])), remarks=[] if path else [more])
 
 
 @click.command("observables")

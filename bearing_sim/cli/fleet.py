@@ -6,39 +6,45 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import allow_outside_option, channel_sources, executor_options, json_option, log_options, set_option, table_option
-from bearing_sim.cli.outputs import WritingCommand
+from bearing_sim.cli.options import (
+    PATH,
+    allow_outside_option,
+    channel_sources,
+    executor_options,
+    json_option,
+    log_options,
+    option,
+    set_option,
+    table_option,
+)
 from bearing_sim.cli.reporting import (
     FailedRun,
     PartlyUsed,
     Points,
     UsageError,
     announce_compilation,
-    as_file_error,
-    as_usage_error,
-    command_line,
-    print_json,
     print_rows,
     warn,
 )
+from bearing_sim.cli.results import Result, command, resumed, signed
 
 _SHOWN = ("bearing", "running_hours", "revolutions", "slip_mean", "slip_p95", "slip_maximum", "above_slip_warning", "damage", "life", "status")
 _MOST_SHOWN = 40
 
 
-@click.command("replay-fleet", cls=WritingCommand)
-@click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[LOGS]...")
+@command("replay-fleet")
+@click.argument("paths", type=PATH, nargs=-1, metavar="[LOGS]...")
 @allow_outside_option
-@click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file of every bearing that --bearings does not give another.")
+@option("--scene", "scene_name", "Bundled scene or YAML file of every bearing that --bearings does not give another.", metavar="SCENE")
 @set_option
-@click.option("--bearings", "bearings_path", type=click.Path(path_type=Path), metavar="TABLE.csv", help="Which log is of which bearing, see above.")
-@click.option("--mapping", "mapping_name", metavar="MAPPING", help="Which columns of tables are what, as for import-csv.")
-@click.option("--by", metavar="COLUMN", help="Tables hold several machines, which differ in this column.")
+@option("--bearings", "bearings_path", "Which log is of which bearing, see above.", PATH, metavar="TABLE.csv")
+@option("--mapping", "mapping_name", "Which columns of tables are what, as for import-csv.", metavar="MAPPING")
+@option("--by", "Tables hold several machines, which differ in this column.", metavar="COLUMN")
 @log_options
 @table_option("fleet.parquet", "Results; also written: PATH.csv and")
 @executor_options
 @json_option
-def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, joint, stamps, longest_gap, out, workers, dask, as_json, **channels):
+def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, joint, stamps, longest_gap, out, workers, dask, **channels):
     """Run the model on many LOGS at once, one bearing each, and write one table: hours, revolutions, slip, life used, warnings.
 
     LOGS are recordings (MCAP, SQLite, bags) and measured tables (CSV, Parquet), or folders that are searched for them. Tables need a
@@ -54,12 +60,9 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
 
     bearing-sim replay-fleet scada/ --mapping scada.yaml --scene high_speed_shaft.yaml -o fleet.parquet
     """
-    from bearing_sim.inputs.csv_text import TableError
-    from bearing_sim.scene.loader import SceneError
     from bearing_sim.studies.fleet import OK, PARTLY, replay_fleet
-    from bearing_sim.studies.fleet_logs import NoLogs, bearings_of, find_logs, read_bearings
-    from bearing_sim.sweep.table import require_same_study, study_digest, write_table
-    from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
+    from bearing_sim.studies.fleet_logs import bearings_of, find_logs, read_bearings
+    from bearing_sim.sweep.table import study_digest, write_table
 
     if not paths and bearings_path is None:
         raise UsageError("no logs; give files or folders, or --bearings TABLE.csv")
@@ -67,55 +70,44 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
         raise UsageError("no bearing; give --scene, or --bearings TABLE.csv with a column scene")
     reading = _reading(mapping_name, *channel_sources(**channels), joint, stamps)
     asked = [str(path.absolute()) for path in (*paths, *([bearings_path] if bearings_path is not None else []))]
-    with as_usage_error(TableError, NoLogs), as_file_error():
-        rows = read_bearings(bearings_path) if bearings_path is not None else []
-        if not paths:
-            rows = [row | {"log": str(bearings_path.parent / row["log"])} for row in rows]
-            paths = list(dict.fromkeys(path for row in rows if (path := Path(row["log"])).exists()))
-        results = tuple(out.path.with_suffix(suffix) for suffix in (".parquet", ".csv", ".journal"))
-        known = (*results, *([bearings_path] if bearings_path is not None else []))
-        logs = find_logs([path.absolute() for path in paths], by, known) if paths else []
-        rows = [row | {"log": str(Path(row["log"]).absolute()) if Path(row["log"]).exists() else row["log"]} for row in rows]
-        bearings = bearings_of(logs, rows, scene_name, overrides, reading, str(bearings_path or ""))
+    rows = read_bearings(bearings_path) if bearings_path is not None else []
+    if not paths:
+        rows = [row | {"log": str(bearings_path.parent / row["log"])} for row in rows]
+        paths = list(dict.fromkeys(path for row in rows if (path := Path(row["log"])).exists()))
+    results = tuple(out.path.with_suffix(suffix) for suffix in (".parquet", ".csv", ".journal"))
+    known = (*results, *([bearings_path] if bearings_path is not None else []))
+    logs = find_logs([path.absolute() for path in paths], by, known) if paths else []
+    rows = [row | {"log": str(Path(row["log"]).absolute()) if Path(row["log"]).exists() else row["log"]} for row in rows]
+    bearings = bearings_of(logs, rows, scene_name, overrides, reading, str(bearings_path or ""))
     _require_a_scene(bearings)
     study = study_digest("fleet", asked, sorted({repr(bearing.scene) for bearing in bearings}), by, reading, longest_gap)
     announce_compilation()
     reading_bar, replay_bar = Points("reading", len(bearings)), Points("replay", len(bearings))
     bars = {"reading": reading_bar, "replay": replay_bar}
-    with as_file_error(), as_usage_error(SceneError, ClusterError, JournalInUse):
-        require_same_study(out, study)
-        with Journal(out.path.with_suffix(".journal")) as journal, reading_bar, replay_bar:
-            table = replay_fleet(
-                bearings, longest_gap, journal, workers, dask, lambda act, done, total: bars[act].update(done, total), _build_table, _respond
-            )
-        require_same_study(out, study)
-        files = write_table(out.path, table._replace(about=table.about | {"command": command_line(), "study": study}))
-    report = _report(table, replay_bar, files)
-    if as_json:
-        print_json(report | {"bearings": table.rows})
-    else:
-        _print(table, report)
-    without = [row for row in table.rows if row["status"] not in (OK, PARTLY)]
-    if without:
-        raise FailedRun(f"{len(without)} of {len(table.rows)} bearings have no complete result; {files[1]} says why (columns status, reason)")
-    if report["partly_used_bearings"]:
-        raise PartlyUsed(
-            f"of the logs of {report['partly_used_bearings']} bearings only a part was used; {files[1]} says why (columns status, reason)"
+    with resumed(out, study, reading_bar, replay_bar) as journal:
+        table = replay_fleet(
+            bearings, longest_gap, journal, workers, dask, lambda act, done, total: bars[act].update(done, total), _build_table, _respond
         )
+    files = write_table(out.path, signed(table, study))
+    report, ending = _report(table, replay_bar, files), None
+    if without := [row for row in table.rows if row["status"] not in (OK, PARTLY)]:
+        ending = FailedRun(f"{len(without)} of {len(table.rows)} bearings have no complete result; {files[1]} says why (columns status, reason)")
+    elif partly := report["partly_used_bearings"]:
+        ending = PartlyUsed(f"of the logs of {partly} bearings only a part was used; {files[1]} says why (columns status, reason)")
+    return Result(report | {"bearings": table.rows}, lambda: _print(table, report), ending=ending)
 
 
 def _reading(mapping_name, sources, constants, joint, stamps):
     """Return how logs are read, from the options; raise `UsageError` if the mapping is invalid."""
-    from bearing_sim.scene.loader import SceneError, read_named
+    from bearing_sim.scene.loader import read_named
     from bearing_sim.studies.fleet_logs import Reading, mapping_of
 
     overrides = tuple(f"{name}={_constant_field(name, value)}" for name, value in constants.items())
     of_recordings = {"sources": tuple(sources.items()), "joint": joint, "stamps": stamps, "constants": tuple(constants.items())}
-    with as_usage_error(SceneError):
-        text = read_named(mapping_name, "catalog/mappings", "mapping")[0] if mapping_name else ""
-        reading = Reading(text, overrides, mapping_name or "", **of_recordings)
-        if mapping_name:
-            mapping_of(reading)
+    text = read_named(mapping_name, "catalog/mappings", "mapping")[0] if mapping_name else ""
+    reading = Reading(text, overrides, mapping_name or "", **of_recordings)
+    if mapping_name:
+        mapping_of(reading)
     return reading
 
 

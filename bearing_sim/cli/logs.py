@@ -2,42 +2,41 @@
 """Commands that write input logs: ``import-csv`` from a measured table, and ``mission`` from the bundled mission."""
 
 from datetime import UTC
-from pathlib import Path
 
 import click
+from click import Choice, DateTime, FloatRange
 
-from bearing_sim.cli.options import allow_outside_option, json_option, set_option
-from bearing_sim.cli.outputs import OutputRecording, WritingCommand
+from bearing_sim.cli.options import PATH, allow_outside_option, flag, json_option, option, set_option
+from bearing_sim.cli.outputs import OutputRecording
 from bearing_sim.cli.reporting import (
     FailedRun,
     UsageError,
-    as_failed_run,
-    as_file_error,
     as_usage_error,
-    print_json,
+    attributes,
+    note,
     print_table,
     progress_bar,
     tell_use,
 )
+from bearing_sim.cli.results import Result, command
+from bearing_sim.scene.loader import did_you_mean, load_scene
 
 
-@click.command("import-csv", cls=WritingCommand)
-@click.argument("data", type=click.Path(path_type=Path), metavar="DATA.csv")
+@command("import-csv")
+@click.argument("data", type=PATH, metavar="DATA.csv")
 @click.argument("mapping_name", metavar="[MAPPING]", required=False)
-@click.option(
-    "-o", "--out", type=OutputRecording(), metavar="OUT.mcap", help="Log of shaft speed and radial load; with --guess the mapping, OUT.yaml."
-)
-@click.option("--guess", "guesses", is_flag=True, help="Instead of importing, guess a mapping from the headings, and say why and what is not clear.")
-@click.option("--load", metavar="FORCE", help="Radial load throughout, such as 800N, where none was measured.")
-@click.option("--speed", metavar="SPEED", help="Shaft speed throughout, such as 1500rpm, likewise.")
-@click.option("--oil-temperature", metavar="TEMPERATURE", help="Oil temperature throughout, such as 60degC, likewise.")
-@click.option("--delimiter", metavar="CHARACTER", help="Between cells, or tab; instead of the mapping's, or the one that is found.")
-@click.option("--decimal", type=click.Choice([".", ","]), help="Decimal mark of numbers, likewise.")
-@click.option("--only", multiple=True, metavar="HEADING=TEXT", help="Only rows with this text in a column, such as Turbine=T01; can be repeated.")
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the mapping; can be repeated.")
-@click.option("--column", "columns", multiple=True, metavar="FIELD=HEADING", help="With --guess: the column of time, shaft_speed, radial_load ...")
-@click.option("--unit", "units", multiple=True, metavar="FIELD=UNIT", help="With --guess: the unit of a column, such as shaft_speed=rpm, time=ms.")
-@click.option("--time-format", metavar="FORMAT", help="With --guess: how times are written, such as '%d/%m/%Y %H:%M:%S', or iso.")
+@option("-o", "--out", "Log of shaft speed and radial load; with --guess the mapping, OUT.yaml.", OutputRecording(), metavar="OUT.mcap")
+@flag("--guess", "guesses", "Instead of importing, guess a mapping from the headings, and say why and what is not clear.")
+@option("--load", "Radial load throughout, such as 800N, where none was measured.", metavar="FORCE")
+@option("--speed", "Shaft speed throughout, such as 1500rpm, likewise.", metavar="SPEED")
+@option("--oil-temperature", "Oil temperature throughout, such as 60degC, likewise.", metavar="TEMPERATURE")
+@option("--delimiter", "Between cells, or tab; instead of the mapping's, or the one that is found.", metavar="CHARACTER")
+@option("--decimal", "Decimal mark of numbers, likewise.", Choice([".", ","]))
+@option("--only", "Only rows with this text in a column, such as Turbine=T01; can be repeated.", multiple=True, metavar="HEADING=TEXT")
+@option("--set", "overrides", "Override a field of the mapping; can be repeated.", multiple=True, metavar="FIELD=VALUE")
+@option("--column", "columns", "With --guess: the column of time, shaft_speed, radial_load ...", multiple=True, metavar="FIELD=HEADING")
+@option("--unit", "units", "With --guess: the unit of a column, such as shaft_speed=rpm, time=ms.", multiple=True, metavar="FIELD=UNIT")
+@option("--time-format", "With --guess: how times are written, such as '%d/%m/%Y %H:%M:%S', or iso.", metavar="FORMAT")
 @json_option
 def import_csv(
     data, mapping_name, out, guesses, load, speed, oil_temperature, delimiter, decimal, only, overrides, columns, units, time_format, as_json
@@ -50,8 +49,7 @@ def import_csv(
     messages concerned are left out, nothing is filled in, and the exit code is 3. With --guess a mapping is proposed, printed, and written
     to -o; nothing is imported, and what may mean two things is asked for (exit code 1).
     """
-    from bearing_sim.inputs.csv_import import TableError, load_mapping, read_table, write_log
-    from bearing_sim.scene.loader import SceneError
+    from bearing_sim.inputs.csv_import import load_mapping, read_table, write_log
 
     given = {"shaft_speed": speed, "radial_load": load, "oil_temperature": oil_temperature}
     if delimiter is not None and delimiter != "tab" and len(delimiter) != 1:
@@ -68,22 +66,19 @@ def import_csv(
         raise UsageError(f"no MAPPING: it says which columns are what; propose one with: bearing-sim import-csv --guess {data} -o mapping.yaml")
     if out is None:
         raise UsageError("no output file; give -o OUT.mcap")
-    with as_usage_error(SceneError, TableError), as_file_error():
-        overrides = [*overrides, *(f"{name}={_flow(tree)}" for name, tree in _constants(given).items())]
-        if only:
-            overrides.append(f"only={_flow(_pairs('--only', only))}")
-        overrides += [f"{name}={_flow(text)}" for name, text in (("delimiter", delimiter), ("decimal", decimal)) if text is not None]
-        mapping, text = load_mapping(mapping_name, overrides)
-        table = read_table(data, mapping)
-        out.check()  # again, now that mapping and table have been read
-        with progress_bar(f"importing {data.name}", sum(map(len, table.stamps.values()))) as progress:
-            write_log(table, text, data, out.path, progress, replace=out.force)
+    overrides = [*overrides, *(f"{name}={_flow(tree)}" for name, tree in _constants(given).items())]
+    if only:
+        overrides.append(f"only={_flow(_pairs('--only', only))}")
+    overrides += [f"{name}={_flow(text)}" for name, text in (("delimiter", delimiter), ("decimal", decimal)) if text is not None]
+    mapping, text = load_mapping(mapping_name, overrides)
+    table = read_table(data, mapping)
+    out.check()  # again, now that mapping and table have been read
+    with progress_bar(f"importing {data.name}", sum(map(len, table.stamps.values()))) as progress:
+        write_log(table, text, data, out.path, progress, replace=out.force)
     tell_use(table.tally, data)
-    if as_json:
-        print_json(_report(table, mapping, out))
-    else:
-        _print(table, mapping, data, out)
-        click.echo(f"next: bearing-sim replay {out} --scene SCENE.yaml -o run.mcap; of a long log: bearing-sim spectrum SCENE.yaml {out}", err=True)
+    Result(_report(table, mapping, out), lambda: _print(table, mapping, data, out)).deliver(as_json)
+    if not as_json:
+        note(f"next: bearing-sim replay {out} --scene SCENE.yaml -o run.mcap; of a long log: bearing-sim spectrum SCENE.yaml {out}")
 
 
 def _constants(given) -> dict[str, dict]:
@@ -119,8 +114,6 @@ _FIELDS = (
 
 def _pairs(option, texts, known=()) -> dict[str, str]:
     """Return the pairs of an option that is repeated, ``NAME=VALUE``; ``known`` names, if they are not free."""
-    from bearing_sim.scene.loader import did_you_mean
-
     found = {}
     for text in texts:
         name, equals, value = text.partition("=")
@@ -142,23 +135,20 @@ def _guess(data, out, as_json, *decided) -> None:
     decided : the further arguments of `bearing_sim.inputs.csv_guess.guess`.
     """
     from bearing_sim.inputs.csv_guess import guess
-    from bearing_sim.inputs.csv_text import TableError
 
     if out is not None and out.path.suffix.lower() not in (".yaml", ".yml"):
         raise UsageError(f"-o {out}: a mapping is a YAML file; expected a name that ends in .yaml")
-    with as_usage_error(TableError), as_file_error():
-        found = guess(data, *decided)
-        if out is not None:
-            out.write_text(found.text)
-    if as_json:
-        print_json({"mapping": found.tree, "reasons": found.reasons, "questions": found.questions, "not_used": found.left, "out": out and str(out)})
-    else:
-        click.echo(found.text, nl=False)
-    if found.questions:
-        asked = "\n".join(f"  {name}: {question}" for name, question in found.questions.items())
-        raise FailedRun(f"the mapping is not complete; decide:\n{asked}")
+    found = guess(data, *decided)
+    if out is not None:
+        out.write_text(found.text)
+    asked = "\n".join(f"  {name}: {question}" for name, question in found.questions.items())
+    Result(
+        attributes(found, "reasons", "questions") | {"mapping": found.tree, "not_used": found.left, "out": out and str(out)},
+        lambda: click.echo(found.text, nl=False),
+        ending=FailedRun(f"the mapping is not complete; decide:\n{asked}") if asked else None,
+    ).deliver(as_json)
     if out is not None and not as_json:
-        click.echo(f"{out}: check it, then: bearing-sim import-csv {data} {out} -o {data.with_suffix('.mcap').name}", err=True)
+        note(f"{out}: check it, then: bearing-sim import-csv {data} {out} -o {data.with_suffix('.mcap').name}")
 
 
 def _span(table) -> tuple[int, int]:
@@ -204,16 +194,16 @@ def _print(table, mapping, data, out) -> None:
     print_table(f"{data.name} by {mapping.name}", rows)
 
 
-@click.command("mission", cls=WritingCommand)
-@click.option("-o", "--out", required=True, type=OutputRecording(), metavar="OUT.mcap", help="Log of the inputs.")
-@click.option("--duration", default=60.0, show_default=True, type=click.FloatRange(1, 3600), metavar="S", help="Duration; all phases scale with it.")
-@click.option("--rate", default=50.0, show_default=True, type=click.FloatRange(1, 2000), metavar="HZ", help="Rate of the speed and load messages.")
-@click.option("--start", type=click.DateTime(), metavar="TIME", help="Start time in UTC, such as 2027-01-31 or 2027-01-31T08:00:00 [default: now].")
-@click.option("--cage", "machine", metavar="SCENE", help="Also write a measured cage speed: that of this scene's model, with noise.")
+@command("mission")
+@option("-o", "--out", "Log of the inputs.", OutputRecording(), required=True, metavar="OUT.mcap")
+@option("--duration", "Duration; all phases scale with it.", FloatRange(1, 3600), default=60.0, metavar="S")
+@option("--rate", "Rate of the speed and load messages.", FloatRange(1, 2000), default=50.0, metavar="HZ")
+@option("--start", "Start time in UTC, such as 2027-01-31 or 2027-01-31T08:00:00 [default: now].", DateTime(), metavar="TIME")
+@option("--cage", "machine", "Also write a measured cage speed: that of this scene's model, with noise.", metavar="SCENE")
 @set_option
 @allow_outside_option
 @json_option
-def mission(out, duration, rate, start, machine, overrides, as_json):
+def mission(out, duration, rate, start, machine, overrides):
     """Write the synthetic mission: start, idle, take-off at 45,000 rpm, cruise, light-load descent with a gust, stop.
 
     It is invented, not measured, and meant for demonstrations only; so is the cage speed that --cage adds at 10 Hz: a model plays the machine, with
@@ -222,21 +212,15 @@ def mission(out, duration, rate, start, machine, overrides, as_json):
     import time
 
     from bearing_sim.inputs.mission import write_mission
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.simulation import IntegrationError
 
     if overrides and machine is None:
         raise UsageError("--set changes the scene of --cage; give that, too")
-    with as_usage_error(SceneError):
-        scene = load_scene(machine, overrides) if machine is not None else None
+    scene = load_scene(machine, overrides) if machine is not None else None
     start_ns = time.time_ns() if start is None else int(start.replace(tzinfo=UTC).timestamp()) * 1_000_000_000
-    with as_file_error():
-        out.check()  # again, now that the scene has been read
-    with as_file_error(), as_failed_run(IntegrationError), progress_bar("writing the mission", duration) as progress:
+    out.check()  # again, now that the scene has been read
+    with progress_bar("writing the mission", duration) as progress:
         messages = write_mission(out.path, start_ns, duration, rate, progress, replace=out.force, machine=scene)
-    if as_json:
-        report = {"out": str(out), "synthetic": True, "duration_seconds": duration, "rate": rate, "messages": messages, "start_ns": start_ns}
-        print_json({**report, "cage": scene and scene.name})
-    else:
-        cage = f", and a synthetic measured cage: the model of {scene.name} with noise" if scene is not None else ""
-        click.echo(f"{out}: synthetic mission of {duration:g} s, {messages} messages of shaft speed, radial load and oil temperature{cage}")
+    report = {"out": str(out), "synthetic": True, "duration_seconds": duration, "rate": rate, "messages": messages, "start_ns": start_ns}
+    cage = f", and a synthetic measured cage: the model of {scene.name} with noise" if scene is not None else ""
+    text = f"{out}: synthetic mission of {duration:g} s, {messages} messages of shaft speed, radial load and oil temperature{cage}"
+    return Result({**report, "cage": scene and scene.name}, lambda: click.echo(text))

@@ -8,9 +8,8 @@ from typing import NamedTuple
 
 import click
 
-from bearing_sim.cli.reporting import ARGUMENTS, EXIT_CODES, UsageError, require_whole
+from bearing_sim.cli.reporting import ARGUMENTS, EXIT_CODES, UsageError, as_ending, require_whole
 from bearing_sim.extras import what_is_missing
-from bearing_sim.files.limits import FileError
 from bearing_sim.files.standard_streams import standard_streams
 from bearing_sim.files.tally import PartlyUsedWarning
 
@@ -22,63 +21,67 @@ class Entry(NamedTuple):
     help: str
 
 
-_BENCHMARKS = {
-    "levels": Entry("bench:levels", "Speed, work and errors of every level, with error control and with a fixed step."),
-    "fleet": Entry("bench:fleet", "How many bearings one core holds in real time."),
-}
-_STUDIES = {
-    "damage": Entry("study:damage", "Compare the damage of a measured run between levels."),
-    "misalignment": Entry("study:misalignment", "Edge pressure, tilt, skew and life against misalignment of the inner ring."),
-    "support": Entry("study:support", "Response over speed with a support of shaft and outer ring, and without."),
-    "resonances": Entry("study:resonances", "Where the passing rollers make the inner ring vibrate, over speed, and in which states it stays."),
-    "clearance": Entry("study:clearance", "Running clearance over speed and load, thermal runaway, and what is lost at which speed."),
-    "friction": Entry("study:friction", "Friction of a scene against makers' models."),
-    "cold-oil": Entry("cold_oil:cold_oil", "Slip and skid load over load, temperature and supply of oil, from rolling and from a skid."),
-    "cold-start": Entry(
-        "cold_start:cold_start", "A cold start over time: slip, films, temperatures and sliding power while idling and as the load comes."
-    ),
-    "extremes": Entry("study:extremes", "Which variants of a scene, at its extremes, finish, are step-limited, are refused or fail."),
-}
-_STATES = {
-    "show": Entry("state:show", "Show the stored state of a bearing: life used, hours, starts, regimes."),
-    "export": Entry("state:export", "Write a stored state as JSON, or its totals by day as a table."),
-    "merge": Entry("state:merge", "Fill gaps of a stored state by recordings, each instant once."),
-    "adopt": Entry("state:adopt", "Let a stored state belong to a corrected scene."),
-}
-_COMMANDS = {
-    "run": Entry("run:run", "Run a scene under constant conditions."),
-    "replay": Entry("replay:replay", "Run the model on a recorded log of shaft speed and radial load."),
-    "replay-fleet": Entry("fleet:replay_fleet", "Run the model on many logs at once, one bearing each, into a table."),
-    "spectrum": Entry("spectrum:spectrum", "Compute the life under a load spectrum: a table of shares of time, or a long log in classes."),
-    "import-csv": Entry("logs:import_csv", "Convert a measured table to an MCAP log."),
-    "loads": Entry("bearings:loads", "Show a scene's load distribution over rollers and slices, and the lives."),
-    "catalog": Entry("catalog:catalog", "List the bearings of the catalogue, or show one by its designation."),
-    "new": Entry("catalog:new", "Write the scene of a bearing by designation in an oil, commented."),
-    "machine": Entry("bearings:machine", "Compute the raceway that pre-deformation machining produces."),
-    "table": Entry("table:table", "Build or inspect the table of operating points of level steady."),
-    "uncertainty": Entry("uncertainty:uncertainty", "Compute ranges of slip and life from uncertain fields, and each field's share."),
-    "calibrate": Entry("calibrate:calibrate", "Fit fields of a scene to the measured cage speed in a recording."),
-    "vibration": Entry("vibration:vibration", "Find cage speed and damage in the vibration that an accelerometer recorded."),
-    "sweep": Entry("sweep:sweep", "Run a scene at all combinations of field values, into a table."),
-    "plot": Entry("plot:plot", "Draw recorded runs over time or load, or the table of a sweep."),
-    "design": Entry("design:design", "Map which outer raceways keep slip and life within limits, and verify them."),
-    "report": Entry("report:report", "Make one HTML page of a sweep, a design or a recorded run."),
-    "trade": Entry("trade:trade", "Measure speed against accuracy on a scene, and recommend a setting."),
-    "bench": Entry("main:bench", "Measure how fast the model is on this machine."),
-    "compile": Entry("bench:compile_levels", "Compile levels before their first run."),
-    "study": Entry("main:study", "Study a bearing: misalignment, support, resonances, clearance, friction, cold oil, extremes."),
-    "info": Entry("recordings:info", "Show what a recording holds, where it comes from, and whether it is complete."),
-    "compare": Entry("recordings:compare", "Compare two recordings topic by topic."),
-    "recover": Entry("recordings:recover", "Recover the recording of a killed writer."),
-    "to-csv": Entry("recordings:to_csv", "Export a recording as a CSV table."),
-    "to-parquet": Entry("recordings:to_parquet", "Export a recording as a Parquet table."),
-    "state": Entry("main:state", "Show, export and fill the stored states of bearings in service."),
-    "view": Entry("view:view", "Show a recording in rerun."),
-    "mission": Entry("logs:mission", "Write the bundled synthetic mission as an MCAP log."),
-    "fields": Entry("fields:fields", "Show the fields of a scene: unit, range, default and meaning."),
-    "observables": Entry("fields:observables", "List what a sample holds: name, unit and meaning."),
-    "scenes": Entry("bearings:scenes", "List the bundled scenes, bearings and oils."),
-}
+def _listed(table: str) -> dict[str, Entry]:
+    """Return the commands of a table: name, place and help of one on a line."""
+    rows = (line.split(maxsplit=2) for line in table.strip().splitlines())
+    return {name: Entry(place, text) for name, place, text in rows}
+
+
+_BENCHMARKS = _listed("""
+levels  bench:levels  Speed, work and errors of every level, with error control and with a fixed step.
+fleet   bench:fleet   How many bearings one core holds in real time.
+""")
+_STUDIES = _listed("""
+damage        study:damage           Compare the damage of a measured run between levels.
+misalignment  study:misalignment     Edge pressure, tilt, skew and life against misalignment of the inner ring.
+support       study:support          Response over speed with a support of shaft and outer ring, and without.
+resonances    study:resonances       Where the passing rollers make the inner ring vibrate, over speed, and in which states it stays.
+clearance     study:clearance        Running clearance over speed and load, thermal runaway, and what is lost at which speed.
+friction      study:friction         Friction of a scene against makers' models.
+cold-oil      cold_oil:cold_oil      Slip and skid load over load, temperature and supply of oil, from rolling and from a skid.
+cold-start    cold_start:cold_start  A cold start over time: slip, films, temperatures and sliding power while idling and as the load comes.
+extremes      study:extremes         Which variants of a scene, at its extremes, finish, are step-limited, are refused or fail.
+""")
+_STATES = _listed("""
+show    state:show    Show the stored state of a bearing: life used, hours, starts, regimes.
+export  state:export  Write a stored state as JSON, or its totals by day as a table.
+merge   state:merge   Fill gaps of a stored state by recordings, each instant once.
+adopt   state:adopt   Let a stored state belong to a corrected scene.
+""")
+_COMMANDS = _listed("""
+run           run:run                  Run a scene under constant conditions.
+replay        replay:replay            Run the model on a recorded log of shaft speed and radial load.
+replay-fleet  fleet:replay_fleet       Run the model on many logs at once, one bearing each, into a table.
+spectrum      spectrum:spectrum        Compute the life under a load spectrum: a table of shares of time, or a long log in classes.
+import-csv    logs:import_csv          Convert a measured table to an MCAP log.
+loads         bearings:loads           Show a scene's load distribution over rollers and slices, and the lives.
+catalog       catalog:catalog          List the bearings of the catalogue, or show one by its designation.
+new           catalog:new              Write the scene of a bearing by designation in an oil, commented.
+machine       bearings:machine         Compute the raceway that pre-deformation machining produces.
+table         table:table              Build or inspect the table of operating points of level steady.
+uncertainty   uncertainty:uncertainty  Compute ranges of slip and life from uncertain fields, and each field's share.
+calibrate     calibrate:calibrate      Fit fields of a scene to the measured cage speed in a recording.
+vibration     vibration:vibration      Find cage speed and damage in the vibration that an accelerometer recorded.
+sweep         sweep:sweep              Run a scene at all combinations of field values, into a table.
+plot          plot:plot                Draw recorded runs over time or load, or the table of a sweep.
+design        design:design            Map which outer raceways keep slip and life within limits, and verify them.
+report        report:report            Make one HTML page of a sweep, a design or a recorded run.
+trade         trade:trade              Measure speed against accuracy on a scene, and recommend a setting.
+bench         main:bench               Measure how fast the model is on this machine.
+compile       bench:compile_levels     Compile levels before their first run.
+study         main:study               Study a bearing: misalignment, support, resonances, clearance, friction, cold oil, extremes.
+info          recordings:info          Show what a recording holds, where it comes from, and whether it is complete.
+compare       recordings:compare       Compare two recordings topic by topic.
+recover       recordings:recover       Recover the recording of a killed writer.
+to-csv        recordings:to_csv        Export a recording as a CSV table.
+to-parquet    recordings:to_parquet    Export a recording as a Parquet table.
+state         main:state               Show, export and fill the stored states of bearings in service.
+view          view:view                Show a recording in rerun.
+mission       logs:mission             Write the bundled synthetic mission as an MCAP log.
+fields        fields:fields            Show the fields of a scene: unit, range, default and meaning.
+observables   fields:observables       List what a sample holds: name, unit and meaning.
+scenes        bearings:scenes          List the bundled scenes, bearings and oils.
+""")
 
 
 # Where commands went that judged the code rather than a bearing: what to run instead, from a checkout of the repository.
@@ -119,13 +122,11 @@ class LazyGroup(click.Group):
         A package that is not installed is named with the extra that installs it, a file that cannot be read with the reason.
         """
         try:
-            with warnings.catch_warnings():
+            with warnings.catch_warnings(), as_ending():
                 warnings.simplefilter("ignore", PartlyUsedWarning)  # the exit code and the last message say it
                 result = super().invoke(context)
         except ModuleNotFoundError as error:
             raise UsageError(what_is_missing(error)) from error
-        except FileError as error:
-            raise UsageError(str(error)) from error
         require_whole(context)
         return result
 

@@ -2,8 +2,10 @@
 """Options and arguments that several commands have."""
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 import click
+from click import Choice, FloatRange, IntRange
 
 from bearing_sim.cli.outputs import OutputFile, OutputTable
 from bearing_sim.cli.reporting import UsageError, as_usage_error
@@ -11,30 +13,60 @@ from bearing_sim.files.outside import OPTION, allowing_outside
 from bearing_sim.scene.fidelity import LEVELS
 
 PICTURES = (".png", ".svg", ".pdf")
+PATH = click.Path(path_type=Path)
+
+
+def option(*about, **settings) -> Callable:
+    """Return a decorator that adds an option; its default is shown.
+
+    Parameters
+    ----------
+    about : its names, its help and, unless it is text or follows from the default, its type, in this order.
+    settings : further ones of `click.Option`.
+    """
+    *names, text = (each for each in about if isinstance(each, str))
+    settings.setdefault("show_default", settings.get("default") not in (None, ""))
+    return click.option(*names, help=text, type=next((each for each in about if not isinstance(each, str)), None), **settings)
+
+
+def flag(*about: str, **settings) -> Callable:
+    """Return a decorator that adds an option without a value, of names and help."""
+    return option(*about, is_flag=True, **settings)
+
+
+def together(*decorators: Callable) -> Callable:
+    """Return a decorator that adds several options and arguments, in the order in which help lists them."""
+
+    def add(command: Callable) -> Callable:
+        for each in reversed(decorators):
+            command = each(command)
+        return command
+
+    return add
+
 
 level_type = click.Choice(LEVELS)
 
 
 def _with_units(context: click.Context, parameter: click.Parameter, overrides: Sequence[str]) -> Sequence[str]:
     """Return the overrides of a scene; a quantity without a unit is refused."""
-    from bearing_sim.scene.loader import SceneError, require_units
+    from bearing_sim.scene.loader import require_units
 
-    with as_usage_error(SceneError):
-        require_units(overrides)
+    require_units(overrides)
     return overrides
 
 
-set_option = click.option(
+set_option = option(
     "--set",
     "overrides",
+    "Override a field of the scene, or its range (uncertainty.FIELD); can be repeated. See: bearing-sim fields.",
     multiple=True,
     metavar="FIELD=VALUE",
     callback=_with_units,
-    help="Override a field of the scene, or its range (uncertainty.FIELD); can be repeated. See: bearing-sim fields.",
 )
-verbose_option = click.option("--verbose", is_flag=True, help="Also print limits of validity that are passed without effect, and assumptions.")
-json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-quick_option = click.option("--quick", is_flag=True, help="Measure almost nothing, to check that everything works.")
+verbose_option = flag("--verbose", "Also print limits of validity that are passed without effect, and assumptions.")
+json_option = flag("--json", "as_json", "Print one JSON object.")
+quick_option = flag("--quick", "Measure almost nothing, to check that everything works.")
 
 
 def _allow_outside(context: click.Context, parameter: click.Parameter, allowed: bool) -> None:
@@ -42,69 +74,55 @@ def _allow_outside(context: click.Context, parameter: click.Parameter, allowed: 
     context.with_resource(allowing_outside(allowed))
 
 
-allow_outside_option = click.option(
-    OPTION,
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=_allow_outside,
-    help="Read files that a scene names although they lie outside of its folder.",
+allow_outside_option = flag(
+    OPTION, "Read files that a scene names although they lie outside of its folder.", is_eager=True, expose_value=False, callback=_allow_outside
 )
 
 
-def scene_argument(command: Callable) -> Callable:
-    """Add the argument for a scene, ``scene_name``, and the option that allows it to name files outside of its folder."""
-    return click.argument("scene_name", metavar="SCENE")(allow_outside_option(command))
-
-
-_LOG_OPTIONS = (
-    click.option(
+scene_argument = together(click.argument("scene_name", metavar="SCENE"), allow_outside_option)
+"""The argument for a scene, ``scene_name``, and the option that allows it to name files outside of its folder."""
+scene_options = together(scene_argument, set_option)
+"""The scene, and overrides of its fields, ``overrides``."""
+log_options = together(
+    option(
         "--speed",
         "--speed-topic",
         "speed",
+        "Shaft speed: /topic, or /topic.field[0] of any type, or a constant such as 1500rpm [default: /shaft_speed].",
         metavar="TOPIC",
-        help="Shaft speed: /topic, or /topic.field[0] of any type, or a constant such as 1500rpm [default: /shaft_speed].",
     ),
-    click.option(
+    option(
         "--load",
         "--load-topic",
         "load",
+        "Radial load, likewise; /topic.y,z for both components, or a constant such as 800N [default: /radial_load].",
         metavar="TOPIC",
-        help="Radial load, likewise; /topic.y,z for both components, or a constant such as 800N [default: /radial_load].",
     ),
-    click.option(
+    option(
         "--oil-temperature",
         "--temperature",
         "--temperature-topic",
         "temperature",
+        "Oil temperature, likewise, or a constant such as 60degC [default: /oil_temperature, if present, or the scene's].",
         metavar="TOPIC",
-        help="Oil temperature, likewise, or a constant such as 60degC [default: /oil_temperature, if present, or the scene's].",
     ),
-    click.option(
-        "--inner-ring-temperature", metavar="TOPIC", help="Of the inner ring as measured, likewise [default: /inner_ring_temperature, if present]."
-    ),
-    click.option(
-        "--outer-ring-temperature", metavar="TOPIC", help="Of the outer ring as measured, likewise [default: /outer_ring_temperature, if present]."
-    ),
-    click.option("--speed-unit", metavar="UNIT", help="Unit of the shaft speed in the log, such as rpm [default: rad/s]."),
-    click.option("--load-unit", metavar="UNIT", help="Unit of the load in the log, such as kN [default: N]."),
-    click.option("--temperature-unit", metavar="UNIT", help="Unit of the temperatures in the log [default: degC]."),
-    click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="Name of the shaft's joint in JointState messages."),
-    click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Use header stamps or log times."),
-    click.option(
+    option("--inner-ring-temperature", "Of the inner ring as measured, likewise [default: /inner_ring_temperature, if present].", metavar="TOPIC"),
+    option("--outer-ring-temperature", "Of the outer ring as measured, likewise [default: /outer_ring_temperature, if present].", metavar="TOPIC"),
+    option("--speed-unit", "Unit of the shaft speed in the log, such as rpm [default: rad/s].", metavar="UNIT"),
+    option("--load-unit", "Unit of the load in the log, such as kN [default: N].", metavar="UNIT"),
+    option("--temperature-unit", "Unit of the temperatures in the log [default: degC].", metavar="UNIT"),
+    option("--joint", "Name of the shaft's joint in JointState messages.", default="shaft", metavar="NAME"),
+    option("--stamps", "Use header stamps or log times.", Choice(["header", "log"]), default="header"),
+    option(
         "--longest-gap",
-        type=click.FloatRange(min=0, min_open=True),
+        "Do not simulate longer gaps between messages [default: ten times the usual spacing, at least the scene's input_limits.stale_after].",
+        FloatRange(min=0, min_open=True),
         metavar="S",
-        help="Do not simulate longer gaps between messages [default: ten times the usual spacing, at least the scene's input_limits.stale_after].",
     ),
 )
 
 
-def log_options(command: Callable) -> Callable:
-    """Add the options that say where a log holds what: topics, units, constants, stamps and gaps (see `channel_sources`)."""
-    for option in reversed(_LOG_OPTIONS):
-        command = option(command)
-    return command
+"""The options that say where a log holds what: topics, units, constants, stamps and gaps (see `channel_sources`)."""
 
 
 def channel_sources(
@@ -129,10 +147,11 @@ def channel_sources(
         return {channel: source(channel, text, unit) for channel, text, unit in given if (text or unit) and channel not in constants}, constants
 
 
-def executor_options(command: Callable) -> Callable:
-    """Add the options that choose where points are computed."""
-    command = click.option("--dask", metavar="ADDRESS", help="Compute on this Dask cluster, such as tcp://10.0.0.1:8786.")(command)
-    return click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")(command)
+executor_options = together(
+    option("--workers", "Number of processes [default: all cores].", IntRange(1, 1024), metavar="N"),
+    option("--dask", "Compute on this Dask cluster, such as tcp://10.0.0.1:8786.", metavar="ADDRESS"),
+)
+"""The options that choose where points are computed."""
 
 
 def table_option(default: str, beside: str, *parts: str) -> Callable:
@@ -145,21 +164,13 @@ def table_option(default: str, beside: str, *parts: str) -> Callable:
     parts : what is added to the name for further tables.
     """
     text = f"{beside} PATH.journal, from which an interrupted run resumes."
-    return click.option("-o", "--out", type=OutputTable(*parts), default=default, show_default=True, metavar="PATH.parquet", help=text)
+    return option("-o", "--out", text, OutputTable(*parts), default=default, metavar="PATH.parquet")
 
 
-def csv_option(written: str) -> Callable:
-    """Return the option for the path of a CSV table; ``written`` is its help."""
-    return csv_option_of(OutputFile(), written)
-
-
-def csv_option_of(kind: OutputFile, written: str) -> Callable:
-    """Return the option for the path of a CSV table of a type of output; ``written`` is its help."""
-
-    def add(command: Callable) -> Callable:
-        return click.option("-o", "--out", "table", type=kind, metavar="PATH.csv", help=written)(removed_option("--csv", "-o, --out")(command))
-
-    return add
+def csv_option(written: str, kind: OutputFile | None = None) -> Callable:
+    """Return the option for the path of a CSV table, ``table``; ``written`` is its help, ``kind`` its type unless it is simply a file."""
+    table = option("-o", "--out", "table", written, kind or OutputFile(), metavar="PATH.csv")
+    return together(table, removed_option("--csv", "-o, --out"))
 
 
 def removed_option(name: str, successor: str) -> Callable:
@@ -180,9 +191,7 @@ def _read_size(context: click.Context, parameter: click.Parameter, text: str) ->
     return int(parts[0]), int(parts[1])
 
 
-size_option = click.option(
-    "--size", default="1600x1000", show_default=True, metavar="WxH", callback=_read_size, help="Size of a picture of the view [px]."
-)
+size_option = option("--size", "Size of a picture of the view [px].", default="1600x1000", metavar="WxH", callback=_read_size)
 
 
 def picture_option(drawn: str, *names: str) -> Callable:

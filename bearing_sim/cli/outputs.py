@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Outputs of commands: types of the options that name them, and the command that checks all of them before it begins.
+"""Outputs of commands: types of the options that name them.
 
-`WritingCommand` refuses an output that is an input, exists (without ``--force``), is no regular file, or is named twice.
+`bearing_sim.cli.results.Command` refuses an output that is an input, exists (without ``--force``), is no regular file, or is named twice.
 """
 
 import os
@@ -11,11 +11,12 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.reporting import UsageError, exit_on_sigterm
-from bearing_sim.files.outputs import FORCE, Output, RefusedOutput, protecting_inputs
+from bearing_sim.cli.reporting import UsageError, note
+from bearing_sim.files.outputs import Output, RefusedOutput
 
 _RECORDINGS = (".mcap", ".active", ".db3", ".bag", ".zstd", ".yaml")  # files of an input folder that no command replaces
-_OUTPUTS = "bearing_sim.outputs"
+OUTPUTS = "bearing_sim.outputs"
+"""Key of what a command writes in the meta data of click's contexts: outputs by parameter, whether by force, and its inputs."""
 
 
 class OutputFile(click.ParamType):
@@ -32,10 +33,10 @@ class OutputFile(click.ParamType):
         self.suffixes = suffixes
 
     def convert(self, value, param, ctx):
-        """Return the output, which `WritingCommand` completes by the rest of the command line; a wrong suffix is refused."""
+        """Return the output, which `bearing_sim.cli.results.Command` completes by the rest of the command line; a wrong suffix is refused."""
         output = value if isinstance(value, Output) else Output(value)
         if self.suffixes and output.path.suffix.lower() not in self.suffixes:
-            raise UsageError(f"{_option(param)} {output}: expected a name that ends in {', '.join(self.suffixes)}")
+            raise UsageError(f"{option_name(param)} {output}: expected a name that ends in {', '.join(self.suffixes)}")
         return output
 
     def made(self, path: Path) -> list[Path]:
@@ -119,33 +120,6 @@ class OutputFolder(OutputFile):
         return [] if path.is_dir() else [path]
 
 
-class WritingCommand(click.Command):
-    """A command that writes files: all its outputs are checked before it begins, and SIGTERM unwinds it, so that it leaves no drafts."""
-
-    def __init__(self, *args, **options):
-        super().__init__(*args, **options)
-        self.params.append(click.Option([FORCE, "force"], is_flag=True, help="Replace existing files; an input is never replaced."))
-
-    def invoke(self, context):
-        """Run the command with its outputs checked."""
-        force = context.params.pop("force")
-        types = {parameter.name: parameter for parameter in self.params if isinstance(parameter.type, OutputFile)}
-        given = {name: value for name, value in context.params.items() if name in types and value is not None}
-        inputs = [path for name, value in context.params.items() if name not in types for path in _paths_in(value)]
-        outputs = {name: Output(value.path, force, inputs) for name, value in given.items()}
-        context.params.update(outputs)
-        context.meta[_OUTPUTS] = outputs, force, inputs
-        try:
-            kinds = {_option(types[name]): (types[name].type, output) for name, output in outputs.items()}
-            _require_distinct({option: [*kind.made(output.path), *kind.continued(output.path)] for option, (kind, output) in kinds.items()})
-            for kind, output in kinds.values():
-                kind.check(output)
-            with protecting_inputs(), exit_on_sigterm():
-                return super().invoke(context)
-        except RefusedOutput as error:
-            raise UsageError(str(error)) from None
-
-
 @contextmanager
 def recording_into(output: Output, sink) -> Iterator:
     """Yield the sink that writes an output, say what happened to its file, and where an interrupted recording is.
@@ -156,13 +130,13 @@ def recording_into(output: Output, sink) -> Iterator:
     sink : a `bearing_sim.recording.writer.McapSink`, which this completes.
     """
     for _, _, text in sink.news():
-        click.echo(f"warning: {text}", err=True)
+        note(f"warning: {text}")
     try:
         with sink:
             yield sink
     except BaseException:
         unfinished = output.path.with_name(f"{output.path.name}.active")
-        click.echo(f"interrupted; what was recorded until then is {unfinished if unfinished.exists() else output}", err=True)
+        note(f"interrupted; what was recorded until then is {unfinished if unfinished.exists() else output}")
         raise
 
 
@@ -174,29 +148,29 @@ def default_output(path: Path) -> Output:
     RefusedOutput
         It must not be written, or another option names it.
     """
-    outputs, force, inputs = click.get_current_context().meta[_OUTPUTS]
-    _require_distinct({"the default output": [path]} | {f"--{name}": [output.path] for name, output in outputs.items()})
+    outputs, force, inputs = click.get_current_context().meta[OUTPUTS]
+    require_distinct({"the default output": [path]} | {f"--{name}": [output.path] for name, output in outputs.items()})
     output = Output(path, force, inputs)
     output.check()
     return output
 
 
-def _paths_in(value) -> Iterator[Path]:
+def paths_in(value) -> Iterator[Path]:
     """Yield the files that the value of an option or argument may name: paths, names of scene files, ``FIELD=FILE``, files of a bag's folder."""
     if isinstance(value, (tuple, list)):
         for each in value:
-            yield from _paths_in(each)
+            yield from paths_in(each)
     elif isinstance(value, str):
         for text in {value, value.rpartition("=")[2]}:
             if 0 < len(text) < 4096 and "\0" not in text:
-                yield from _paths_in(Path(text))
+                yield from paths_in(Path(text))
     elif isinstance(value, Path):
         yield value
         if os.path.isdir(value):  # False also for a text that is too long for a path
             yield from (path for path in value.glob("*") if path.suffix in _RECORDINGS)
 
 
-def _require_distinct(files: dict[str, Sequence[Path]]) -> None:
+def require_distinct(files: dict[str, Sequence[Path]]) -> None:
     """Raise `RefusedOutput` if two options name the same file."""
     owners: dict[str, str] = {}
     for option, paths in files.items():
@@ -206,5 +180,6 @@ def _require_distinct(files: dict[str, Sequence[Path]]) -> None:
             owners[path] = option
 
 
-def _option(parameter) -> str:
+def option_name(parameter) -> str:
+    """Return how an output's option is called in messages."""
     return max(parameter.opts[:2], key=len) if parameter is not None else "output"

@@ -2,28 +2,25 @@
 """``bearing-sim plot``: pictures of recorded runs and of the tables of sweeps, without a viewer."""
 
 import math
-from pathlib import Path
 
 import click
+from click import Choice, IntRange
 
-from bearing_sim.cli.options import picture_option
-from bearing_sim.cli.outputs import WritingCommand, default_output
-from bearing_sim.cli.reporting import Points, UsageError, as_file_error, as_usage_error, progress_bar, tell_use
+from bearing_sim.cli.options import PATH, option, picture_option
+from bearing_sim.cli.outputs import default_output
+from bearing_sim.cli.reporting import Points, UsageError, as_usage_error, note, progress_bar, tell_use
+from bearing_sim.cli.results import command
 
 _TABLES = (".parquet", ".csv")
 
 
-@click.command("plot", cls=WritingCommand)
-@click.argument("paths", metavar="RESULT...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@command("plot")
+@click.argument("paths", type=PATH, metavar="RESULT...", nargs=-1, required=True)
 @picture_option("The picture", "-o", "--out")
-@click.option("--over", type=click.Choice(["time", "load"]), help="Draw over this [default: time for recordings, what was varied for sweeps].")
-@click.option("--panel", "panels", multiple=True, metavar="NAME", help="Draw this panel of a recording over time; can be repeated [default: six].")
-@click.option(
-    "--band", type=click.IntRange(8, 4096), metavar="N", help="Compute the range of the slip of a recording from N samples of the uncertain fields."
-)
-@click.option(
-    "--quantity", "quantities", multiple=True, metavar="COLUMN", help="Draw this column of a sweep; can be repeated [default: slip, life, loads]."
-)
+@option("--over", "Draw over this [default: time for recordings, what was varied for sweeps].", Choice(["time", "load"]))
+@option("--panel", "panels", "Draw this panel of a recording over time; can be repeated [default: six].", multiple=True, metavar="NAME")
+@option("--band", "Compute the range of the slip of a recording from N samples of the uncertain fields.", IntRange(8, 4096), metavar="N")
+@option("--quantity", "quantities", "Draw this column of a sweep; can be repeated [default: slip, life, loads].", multiple=True, metavar="COLUMN")
 def plot(paths, picture, over, panels, band, quantities):
     """Draw recorded runs or a sweep into a picture; beside RESULT, with the suffix .png, unless -o is given.
 
@@ -39,24 +36,22 @@ def plot(paths, picture, over, panels, band, quantities):
     picture = picture or default_output(paths[0].with_suffix(".png"))
     if tables and len(paths) > 1:
         raise UsageError(f"{tables[0]}: a table is drawn alone; only recordings are compared")
-    with as_file_error():
-        if tables:
-            if panels or band:
-                raise UsageError("--panel and --band are for recordings; a table has --quantity")
-            if over == "time":
-                raise UsageError("--over time is for recordings; a sweep is drawn over what was varied, or --over load")
-            _plot_table(tables[0], picture, over, quantities)
-        else:
-            if quantities:
-                raise UsageError("--quantity is for tables of sweeps; a recording has --panel")
-            if over == "load" and (panels or band):
-                raise UsageError("--panel and --band go with a picture over time")
-            _plot_recordings(paths, picture, over, panels, band)
+    if tables:
+        if panels or band:
+            raise UsageError("--panel and --band are for recordings; a table has --quantity")
+        if over == "time":
+            raise UsageError("--over time is for recordings; a sweep is drawn over what was varied, or --over load")
+        _plot_table(tables[0], picture, over, quantities)
+    else:
+        if quantities:
+            raise UsageError("--quantity is for tables of sweeps; a recording has --panel")
+        if over == "load" and (panels or band):
+            raise UsageError("--panel and --band go with a picture over time")
+        _plot_recordings(paths, picture, over, panels, band)
     click.echo(str(picture))
 
 
 def _plot_recordings(paths, picture, over, panels, band) -> None:
-    from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.reader import Recording
     from bearing_sim.scene.loader import did_you_mean
     from bearing_sim.studies.run_plot import DEFAULT_PANELS, PANELS, SlipBand, draw_over_load, draw_over_time, read_course
@@ -66,10 +61,9 @@ def _plot_recordings(paths, picture, over, panels, band) -> None:
             raise UsageError(f"--panel {panel}: no such panel{did_you_mean(panel, PANELS)}; there are {', '.join(PANELS)}")
     courses = []
     for path in paths:
-        with as_usage_error(RecordingError):
-            recording = Recording(path, allow_partial=True)
-            with progress_bar(f"reading {path.name}", max(recording.last_time, 1e-9)) as progress:
-                course = read_course(recording, path.name, panels or DEFAULT_PANELS, progress)
+        recording = Recording(path, allow_partial=True)
+        with progress_bar(f"reading {path.name}", max(recording.last_time, 1e-9)) as progress:
+            course = read_course(recording, path.name, panels or DEFAULT_PANELS, progress)
         tell_use(recording.tally, path)
         if band:
             course.band = SlipBand(*_band_of(course, band))
@@ -89,7 +83,7 @@ def _band_of(course, samples):
     from bearing_sim.cli.uncertainty import SEED
     from bearing_sim.model.turning import stands_text, turns
     from bearing_sim.scene.uncertainty import without_range
-    from bearing_sim.studies.uncertainty_propagation import UncertaintyError, rounded_up, study
+    from bearing_sim.studies.uncertainty_propagation import rounded_up, study
 
     times, conditions, scene = course.conditions[:, 0], course.conditions[:, 1:], course.scene
     turning = turns(conditions[:, 0], scene.thresholds.slip_from_speed)
@@ -103,7 +97,7 @@ def _band_of(course, samples):
     _, first, which = np.unique(np.nan_to_num(conditions, nan=-1.0), axis=0, return_index=True, return_inverse=True)
     different = conditions[first]
     base = rounded_up(samples)
-    with Points(f"range of the slip of {course.name}", 2 * base) as points, as_usage_error(UncertaintyError):
+    with Points(f"range of the slip of {course.name}", 2 * base) as points:
         given = different, np.ones(len(different))
         bands = study(scene, base, SEED, shares=False, course=given, progress=points.update).slip_bands()
     low, high = (np.array([getattr(each, end) for each in bands])[which.ravel()] for end in ("low", "high"))
@@ -111,10 +105,10 @@ def _band_of(course, samples):
 
 
 def _plot_table(path, picture, over, quantities) -> None:
-    from bearing_sim.sweep.pictures import NotDrawable, draw
+    from bearing_sim.sweep.pictures import draw
     from bearing_sim.sweep.table import read_any_table, written_by_us
 
-    with as_usage_error(NotDrawable, ValueError), written_by_us(path):
+    with as_usage_error(ValueError), written_by_us(path):
         table = read_any_table(path)
         if over == "load":
             if quantities:
@@ -150,9 +144,9 @@ def _plot_over_load(path, picture, table) -> None:
     try:
         scene = scene_from_yaml(text) if text else None
     except SceneError as error:
-        click.echo(f"{path}: its scene is of another version, so there is no minimum load: {str(error).splitlines()[0]}", err=True)
+        note(f"{path}: its scene is of another version, so there is no minimum load: {str(error).splitlines()[0]}")
     if not text:
-        click.echo(f"{path}: a CSV table has no scene, so there is no minimum load; draw the .parquet", err=True)
+        note(f"{path}: a CSV table has no scene, so there is no minimum load; draw the .parquet")
     operating = scene.operating.shaft_speed * 30 / math.pi if scene is not None else math.nan
     results = {"cage_slip", life}
     varied = [axis["field"] for axis in table.about.get("axes", ()) if axis["field"] != _LOAD and len(axis["values"]) > 1]

@@ -1,59 +1,49 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Commands on recordings: ``info``, ``compare``, ``recover``, ``to-csv`` and ``to-parquet``."""
 
-import sys
-from collections.abc import Callable
+import math
 from datetime import UTC, datetime
 from pathlib import Path
 
 import click
+from click import IntRange
 
-from bearing_sim.cli.options import json_option
-from bearing_sim.cli.outputs import OutputFile, WritingCommand
-from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_rows, print_table, progress_bar, tell_use
-from bearing_sim.files.outputs import Output
+from bearing_sim.cli.options import PATH, flag, json_option, option
+from bearing_sim.cli.outputs import OutputFile
+from bearing_sim.cli.reporting import UsageError, attributes, note, print_rows, print_table, progress_bar, tell_use
+from bearing_sim.cli.results import Result, command
 
 _OWN = "bearing_sim"
 
 
-@click.command("info")
-@click.argument("recording", type=click.Path(path_type=Path), metavar="RUN.mcap")
-@click.option("--scene", "prints_scene", is_flag=True, help="Print only the recorded scene, as YAML.")
+@command("info")
+@click.argument("recording", type=PATH, metavar="RUN.mcap")
+@flag("--scene", "prints_scene", "Print only the recorded scene, as YAML.")
 @json_option
-def info(recording, prints_scene, as_json):
+def info(recording, prints_scene):
     """Show what RUN.mcap holds: topics, counts, time span, scene, versions, and whether the file is complete.
 
     RUN.mcap is any MCAP file, finished or not, or a bag's folder; or a bag in SQLite or of ROS 1, which has no checksums. The whole file is read
     and its checksums are verified: those of a recording of this version cover every byte, the scene too; what other files leave uncovered is
     said. Exit code 1 if a file is incomplete or damaged.
     """
-    from bearing_sim.recording.bag import RecordingError, mcap_files
+    from bearing_sim.recording.bag import mcap_files
     from bearing_sim.recording.recovery import contents, foreign_contents
 
-    with as_usage_error(RecordingError), as_file_error():
-        foreign = foreign_contents(recording)
-        files = [] if foreign is None else [foreign]
-        for file in mcap_files(recording) if foreign is None else ():
-            with progress_bar(f"reading {file.name}", 1.0) as progress:
-                files.append(contents(file, progress))
+    foreign = foreign_contents(recording)
+    files = [] if foreign is None else [foreign]
+    for file in mcap_files(recording) if foreign is None else ():
+        with progress_bar(f"reading {file.name}", 1.0) as progress:
+            files.append(contents(file, progress))
     own = files[0].metadata.get(_OWN, {})
     if prints_scene:
         if "scene" not in own:
             raise UsageError(f"{recording}: no scene in its metadata; it is not a recording of a bearing-sim run")
         click.echo(own["scene"], nl=False)
-        return
-    if as_json:
-        print_json(
-            {
-                "recording": str(recording),
-                "sound": all(file.is_sound for file in files),
-                "files": [_file_report(file) for file in files],
-                **_origin(own),
-            }
-        )
-    else:
-        _print_info(recording, files, own)
-    sys.exit(0 if all(file.is_sound for file in files) else 1)
+        return None
+    is_sound = all(file.is_sound for file in files)
+    report = {"recording": str(recording), "sound": is_sound, "files": [_file_report(file) for file in files], **_origin(own)}
+    return Result(report, lambda: _print_info(recording, files, own), code=int(not is_sound))
 
 
 def _origin(own) -> dict:
@@ -63,26 +53,16 @@ def _origin(own) -> dict:
     }
 
 
+_FILE = "size profile library ends damaged damage first_ns last_ns seconds out_of_order attachments notes undecodable".split()
+
+
 def _file_report(file) -> dict:
-    return {
+    return attributes(file, *_FILE) | {
         "file": str(file.path),
-        "size": file.size,
-        "profile": file.profile,
-        "library": file.library,
         "finished": file.is_finished,
-        "ends": file.ends,
-        "damaged": file.damaged,
-        "damage": file.damage,
         "checksums": _coverage(file),
-        "first_ns": file.first_ns,
-        "last_ns": file.last_ns,
-        "seconds": file.seconds,
         "messages": file.messages.total(),
-        "out_of_order": file.out_of_order,
-        "attachments": file.attachments,
         "metadata": list(file.metadata),
-        "notes": file.notes,
-        "undecodable": file.undecodable,
         "topics": {topic: {"type": kind, "messages": file.messages[topic]} for topic, kind in sorted(file.types.items())},
     }
 
@@ -146,19 +126,19 @@ def _trouble(file) -> str:
     return "; ".join(troubles) + f" (bearing-sim recover {file.path} -o GOOD.mcap)"
 
 
-@click.command("compare")
-@click.argument("first", type=click.Path(path_type=Path), metavar="RUN.mcap")
-@click.argument("second", type=click.Path(path_type=Path), metavar="AGAIN.mcap")
-@click.option(
+@command("compare")
+@click.argument("first", type=PATH, metavar="RUN.mcap")
+@click.argument("second", type=PATH, metavar="AGAIN.mcap")
+@option(
     "--tolerance",
     "tolerances",
+    "Accepted difference relative to the largest magnitude of a quantity, for all topics or for one [default: 1e-6].",
     multiple=True,
     metavar="NUMBER | TOPIC=NUMBER",
-    help="Accepted difference relative to the largest magnitude of a quantity, for all topics or for one [default: 1e-6].",
 )
-@click.option("--clock", "by_clock", is_flag=True, help="Match messages by the clock, for runs that began at different moments of one log.")
+@flag("--clock", "by_clock", "Match messages by the clock, for runs that began at different moments of one log.")
 @json_option
-def compare(first, second, tolerances, by_clock, as_json):
+def compare(first, second, tolerances, by_clock):
     """Compare two recordings topic by topic; messages are matched by run time.
 
     Two runs of one command are therefore compared from their beginnings on, whenever they were made. Recordings that do not say when their run
@@ -167,23 +147,19 @@ def compare(first, second, tolerances, by_clock, as_json):
     A topic agrees if both recordings have the same messages and all their numbers agree within the tolerance. Exit code 0 if all topics
     agree, 1 otherwise. Diagnostics are text and are not compared.
     """
-    from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.compare import compare
 
     general, own = _tolerances(tolerances)
-    with as_usage_error(RecordingError), as_file_error():
-        differences, skipped = compare(first, second, general, own, by_clock, lambda text: click.echo(text, err=True))
+    differences, skipped = compare(first, second, general, own, by_clock, lambda text: note(text))
     if not differences:
         raise UsageError(f"{first} and {second} have no messages to compare")
     unknown = [topic for topic in own if f"/{topic.lstrip('/')}" not in {difference.topic for difference in differences}]
     if unknown:
         raise UsageError(f"--tolerance {unknown[0]}=...: unknown topic; the topics are {', '.join(difference.topic for difference in differences)}")
     agree = all(difference.agrees for difference in differences)
-    if as_json:
-        print_json({"agree": agree, "not_compared": skipped, "topics": [_difference_report(difference) for difference in differences]})
-    else:
-        _print_comparison(first, second, differences, skipped, agree)
-    sys.exit(0 if agree else 1)
+    report = {"agree": agree, "not_compared": skipped, "topics": [_difference_report(difference) for difference in differences]}
+    remarks = [*([f"not compared: {', '.join(skipped)}"] if skipped else []), f"the recordings {'agree' if agree else 'differ'}"]
+    return Result(report, lambda: _print_comparison(first, second, differences), remarks=remarks, code=int(not agree))
 
 
 def _tolerances(given) -> tuple[float, dict[str, float]]:
@@ -221,7 +197,7 @@ def _difference_report(difference) -> dict:
     }
 
 
-def _print_comparison(first, second, differences, skipped, agree) -> None:
+def _print_comparison(first, second, differences) -> None:
     rows, start = [], min(difference.first_ns for difference in differences)
     for difference in differences:
         found = _difference_report(difference)
@@ -233,96 +209,70 @@ def _print_comparison(first, second, differences, skipped, agree) -> None:
         rows.append((difference.topic, *counts, *numbers, f"{difference.tolerance:g}", *where, verdict))
     columns = ("topic", "messages", "alone", "differing", "largest", "over magnitude", "tolerance", "in", "after [s]", "")
     print_rows(f"{first} against {second}", columns, rows, words=("topic", "in", ""), width=170)
-    if skipped:
-        click.echo(f"not compared: {', '.join(skipped)}")
-    click.echo("the recordings agree" if agree else "the recordings differ")
 
 
-@click.command("recover", cls=WritingCommand)
+@command("recover")
 @click.argument("broken", type=click.Path(path_type=Path, dir_okay=False), metavar="BROKEN.mcap")
-@click.option("-o", "--out", required=True, type=OutputFile(), metavar="GOOD.mcap", help="Recovered file.")
+@option("-o", "--out", "Recovered file.", OutputFile(), required=True, metavar="GOOD.mcap")
 @json_option
-def recover(broken, out, as_json):
+def recover(broken, out):
     """Recover everything readable from BROKEN.mcap into GOOD.mcap: a file of a killed writer (RUN.mcap.active), truncated or damaged.
 
     Works with any MCAP file. Messages keep their bytes, times and order; BROKEN.mcap is not changed.
     """
-    from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.recovery import recover
 
-    with as_usage_error(RecordingError), as_file_error(), progress_bar(f"recovering {broken.name}", 1.0) as progress:
+    with progress_bar(f"recovering {broken.name}", 1.0) as progress:
         found = recover(broken, out, progress)
         size = out.path.stat().st_size
     lost = "nothing known to be missing" if found.is_sound else found.ends or "parts of it were damaged"
-    if as_json:
-        report = {"broken": str(broken), "out": str(out), "broken_size": found.size, "size": size, "seconds": found.seconds}
-        report |= {"messages": found.messages.total(), "messages_by_topic": dict(found.messages), "metadata": list(found.metadata)}
-        print_json({**report, "damaged": found.damaged, "damage": found.damage, "was_finished": found.is_finished, "ends": found.ends})
-        return
+    report = {"broken": str(broken), "out": str(out), "broken_size": found.size, "size": size, "was_finished": found.is_finished}
+    report |= {"messages": found.messages.total(), "messages_by_topic": dict(found.messages), "metadata": list(found.metadata)}
+    report |= attributes(found, "seconds", "damaged", "damage", "ends")
     rows = [
         ("the file", f"{found.size / 1e6:.4g} MB; {lost}"),
         ("damaged parts", "; ".join([str(found.damaged), *found.damage[:3], *(["..."] if found.damaged > 3 else [])])),
         ("saved", f"{found.messages.total()} messages over {found.seconds:.6g} s, {len(found.metadata)} metadata records"),
         *((topic, f"{count} messages") for topic, count in sorted(found.messages.items())),
     ]
-    print_table(f"{broken} recovered into {out}", rows)
+    return Result(report, lambda: print_table(f"{broken} recovered into {out}", rows))
 
 
-def with_excerpt(command: Callable) -> Callable:
-    """Add the options that select the part of a recording to export."""
-    for option in (
-        json_option,
-        click.option("--to", "last", type=float, metavar="S", help="Last simulated time [default: the end]."),
-        click.option("--from", "first", type=float, metavar="S", help="First simulated time [default: the beginning]."),
-        click.option("--every", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="Export one of N samples."),
-        click.option("--no-rollers", is_flag=True, help="Omit the observables of single rollers."),
-        click.option("--column", "columns", multiple=True, metavar="NAME", help="Export this observable; can be repeated [default: all]."),
-        click.argument("recording", type=click.Path(path_type=Path), metavar="RUN.mcap"),
-    ):
-        command = option(command)
-    return command
+def _exporting(kind: str, detail: str) -> click.Command:
+    """Return the command that exports a recording as a table of a kind, ``csv`` or ``parquet``."""
+    name = {"csv": "a CSV", "parquet": "a Parquet"}[kind]
 
+    @command(f"to-{kind}", help=_EXPORT.format(name=name, detail=detail))
+    @click.argument("recording", type=PATH, metavar="RUN.mcap")
+    @option("--column", "columns", "Export this observable; can be repeated [default: all].", multiple=True, metavar="NAME")
+    @flag("--no-rollers", "Omit the observables of single rollers.")
+    @option("--every", "Export one of N samples.", IntRange(min=1), default=1, metavar="N")
+    @option("--from", "first", "First simulated time [default: the beginning].", float, metavar="S")
+    @option("--to", "last", "Last simulated time [default: the end].", float, metavar="S")
+    @json_option
+    @option("-o", "--out", "The table.", OutputFile(), required=True, metavar=f"RUN.{kind}")
+    def export(recording, out, columns, no_rollers, every, first, last):
+        from bearing_sim.recording import table
+        from bearing_sim.recording.reader import Recording
 
-def export(kind: str, recording: Path, out: Output, columns, no_rollers, every, first, last, as_json) -> None:
-    """Export a recording as a table of a kind, ``csv`` or ``parquet``, and report it."""
-    from bearing_sim.recording.bag import RecordingError
-    from bearing_sim.recording.reader import Recording
-    from bearing_sim.recording.table import Excerpt, TableError, write_csv, write_parquet
-
-    write = {"csv": write_csv, "parquet": write_parquet}[kind]
-    infinity = float("inf")
-    excerpt = Excerpt(tuple(columns), not no_rollers, every, -infinity if first is None else first, infinity if last is None else last)
-    with as_usage_error(RecordingError, TableError), as_file_error():
+        write = {"csv": table.write_csv, "parquet": table.write_parquet}[kind]
+        ends = -math.inf if first is None else first, math.inf if last is None else last
+        excerpt = table.Excerpt(tuple(columns), not no_rollers, every, *ends)
         source = Recording(recording, allow_partial=True)
         with progress_bar(f"writing {out.path.name}", source.duration) as progress, out.draft() as draft:
             rows = write(source, draft, excerpt, progress)
         size = out.path.stat().st_size
-    tell_use(source.tally, recording)
-    if as_json:
-        print_json({"recording": str(recording), "out": str(out), "rows": rows, "size": size, "read": source.tally.report()})
-    else:
-        click.echo(f"{out}: {rows} samples, {size / 1e6:.4g} MB")
+        tell_use(source.tally, recording)
+        report = {"recording": str(recording), "out": str(out), "rows": rows, "size": size, "read": source.tally.report()}
+        return Result(report, lambda: click.echo(f"{out}: {rows} samples, {size / 1e6:.4g} MB"))
+
+    return export
 
 
-@click.command("to-csv", cls=WritingCommand)
-@with_excerpt
-@click.option("-o", "--out", required=True, type=OutputFile(), metavar="RUN.csv", help="The table.")
-def to_csv(recording, out, columns, no_rollers, every, first, last, as_json):
-    """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a CSV table.
+_EXPORT = """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as {name} table.
 
-    One row per sample, one column per observable and characteristic frequency, or per roller for observables of rollers (inner_load_07).
-    Units are in the header, numbers are in SI.
-    """
-    export("csv", recording, out, columns, no_rollers, every, first, last, as_json)
-
-
-@click.command("to-parquet", cls=WritingCommand)
-@with_excerpt
-@click.option("-o", "--out", required=True, type=OutputFile(), metavar="RUN.parquet", help="The table.")
-def to_parquet(recording, out, columns, no_rollers, every, first, last, as_json):
-    """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a Parquet table.
-
-    One row per sample, one column per observable and characteristic frequency, or per roller for observables of rollers (inner_load_07).
-    Units and meanings are in the metadata of the columns, the scene in that of the file; numbers are in SI.
-    """
-    export("parquet", recording, out, columns, no_rollers, every, first, last, as_json)
+One row per sample, one column per observable and characteristic frequency, or per roller for observables of rollers (inner_load_07).
+{detail} numbers are in SI.
+"""
+to_csv = _exporting("csv", "Units are in the header,")
+to_parquet = _exporting("parquet", "Units and meanings are in the metadata of the columns, the scene in that of the file;")

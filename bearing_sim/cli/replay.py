@@ -7,17 +7,20 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import click
+from click import FloatRange
 
 from bearing_sim.cli.estimation import band_numbers, band_rows, response_with_progress
-from bearing_sim.cli.options import allow_outside_option, channel_sources, json_option, log_options, set_option, verbose_option
-from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
+from bearing_sim.cli.options import PATH, allow_outside_option, channel_sources, flag, json_option, log_options, option, set_option, verbose_option
+from bearing_sim.cli.outputs import OutputFile, OutputRecording, recording_into
 from bearing_sim.cli.reporting import (
     FailedRun,
     UsageError,
     announce_compilation,
-    as_file_error,
+    as_ending,
     as_usage_error,
+    attributes,
     command_line,
+    note,
     print_json,
     print_table,
     progress_bar,
@@ -29,27 +32,26 @@ from bearing_sim.cli.reporting import (
     warn_of_scene,
     warnings_report,
 )
+from bearing_sim.cli.results import command
 from bearing_sim.scene.display import hours
 
 
-@click.command("replay", cls=WritingCommand)
-@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="IN.mcap...")
+@command("replay")
+@click.argument("logs", type=PATH, nargs=-1, required=True, metavar="IN.mcap...")
 @allow_outside_option
-@click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file.")
-@click.option(
-    "--from-recording", is_flag=True, help="Compute a recorded run again from its recording alone: scene, start and inputs, sample by sample."
-)
+@option("--scene", "scene_name", "Bundled scene or YAML file.", metavar="SCENE")
+@flag("--from-recording", "Compute a recorded run again from its recording alone: scene, start and inputs, sample by sample.")
 @set_option
-@click.option("-o", "--out", type=OutputRecording(), metavar="OUT.mcap", help="Record inputs and outputs [default: no recording].")
-@click.option("--rrd", type=OutputFile(), metavar="RUN.rrd", help="Also write a view for rerun.")
-@click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Outputs per simulated second [default: one per stamp].")
-@click.option(
+@option("-o", "--out", "Record inputs and outputs [default: no recording].", OutputRecording(), metavar="OUT.mcap")
+@option("--rrd", "Also write a view for rerun.", OutputFile(), metavar="RUN.rrd")
+@option("--rate", "Outputs per simulated second [default: one per stamp].", FloatRange(min=0, min_open=True), metavar="HZ")
+@option(
     "--state-file",
-    type=click.Path(path_type=Path),
+    "Count the log for the bearing whose state is stored there, but no instant twice; without it no state is touched.",
+    PATH,
     metavar="STATE.json",
-    help="Count the log for the bearing whose state is stored there, but no instant twice; without it no state is touched.",
 )
-@click.option("--serial", default="", metavar="NUMBER", help="Serial number of that bearing; a state of another one is refused.")
+@option("--serial", "Serial number of that bearing; a state of another one is refused.", default="", metavar="NUMBER")
 @log_options
 @verbose_option
 @json_option
@@ -91,18 +93,18 @@ def replay(
         return
     import numpy as np
 
-    from bearing_sim.inputs.log import InputLogError, read_input_log
+    from bearing_sim.inputs.log import read_input_log
     from bearing_sim.inputs.profile import judge
     from bearing_sim.recording.writer import COMMAND, McapSink
     from bearing_sim.runtime.replay import replay
-    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.scene.loader import load_scene
     from bearing_sim.simulation import Inputs, IntegrationError, Simulation
     from bearing_sim.stored_state.keeper import RECORD, StateKeeper
     from bearing_sim.stored_state.state_file import checked_serial
     from bearing_sim.sweep.grading import graded
 
     names, constants = channel_sources(**channels)
-    with as_usage_error(SceneError, InputLogError), as_file_error():
+    with as_ending():
         for log in logs:
             _require_one_log(log, scene_name)
         scene = load_scene(scene_name, overrides)
@@ -142,14 +144,13 @@ def replay(
             result = replay(scene, course, recording, watchers, rate, progress, keeper=keeper, response=response, **choice)
     warnings = graded(scene, result.warnings, result.worst_samples, ("slip", "life"))
     for event in keeper.news(0.0) + keeper.events(0.0) if keeper is not None else []:
-        click.echo(f"{event.level.name.lower().replace('ok', 'note')}: {event.text}", err=True)
+        note(f"{event.level.name.lower().replace('ok', 'note')}: {event.text}")
     jump = result.jump() if scene.level != "steady" else None  # which has no motion of its own: its slip follows the inputs
     if jump is not None:
         finer = float(f"{10.0 / jump.interval:.1g}")
-        click.echo(
+        note(
             f"note: the outputs are coarser than the motion: cage slip changes by {100 * jump.slip:.3g} points within the {jump.interval:.3g} s "
-            f"before {jump.time:.6g} s, drawn as a straight line; take finer outputs with --rate, such as --rate {finer:g}",
-            err=True,
+            f"before {jump.time:.6g} s, drawn as a straight line; take finer outputs with --rate, such as --rate {finer:g}"
         )
     if as_json:
         stored = {} if keeper is None else {"state": keeper.summary()}
@@ -203,6 +204,22 @@ def _choice(scene, course) -> dict:
     return {"model": partial(Simulation, table=table), "laws": laws_of_table(scene, ends)}
 
 
+_KEPT = (
+    "damage",
+    "sim_seconds",
+    "gap_seconds",
+    "wall_seconds",
+    "cpu_seconds",
+    "real_time_factor",
+    "steps",
+    "rejected_steps",
+    "non_finite_steps",
+    "failed_ticks",
+    "samples",
+    "given_up",
+)
+
+
 def _report(result, course, recorded, scene, out) -> dict:
     from bearing_sim.inputs.log import anomalies
     from bearing_sim.model.plausibility import minimum_load
@@ -222,7 +239,6 @@ def _report(result, course, recorded, scene, out) -> dict:
         "life_method": scene.life.method,
         "life_hours": use.life_hours,
         "least_rating_life_hours": result.least_rating_life,
-        "damage": result.damage,
         **band_numbers(result.band_statistics()),
         "turning_seconds": use.turning_seconds,
         "skid_seconds": use.skid_seconds,
@@ -230,21 +246,11 @@ def _report(result, course, recorded, scene, out) -> dict:
         "seconds_below_minimum_load": below,
         **unknown_report(course),
         "life_and_damage_are": "at most, at least" if course.verdict else "as given",
-        "sim_seconds": result.sim_seconds,
         "gaps": len(course.gaps),
-        "gap_seconds": result.gap_seconds,
-        "wall_seconds": result.wall_seconds,
-        "cpu_seconds": result.cpu_seconds,
-        "real_time_factor": result.real_time_factor,
-        "steps": result.steps,
-        "rejected_steps": result.rejected_steps,
-        "non_finite_steps": result.non_finite_steps,
-        "failed_ticks": result.failed_ticks,
-        "samples": result.samples,
         "inputs_anomalies": {channel: anomalies(series)._asdict() for channel, series in recorded.series.items()},
         "inputs_stamped_by": {channel: series.stamped_by for channel, series in recorded.series.items()},
         "events": dict(result.events),
-        "given_up": result.given_up,
+        **attributes(result, *_KEPT),
     }
 
 
@@ -313,14 +319,13 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
     out : the `bearing_sim.files.outputs.Output` of the new recording, or None.
     as_json : whether to print JSON.
     """
-    from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.provenance import git_hash, package_version
     from bearing_sim.recording.reader import Recording
     from bearing_sim.recording.writer import McapSink
     from bearing_sim.runtime import reproduction
     from bearing_sim.stored_state.keeper import RECORD
 
-    with as_usage_error(RecordingError, ValueError), as_file_error(), ExitStack() as stack:
+    with as_usage_error(ValueError), ExitStack() as stack:
         recording = Recording(path, allow_partial=True)
         sink = _Nowhere()
         if out is not None:

@@ -5,21 +5,17 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.outputs import OutputFile, WritingCommand, default_output
-from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, tell_use
+from bearing_sim.cli.options import option
+from bearing_sim.cli.outputs import OutputFile, default_output
+from bearing_sim.cli.reporting import UsageError, tell_use
+from bearing_sim.cli.results import command
 
 _HTML = ".html", ".htm"
 
 
-@click.command("report", cls=WritingCommand)
+@command("report")
 @click.argument("source", metavar="RESULT")
-@click.option(
-    "-o",
-    "--out",
-    type=OutputFile(),
-    metavar="PATH.html",
-    help="The page [default: RESULT.html, or report.html in a folder].",
-)
+@option("-o", "--out", "The page [default: RESULT.html, or report.html in a folder].", OutputFile(), metavar="PATH.html")
 def report(source, out):
     """Make one page of RESULT: scene and bearing, tables, pictures, warnings, where it comes from, and the command that made it.
 
@@ -29,12 +25,10 @@ def report(source, out):
     """
     if out is not None and out.path.suffix.lower() not in _HTML:
         raise UsageError(f"-o {out}: expected a name that ends in .html")
-    from bearing_sim.studies.page import NoResults
     from bearing_sim.studies.report_page import page_of
 
     result = Path(source)
     out = out or default_output(result / "report.html" if result.is_dir() else result.with_suffix(".html"))
-    with as_usage_error(NoResults), as_file_error():
-        page = page_of(result, tell_use)
-        out.write_text(page)
+    page = page_of(result, tell_use)
+    out.write_text(page)
     click.echo(f"{out}: {len(page.encode()) / 1e6:.1f} MB")

@@ -109,14 +109,28 @@ def as_failed_run(*kinds: type[Exception]) -> Iterator[None]:
         raise FailedRun(str(error)) from None
 
 
+_FAILURES = ("IntegrationError", "NoWebViewer")  # errors of the package that no other argument or input would have avoided
+_DISK_FAILED = (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)
+
+
 @contextmanager
-def as_file_error() -> Iterator[None]:
-    """Convert an OSError: a disk that fails or is full to a `FailedRun`, any other, such as a file that cannot be opened, to a `UsageError`."""
+def as_ending() -> Iterator[None]:
+    """Convert the errors that the package raises on purpose, and OSError, to an `Ending`: all others are faults of the program.
+
+    A run that failed, and a disk that fails or is full, end with a `FailedRun`, anything else, such as a file that cannot be opened or a scene that
+    is not valid, with a `UsageError`.
+    """
     try:
         yield
+    except (click.ClickException, BrokenPipeError):
+        raise
     except OSError as error:
-        failed = error.errno in (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)
-        raise (FailedRun if failed else UsageError)(str(error)) from None
+        raise (FailedRun if error.errno in _DISK_FAILED else UsageError)(str(error)) from None
+    except Exception as error:
+        kind = type(error)
+        if not kind.__module__.startswith("bearing_sim.") or kind.__name__.startswith("_"):
+            raise
+        raise (FailedRun if kind.__name__ in _FAILURES else UsageError)(str(error)) from None
 
 
 @contextmanager
@@ -143,6 +157,13 @@ def exit_on_sigterm() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def scene_of(name: str, overrides: Sequence[str], level: str | None = None):
+    """Return a scene by name or file with the overrides of the command line, at another level if one is given."""
+    from bearing_sim.scene.loader import load_scene
+
+    return load_scene(name, [*overrides, *([f"level={level}"] if level else [])])
 
 
 def judged(log, scene, longest_gap: float | None = None):
@@ -221,9 +242,9 @@ def announce_compilation(scene=None, with_states: bool = False) -> None:
     from bearing_sim.runtime.precompilation import announcement, builds, compile_for
 
     if scene is not None:
-        compile_for(scene, lambda line: click.echo(line, err=True), with_states)
+        compile_for(scene, lambda line: note(line), with_states)
     elif not any(CACHE_FOLDER.rglob("*.code")):
-        click.echo(f"{announcement(builds(('steady', 'slip', 'planar')))}, each when it is first needed", err=True)
+        note(f"{announcement(builds(('steady', 'slip', 'planar')))}, each when it is first needed")
 
 
 def suggest_level(scene) -> None:
@@ -231,7 +252,7 @@ def suggest_level(scene) -> None:
     from bearing_sim.scene.fidelity import hint
 
     if line := hint(scene):
-        click.echo(line, err=True)
+        note(line)
 
 
 def refuse_idle_temperature(scene, fields: Iterable[str]) -> None:
@@ -268,10 +289,15 @@ def _idle_temperature(scene) -> str:
     return f"no oil flows through (supply {scene.lubricant.supply.law}), and heat.law network computes how warm it gets"
 
 
+def note(line: str) -> None:
+    """Print a line on stderr: what a person wants to know, and what is no result."""
+    click.echo(line, err=True)
+
+
 def warn(lines: Iterable[str]) -> None:
     """Print warnings on stderr, one on a line."""
     for line in lines:
-        click.echo(f"warning: {line}", err=True)
+        note(f"warning: {line}")
 
 
 def warn_of_scene(scene, before_results: bool = True) -> None:
@@ -310,7 +336,7 @@ def warn_of_limits(scene, exceedances: Iterable, verbose: bool = False) -> None:
     for each in exceedances:
         if each.grade != Grade.WARNING:
             if verbose:
-                click.echo(f"note: {each.note}", err=True)
+                note(f"note: {each.note}")
         elif each.law.name not in told and each.text not in implausible:
             warn([each.text])
 
@@ -320,6 +346,11 @@ def warnings_report(scene, exceedances: Iterable) -> dict[str, list]:
     from bearing_sim.model.plausibility import plausibility
 
     return {"warnings": [each.report() for each in exceedances], "implausible": plausibility(scene)}
+
+
+def attributes(source, *names: str) -> dict:
+    """Return attributes of an object by their names, for JSON."""
+    return {name: getattr(source, name) for name in names}
 
 
 def print_json(report: Mapping) -> None:
@@ -519,7 +550,7 @@ def _progress_lines(text: str, total: float) -> Iterator[Callable[[float], None]
     def tell() -> None:
         while not ended.wait(_LINE_EVERY):
             if done[0] < total:  # what follows, such as writing, has no measure
-                click.echo(f"{text}: {100.0 * done[0] / total:.0f} % after {time.monotonic() - begun:.0f} s", err=True)
+                note(f"{text}: {100.0 * done[0] / total:.0f} % after {time.monotonic() - begun:.0f} s")
 
     def show(now: float) -> None:
         done[0] = now

@@ -7,18 +7,15 @@ import time
 from contextlib import ExitStack
 from typing import NamedTuple
 
-import click
+from click import Choice, FloatRange, IntRange
 
 from bearing_sim.cli.estimation import estimation_with_progress, live_band_numbers, live_band_rows
-from bearing_sim.cli.options import json_option, scene_argument, set_option, verbose_option
-from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
+from bearing_sim.cli.options import json_option, option, scene_options, verbose_option
+from bearing_sim.cli.outputs import OutputFile, OutputRecording, recording_into
 from bearing_sim.cli.reporting import (
     Unsettled,
     UsageError,
     announce_compilation,
-    as_failed_run,
-    as_file_error,
-    as_usage_error,
     command_line,
     print_groups,
     print_json,
@@ -30,6 +27,7 @@ from bearing_sim.cli.reporting import (
     warn_of_scene,
     warnings_report,
 )
+from bearing_sim.cli.results import command
 from bearing_sim.scene.display import number
 
 _BLOCK = 10  # samples
@@ -38,24 +36,21 @@ _RATE = 1000.0  # [Hz] of a short run
 _LEAST_SAMPLES = 100  # of the shortest run that can be judged
 
 
-@click.command("run", cls=WritingCommand)
-@scene_argument
-@set_option
-@click.option("--duration", metavar="S", help="Simulated time, such as 0.5 or '300 ms' [default: until slip and life rest, at least 0.5 s].")
-@click.option("--at-most", metavar="S", help="End a run without --duration here [default: 1000 s, or 2000 cage turns if these take longer].")
-@click.option("--level", metavar="LEVEL", help="Level of fidelity, instead of the scene's.")
-@click.option("--start", type=click.Choice(["rolling", "skid"]), default="rolling", show_default=True, help="How the cage begins.")
-@click.option(
+@command("run")
+@scene_options
+@option("--duration", "Simulated time, such as 0.5 or '300 ms' [default: until slip and life rest, at least 0.5 s].", metavar="S")
+@option("--at-most", "End a run without --duration here [default: 1000 s, or 2000 cage turns if these take longer].", metavar="S")
+@option("--level", "Level of fidelity, instead of the scene's.", metavar="LEVEL")
+@option("--start", "How the cage begins.", Choice(["rolling", "skid"]), default="rolling")
+@option(
     "--rate",
-    type=click.FloatRange(min=0, min_open=True),
+    "Samples per simulated second [default: 1000, fewer if the run takes more than 10 s at least].",
+    FloatRange(min=0, min_open=True),
     metavar="HZ",
-    help="Samples per simulated second [default: 1000, fewer if the run takes more than 10 s at least].",
 )
-@click.option("-o", "--out", type=OutputRecording(), metavar="RUN.mcap", help="Record the run.")
-@click.option("--rrd", type=OutputFile(), metavar="RUN.rrd", help="Also write a view for rerun.")
-@click.option(
-    "--uncertainty", type=click.IntRange(2, 65536), metavar="N", help="Also compute ranges of slip and life from N samples of uncertain fields."
-)
+@option("-o", "--out", "Record the run.", OutputRecording(), metavar="RUN.mcap")
+@option("--rrd", "Also write a view for rerun.", OutputFile(), metavar="RUN.rrd")
+@option("--uncertainty", "Also compute ranges of slip and life from N samples of uncertain fields.", IntRange(2, 65536), metavar="N")
 @verbose_option
 @json_option
 def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, uncertainty, verbose, as_json):
@@ -74,8 +69,8 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
     from bearing_sim.estimation.two_states import laws_of_table
     from bearing_sim.messages.events import validity_event
     from bearing_sim.model.validity import outside
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.simulation import IntegrationError, Simulation, start_sample
+    from bearing_sim.scene.loader import load_scene
+    from bearing_sim.simulation import Simulation, start_sample
     from bearing_sim.sweep.grading import graded
     from bearing_sim.sweep.states import SKID, other_states, skid_start, state_rows
     from bearing_sim.sweep.thermal import begin_in_equilibrium
@@ -84,14 +79,13 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
         raise UsageError("--at-most is for a run without --duration; give one of them")
     seconds = seconds_of(duration) if duration is not None else None
     most = seconds_of(at_most, "--at-most") if at_most is not None else None
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
+    scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
     refuse_idle_temperature(scene, overrides)
     suggest_level(scene)
     warn_of_scene(scene)
     plan = _plan(scene, seconds, most, rate)
     estimation, corrected = estimation_with_progress(scene), _corrected_table(scene)
-    with as_file_error(), as_failed_run(IntegrationError), ExitStack() as stack:
+    with ExitStack() as stack:
         sinks = _sinks(stack, scene, seconds, plan.interval, out, rrd)
         until = "" if seconds else f" until it has settled, at most {plan.longest:.4g} s"
         progress = stack.enter_context(progress_bar(f"running {scene.name}{until}", plan.longest))

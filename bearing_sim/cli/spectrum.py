@@ -3,56 +3,55 @@
 
 import math
 import re
-from pathlib import Path
 
 import click
 
 from bearing_sim.cli.options import (
+    PATH,
     channel_sources,
     executor_options,
     json_option,
     log_options,
+    option,
     picture_option,
     scene_argument,
     set_option,
     table_option,
 )
-from bearing_sim.cli.outputs import WritingCommand
 from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
-    as_file_error,
-    as_usage_error,
-    command_line,
     judged,
-    print_json,
+    note,
     print_rows,
     print_table,
     refuse_idle_temperature,
+    scene_of,
     seconds_of,
     warn,
     warn_of_scene,
 )
+from bearing_sim.cli.results import Result, command, picture_into, resumed, signed
 
 _MOST_SHOWN = 20
 _EQUILIBRIUM = "of thermal equilibrium at each point; while a bearing warms up, its oil is thicker and its life longer (bearing-sim replay)"
 _MOST_CLASSES = 1000  # each that a log has time in is a run
 
 
-@click.command("spectrum", cls=WritingCommand)
+@command("spectrum")
 @scene_argument
-@click.argument("data", type=click.Path(path_type=Path), metavar="TABLE.csv|LOG.mcap")
+@click.argument("data", type=PATH, metavar="TABLE.csv|LOG.mcap")
 @set_option
-@click.option("--level", metavar="LEVEL", help="Level of fidelity, instead of the scene's.")
-@click.option("--duration", default="0.5 s", show_default=True, metavar="S", help="Shortest simulated time per point; extended until it has settled.")
-@click.option("--classes", default="8x8x2", show_default=True, metavar="NxNxN", help="Classes of speed, load and oil temperature of a log.")
+@option("--level", "Level of fidelity, instead of the scene's.", metavar="LEVEL")
+@option("--duration", "Shortest simulated time per point; extended until it has settled.", default="0.5 s", metavar="S")
+@option("--classes", "Classes of speed, load and oil temperature of a log.", default="8x8x2", metavar="NxNxN")
 @log_options
 @table_option("spectrum_life.parquet", "Points; also written: PATH.csv and")
 @executor_options
 @picture_option("Draw shares of time, loads and shares of damage")
 @json_option
-def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamps, longest_gap, out, workers, dask, picture, as_json, **channels):
+def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamps, longest_gap, out, workers, dask, picture, **channels):
     """Compute the life of SCENE under a load spectrum, with slip and share of damage at each point.
 
     TABLE.csv has a line for each operating point: its share of the time, or its hours, shaft speed and radial load and, optionally, axial
@@ -65,51 +64,39 @@ def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamp
 
     Damage adds up by Palmgren and Miner. If a point has no result, no life is given. An interrupted command resumes.
     """
-    from bearing_sim.inputs.log import InputLogError
-    from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.studies import spectrum as studied
     from bearing_sim.studies.fleet_logs import is_text
-    from bearing_sim.sweep.conditions import PointError, read_spectrum
-    from bearing_sim.sweep.table import require_same_study, study_digest, write_table
-    from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
+    from bearing_sim.sweep.conditions import read_spectrum
+    from bearing_sim.sweep.table import study_digest, write_table
 
     seconds, counts = seconds_of(duration), _counts(classes)
     names, constants = channel_sources(**channels)
     profile = None
-    with as_usage_error(SceneError, PointError, InputLogError), as_file_error():
-        scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
-        if is_text(data):
-            if names or constants:
-                raise UsageError(f"{data} is a table of operating points; --speed, --load and the other options of logs do not go with it")
-            found = read_spectrum(data)
-            if any(point.oil_temperature is not None for point in found.points):
-                refuse_idle_temperature(scene, ["lubricant.temperature"])
-        else:
-            from bearing_sim.inputs.log import read_input_log
+    scene = scene_of(scene_name, overrides, level)
+    if is_text(data):
+        if names or constants:
+            raise UsageError(f"{data} is a table of operating points; --speed, --load and the other options of logs do not go with it")
+        found = read_spectrum(data)
+        if any(point.oil_temperature is not None for point in found.points):
+            refuse_idle_temperature(scene, ["lubricant.temperature"])
+    else:
+        from bearing_sim.inputs.log import read_input_log
 
-            profile = judged(read_input_log([data], names, joint, stamps, constants=constants), scene, longest_gap)
-            found = studied.spectrum_of_log(profile, scene.lubricant.temperature, counts)
+        profile = judged(read_input_log([data], names, joint, stamps, constants=constants), scene, longest_gap)
+        found = studied.spectrum_of_log(profile, scene.lubricant.temperature, counts)
     warn_of_scene(scene)
     warn(found.notes)
     announce_compilation(scene)
-    points = Points("spectrum", len(found.points))
-    with as_file_error(), as_usage_error(ClusterError, JournalInUse):
-        study = study_digest("spectrum", scene, found, seconds)
-        require_same_study(out, study)
-        with Journal(out.path.with_suffix(".journal")) as journal, points:
-            result = studied.evaluate(scene, found, journal, seconds, workers, dask, points.update)
-        result.table.about.update(command=command_line(), study=study, source=str(data))
-        files = write_table(out.path, result.table)
-        if picture is not None:
-            with picture.draft() as draft:
-                studied.draw(draft, result.table)
-            files = (*files, picture.path)
+    points, study = Points("spectrum", len(found.points)), study_digest("spectrum", scene, found, seconds)
+    with resumed(out, study, points) as journal:
+        result = studied.evaluate(scene, found, journal, seconds, workers, dask, points.update)
+    result.table.about.update(signed(result.table, study).about, source=str(data))
+    files = write_table(out.path, result.table)
+    if picture is not None:
+        picture_into(picture, studied.draw, result.table)
+        files = (*files, picture.path)
     report = _report(scene, data, profile, result, files)
-    if as_json:
-        print_json(report | {"points": result.table.rows})
-    else:
-        _print(scene, report, result)
-    warn(report["warnings"])
+    return Result(report | {"points": result.table.rows}, lambda: _print(scene, report, result), warnings=report["warnings"])
 
 
 def _counts(classes: str) -> tuple[int, int, int]:
@@ -180,7 +167,7 @@ def _print(scene, report, result) -> None:
         click.echo(f"... and {len(rows) - _MOST_SHOWN} more points; all are in the files")
     for row in rows:
         if row["reason"]:
-            click.echo(f"{row['status']} at {number(row['shaft_speed'], 4)} rpm, {force(row['radial_load'])}: {row['reason']}", err=True)
+            note(f"{row['status']} at {number(row['shaft_speed'], 4)} rpm, {force(row['radial_load'])}: {row['reason']}")
 
     def lasting(share):
         """Return a share of the time in words, with its hours where the spectrum has any."""

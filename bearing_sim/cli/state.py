@@ -5,11 +5,13 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import allow_outside_option, json_option, set_option
-from bearing_sim.cli.outputs import OutputFile, WritingCommand
-from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_table, tell_use
+from bearing_sim.cli.options import PATH, allow_outside_option, json_option, option, set_option
+from bearing_sim.cli.outputs import OutputFile
+from bearing_sim.cli.reporting import UsageError, as_usage_error, note, print_table, tell_use
+from bearing_sim.cli.results import Result, command
 from bearing_sim.files.outputs import remember_input
 from bearing_sim.scene.display import number
+from bearing_sim.stored_state.state_file import StateFile, checked_serial, default_path, known_serials, previous_path, read_state
 
 _TABLES = (".csv", ".parquet")
 _state_argument = click.argument("name", metavar="STATE")
@@ -17,13 +19,10 @@ _state_argument = click.argument("name", metavar="STATE")
 
 def _path_of(name: str) -> Path:
     """Return the state file that a path or a serial number names; raise `UsageError` if there is none."""
-    from bearing_sim.stored_state.state_file import StateError, checked_serial, default_path, known_serials, previous_path
-
     path = Path(name).expanduser()
     if path.exists() or previous_path(path).exists():
         return path
-    with as_usage_error(StateError):
-        own = default_path(checked_serial(name))
+    own = default_path(checked_serial(name))
     if own.exists() or previous_path(own).exists():
         return own
     known = ", ".join(known_serials()) or "none"
@@ -32,12 +31,9 @@ def _path_of(name: str) -> Path:
 
 def _read(path: Path):
     """Return the state in a file; what had to be done about it is told on stderr."""
-    from bearing_sim.stored_state.state_file import read_state
-
-    with as_file_error():
-        state, news = read_state(path)
+    state, news = read_state(path)
     for each in news:
-        click.echo(f"warning: {each.text}", err=True)
+        note(f"warning: {each.text}")
     return state
 
 
@@ -45,24 +41,22 @@ def _days(path: Path, state) -> list[dict]:
     """Return the totals of all days, those in the history and those that are not there yet."""
     from bearing_sim.stored_state.history import all_days
 
-    with as_file_error(), as_usage_error(ValueError):
+    with as_usage_error(ValueError):
         return all_days(path, state)
 
 
-@click.command("show")
+@command("show")
 @_state_argument
 @json_option
-def show(name, as_json):
+def show(name):
     """Show the stored state of a bearing: life used, hours, starts, hours by regime, extremes, and what else is remembered.
 
     STATE is a state file, or a serial number whose state is in the user's folder for state. A node may use it meanwhile.
     """
     path = _path_of(name)
     state = _read(path)
-    if as_json:
-        print_json({**state.as_mapping(), "file": str(path)})
-        return
-    print_table(f"stored state of {state.serial or 'a bearing without a serial number'}", _rows(path, state))
+    title = f"stored state of {state.serial or 'a bearing without a serial number'}"
+    return Result({**state.as_mapping(), "file": str(path)}, lambda: print_table(title, _rows(path, state)))
 
 
 def _rows(path: Path, state) -> list[tuple[str, str]]:
@@ -128,89 +122,76 @@ def _regimes(totals) -> list[tuple[str, str]]:
     ]
 
 
-@click.command("export", cls=WritingCommand)
+@command("export")
 @_state_argument
-@click.option(
-    "-o",
-    "--out",
-    type=OutputFile(".json", *_TABLES),
-    required=True,
-    metavar="OUT",
-    help="JSON of the whole state, or the days as CSV or Parquet.",
-)
+@option("-o", "--out", "JSON of the whole state, or the days as CSV or Parquet.", OutputFile(".json", *_TABLES), required=True, metavar="OUT")
 def export(name, out):
     """Write a stored state to OUT.json, or its totals by UTC day to OUT.csv or OUT.parquet."""
     path = _path_of(name)
     remember_input(path)
     state, suffix = _read(path), out.path.suffix.lower()
     days = _days(path, state)
-    with as_file_error():
-        if suffix == ".json":
-            import json
+    if suffix == ".json":
+        import json
 
-            out.write_text(json.dumps({**state.as_mapping(), "history": days}, indent=1) + "\n")
-        else:
-            from bearing_sim.stored_state.history import export_days
+        out.write_text(json.dumps({**state.as_mapping(), "history": days}, indent=1) + "\n")
+    else:
+        from bearing_sim.stored_state.history import export_days
 
-            with out.draft() as draft:
-                export_days(draft, days, as_parquet=suffix == ".parquet")
+        with out.draft() as draft:
+            export_days(draft, days, as_parquet=suffix == ".parquet")
     click.echo(f"{out}: {len(days)} day{'s' * (len(days) != 1)}")
 
 
-@click.command("merge")
+@command("merge")
 @_state_argument
-@click.argument("recordings", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="RUN.mcap...")
+@click.argument("recordings", type=PATH, nargs=-1, required=True, metavar="RUN.mcap...")
 @json_option
-def merge(name, recordings, as_json):
+def merge(name, recordings):
     """Fill gaps of a stored state by recordings of bearing-sim: each instant counts once, however often it is merged.
 
     The node must not use the state meanwhile. Logs of other programs are counted by `bearing-sim replay --state-file`.
     """
-    from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.reader import Recording
     from bearing_sim.stored_state.merging import merge as fill
 
     path, filled = _path_of(name), {}
     for each in recordings:
-        with as_usage_error(RecordingError), as_file_error():
-            recording = Recording(each, allow_partial=True)
-            filled[str(each)] = fill(path, recording)
-            tell_use(recording.tally, each)
+        recording = Recording(each, allow_partial=True)
+        filled[str(each)] = fill(path, recording)
+        tell_use(recording.tally, each)
     state = _read(path)
-    if as_json:
-        print_json({"state": str(path), "damage": state.totals.damage, "merged": {run: each._asdict() for run, each in filled.items()}})
-        return
+    report = {"state": str(path), "damage": state.totals.damage, "merged": {run: each._asdict() for run, each in filled.items()}}
     rows = [
         (run, f"{number(each.recorded, 6)} s recorded, {number(each.added, 6)} s of them were missing: {number(100.0 * each.damage, 6)} % of life")
         for run, each in filled.items()
     ]
-    print_table(f"merged into {path}", [*rows, ("life used", f"{number(100.0 * state.totals.damage, 6)} %")])
+    rows.append(("life used", f"{number(100.0 * state.totals.damage, 6)} %"))
+    return Result(report, lambda: print_table(f"merged into {path}", rows))
 
 
-@click.command("adopt")
+@command("adopt")
 @_state_argument
 @allow_outside_option
-@click.option("--scene", "scene_name", required=True, metavar="SCENE", help="Bundled scene or YAML file that the state is to belong to.")
+@option("--scene", "scene_name", "Bundled scene or YAML file that the state is to belong to.", required=True, metavar="SCENE")
 @set_option
-@click.option("--serial", default="", metavar="NUMBER", help="Serial number that the bearing is to have [default: its own].")
+@option("--serial", "Serial number that the bearing is to have [default: its own].", default="", metavar="NUMBER")
 def adopt(name, scene_name, overrides, serial):
     """Let a stored state belong to another scene, after a correction of the scene, or get another serial number.
 
     The totals stay: what was counted by the earlier scene is not computed again.
     """
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.stored_state.state_file import StateError, StateFile, checked_serial
+    from bearing_sim.scene.loader import load_scene
 
     path = _path_of(name)
-    with as_usage_error(SceneError, StateError), as_file_error():
-        scene, serial = load_scene(scene_name, overrides), checked_serial(serial)
-        file = StateFile(path)
-        try:
-            state, _ = file.read()
-            changes = state.differences(scene, serial)
-            state.adopt(scene, serial)
-            state.writes += 1
-            file.write(state)
-        finally:
-            file.close()
+    scene, serial = load_scene(scene_name, overrides), checked_serial(serial)
+    file = StateFile(path)
+    try:
+        state, _ = file.read()
+        changes = state.differences(scene, serial)
+        state.adopt(scene, serial)
+        state.writes += 1
+        file.write(state)
+    finally:
+        file.close()
     click.echo(f"{path}: {', '.join(changes) or 'nothing has changed'}")

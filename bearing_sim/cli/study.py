@@ -1,71 +1,58 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""``bearing-sim study``: studies of the model itself, and the results of Deng 2017."""
+"""``bearing-sim study``: studies of a bearing over loads, speeds, misalignments and extremes."""
 
 import math
-from pathlib import Path
 
 import click
+from click import Choice, FloatRange, IntRange
 
 from bearing_sim.cli.options import (
+    PATH,
     allow_outside_option,
     csv_option,
     json_option,
+    option,
     picture_option,
-    scene_argument,
+    scene_options,
     set_option,
+    together,
 )
-from bearing_sim.cli.outputs import OutputJournal, OutputTable, WritingCommand
+from bearing_sim.cli.outputs import OutputJournal, OutputTable
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
     UsageError,
     announce_compilation,
-    as_failed_run,
-    as_file_error,
     as_usage_error,
     column_texts,
-    command_line,
     judged,
-    print_json,
     print_rows,
     print_table,
     progress_bar,
     quantity_of,
     refuse_idle_temperature,
+    scene_of,
     unknown_report,
     warn_of_scene,
-    write_csv,
 )
-from bearing_sim.scene.display import number as number_text
+from bearing_sim.cli.results import Result, command, picture_into, signed
+from bearing_sim.scene.display import number
 
 
-def _write(table, rows, picture, draw) -> None:
-    """Write the rows of a study to a table and let ``draw`` draw into a picture, each where it is asked for."""
-    with as_file_error():
-        if table is not None:
-            write_csv(table, rows)
-        if picture is not None:
-            with picture.draft() as draft:
-                draw(draft)
-
-
-@click.command("damage")
-@click.argument("log", type=click.Path(path_type=Path), metavar="IN.mcap")
+@command("damage")
+@click.argument("log", type=PATH, metavar="IN.mcap")
 @allow_outside_option
-@click.option("--scene", "scene_name", required=True, metavar="SCENE", help="Name of a bundled scene, or a scene file.")
+@option("--scene", "scene_name", "Name of a bundled scene, or a scene file.", required=True, metavar="SCENE")
 @set_option
-@click.option("--windows", default=10, show_default=True, type=click.IntRange(1, 1000), help="Number of windows that level planar computes.")
-@click.option("--length", default=1.0, show_default=True, type=click.FloatRange(min=0.01), metavar="S", help="Length of a window.")
+@option("--windows", "Number of windows that level planar computes.", IntRange(1, 1000), default=10)
+@option("--length", "Length of a window.", FloatRange(min=0.01), default=1.0, metavar="S")
 @json_option
-def damage(log, scene_name, overrides, windows, length, as_json):
+def damage(log, scene_name, overrides, windows, length):
     """Run the inputs in IN.mcap at levels steady and slip, and at level planar in windows spread evenly over them."""
-    from bearing_sim.inputs.log import InputLogError, read_input_log
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.simulation import IntegrationError
+    from bearing_sim.inputs.log import read_input_log
 
-    with as_usage_error(SceneError, InputLogError), as_file_error():
-        scene = load_scene(scene_name, [*overrides, "level=steady"])
-        course = judged(read_input_log(log), scene)
+    scene = scene_of(scene_name, overrides, "steady")
+    course = judged(read_input_log(log), scene)
     from bearing_sim.cli.table import build_with_progress
     from bearing_sim.studies.damage import damages
 
@@ -73,15 +60,13 @@ def damage(log, scene_name, overrides, windows, length, as_json):
     kelvin = scene.lubricant.temperature
     table = build_with_progress(scene, None if "oil_temperature" in course.stamps else (kelvin, kelvin))[0]
     run = course.segment(None, kelvin)
-    with progress_bar(f"running {log.name}", course.end * 1e-9) as show, as_usage_error(SceneError), as_failed_run(IntegrationError):
+    with progress_bar(f"running {log.name}", course.end * 1e-9) as show:
         found = damages(
             scene_name, overrides, run.instants * 1e-9, run.inputs, run.in_gap, table=table, windows=windows, length=length, progress=show
         )
-    if as_json:
-        windows = [window._asdict() for window in found.windows]
-        print_json({"log": log.name, "scene": scene_name, **found._asdict(), "windows": windows, **unknown_report(course)})
-    else:
-        _print_damage(log, scene_name, found)
+    windows = [window._asdict() for window in found.windows]
+    report = {"log": log.name, "scene": scene_name, **found._asdict(), "windows": windows, **unknown_report(course)}
+    return Result(report, lambda: _print_damage(log, scene_name, found))
 
 
 def _print_damage(log, name, found) -> None:
@@ -97,29 +82,34 @@ def _print_damage(log, name, found) -> None:
     print_rows(f"{log.name}, {name}: damage in millionths of the life, by level", columns, rows)
 
 
-@click.command("misalignment", cls=WritingCommand)
+_varied_scene = together(csv_option("Write the results to a table."), picture_option("Draw the results"), json_option)
+"""What the studies have in common that run a scene at several points."""
+_scene_or_paper = click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
+_vibrating_level = option("--level", "Level with vibration.", Choice(["planar", "spatial"]), default="planar")
+
+
+def _speed_option(name: str, parameter: str, which: str, default: float | None = None, otherwise: str = ""):
+    return option(name, parameter, f"{which} shaft speed{otherwise}.", FloatRange(1.0), default=default, metavar="RPM")
+
+
+def _over_points(title, columns, rows, draw, about, shown=None, words=None, remarks=()) -> Result:
+    """Return the result of a study whose rows have the columns of its table, the first of them in words; ``shown`` are its cells if others."""
+    texts = [[cell if isinstance(cell, str) else number(cell) for cell in cells] for cells in shown or (row.values() for row in rows)]
+    return Result({**about, "points": rows}, lambda: print_rows(title, columns, texts, words or columns[:1]), draw, rows, remarks)
+
+
+@command("misalignment")
 @allow_outside_option
-@click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
+@_scene_or_paper
 @set_option
-@click.option("--largest", default=3.0, show_default=True, type=click.FloatRange(0.0, 20.0), metavar="MRAD", help="Largest misalignment.")
-@click.option("--points", default=7, show_default=True, type=click.IntRange(2, 1000), help="Number of misalignments, starting at 0.")
-@click.option("--crown", "crowns", multiple=True, metavar="LAW", help="Value of bearing.roller.crown; can be repeated [default: none, iso_log].")
-@click.option(
-    "--slices",
-    default=30,
-    show_default=True,
-    type=click.IntRange(5, 400),
-    help="Laminae per roller for life and pressures (ISO/TS 16281: at least 30).",
-)
-@csv_option("Write the results to a table.")
-@picture_option("Draw the results")
-@json_option
-def misalignment(scene_name, overrides, largest, points, crowns, slices, table, picture, as_json):
+@option("--largest", "Largest misalignment.", FloatRange(0.0, 20.0), default=3.0, metavar="MRAD")
+@option("--points", "Number of misalignments, starting at 0.", IntRange(2, 1000), default=7)
+@option("--crown", "crowns", "Value of bearing.roller.crown; can be repeated [default: none, iso_log].", multiple=True, metavar="LAW")
+@option("--slices", "Laminae per roller for life and pressures (ISO/TS 16281: at least 30).", IntRange(5, 400), default=30)
+@_varied_scene
+def misalignment(scene_name, overrides, largest, points, crowns, slices):
     """Run SCENE at level spatial with its inner ring held at increasing misalignments, with and without a crown."""
     import numpy as np
-
-    from bearing_sim.scene.loader import SceneError
-    from bearing_sim.simulation import IntegrationError
 
     announce_compilation()
     from bearing_sim.studies.misalignment import CROWNS, draw, misalign
@@ -127,15 +117,18 @@ def misalignment(scene_name, overrides, largest, points, crowns, slices, table, 
     crowns = crowns or CROWNS
     done = iter(range(points * len(crowns) + 1))
     amounts = [round(float(each), 9) for each in 1e-3 * np.linspace(0.0, largest, points)]
-    with progress_bar("points", points * len(crowns)) as show, as_usage_error(SceneError, ValueError), as_failed_run(IntegrationError):
+    with progress_bar("points", points * len(crowns)) as show, as_usage_error(ValueError):
         found = misalign(scene_name, overrides, amounts, crowns, slices, progress=lambda name: show(next(done)))
-    rows = [_row(one) for one in found]
     title = f"{' '.join([scene_name, *overrides])}: misalignment of the inner ring, {slices} laminae"
-    _write(table, rows, picture, lambda draft: draw(draft, title, found))
-    if as_json:
-        print_json({"scene": scene_name, "slices": slices, "points": rows})
-    else:
-        _print_misalignment(scene_name, rows)
+    return _over_points(
+        f"{scene_name}: misalignment of the inner ring, level spatial",
+        ("crown", "misalignment [mrad]", "slip [%]", "largest [MPa]", "inner edge [MPa]", "outer edge [MPa]")
+        + ("tilt [mrad]", "skew [mrad]", "life [h]", "L10r [h]", "L10r, no slip, h"),
+        list(map(_row, found)),
+        lambda draft: draw(draft, title, found),
+        {"scene": scene_name, "slices": slices},
+        remarks=["pressures, tilt and skew: time average of the largest value at each instant; no slip: life by slices in quasi-static equilibrium"],
+    )
 
 
 def _row(one) -> dict:
@@ -154,77 +147,67 @@ def _row(one) -> dict:
     }
 
 
-def _print_misalignment(name, rows) -> None:
-    pressures, angles, lives = (
-        ("largest [MPa]", "inner edge [MPa]", "outer edge [MPa]"),
-        ("tilt [mrad]", "skew [mrad]"),
-        ("life [h]", "L10r [h]", "L10r, no slip, h"),
-    )
-    texts = [(crown, *(number_text(number) for number in numbers)) for crown, *numbers in (row.values() for row in rows)]
-    columns = ("crown", "misalignment [mrad]", "slip [%]", *pressures, *angles, *lives)
-    print_rows(f"{name}: misalignment of the inner ring, level spatial", columns, texts, words=("crown",))
-    click.echo("pressures, tilt and skew: time average of the largest value at each instant; no slip: life by slices in quasi-static equilibrium")
-
-
-@click.command("support", cls=WritingCommand)
+@command("support")
 @allow_outside_option
-@click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
+@_scene_or_paper
 @set_option
-@click.option("--from", "lowest", default=10000.0, show_default=True, type=click.FloatRange(1.0), metavar="RPM", help="Lowest shaft speed.")
-@click.option("--to", "highest", default=52000.0, show_default=True, type=click.FloatRange(1.0), metavar="RPM", help="Highest shaft speed.")
-@click.option("--points", default=29, show_default=True, type=click.IntRange(2, 1000), help="Number of speeds.")
-@click.option("--level", default="planar", show_default=True, type=click.Choice(["planar", "spatial"]), help="Level with vibration.")
-@csv_option("Write the results to a table.")
-@picture_option("Draw the results")
-@json_option
-def support(scene_name, overrides, lowest, highest, points, level, table, picture, as_json):
+@_speed_option("--from", "lowest", "Lowest", 10000.0)
+@_speed_option("--to", "highest", "Highest", 52000.0)
+@option("--points", "Number of speeds.", IntRange(2, 1000), default=29)
+@_vibrating_level
+@_varied_scene
+def support(scene_name, overrides, lowest, highest, points, level):
     """Run SCENE over speeds with its support, with a rigid one, and at level slip.
 
     A scene whose support does not yield gets `support.elastic: true`.
     """
     import numpy as np
 
-    from bearing_sim.scene.loader import SceneError
-    from bearing_sim.simulation import IntegrationError
-
     announce_compilation()
     from bearing_sim.studies.support import draw, relative_damage, respond
 
     done = iter(range(3 * points + 1))
     speeds = [float(each) for each in np.linspace(lowest, highest, points) * (math.pi / 30)]
-    with progress_bar("points", 3 * points) as show, as_usage_error(SceneError), as_failed_run(IntegrationError):
+    with progress_bar("points", 3 * points) as show:
         found = respond(scene_name, overrides, speeds, level, progress=lambda name: show(next(done)))
     relative = relative_damage(found)
-    rows = [_response_row(one, relative) for one in found]
-    title = f"{' '.join([scene_name, *overrides])}: response over speed, level {level}"
-    _write(table, rows, picture, lambda draft: draw(draft, title, found))
-    if as_json:
-        print_json({"scene": scene_name, "level": level, "points": rows})
-    else:
-        columns = ("model", "speed [rpm]", "slip [%]", "largest load [N]", "ring moves [µm]", "outer ring [µm]", "damage/slip's", "support [W]")
-        texts = [(row["model"], *(number_text(number) for number in list(row.values())[1:])) for row in rows]
-        print_rows(f"{scene_name}: response over speed, level {level}", columns, texts, words=("model",))
+    title = f"response over speed, level {level}"
+    return _over_points(
+        f"{scene_name}: {title}",
+        ("model", "speed [rpm]", "slip [%]", "largest load [N]", "ring moves [µm]", "outer ring [µm]", "damage/slip's", "support [W]"),
+        [_response_row(one, relative) for one in found],
+        lambda draft: draw(draft, f"{' '.join([scene_name, *overrides])}: {title}", found),
+        {"scene": scene_name, "level": level},
+    )
 
 
-@click.command("resonances", cls=WritingCommand)
+def _response_row(one, relative) -> dict:
+    return {
+        "model": one.model,
+        "shaft_speed_rpm": one.shaft_speed * 30 / math.pi,
+        "slip_percent": 100 * one.slip,
+        "largest_inner_load_n": one.largest_load,
+        "ring_motion_um": 1e6 * one.ring_swing,
+        "outer_ring_motion_um": 1e6 * one.outer_swing,
+        "damage_over_slip": relative[one.model, one.shaft_speed],
+        "support_power_w": one.support_power,
+    }
+
+
+@command("resonances")
 @allow_outside_option
-@click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
+@_scene_or_paper
 @set_option
-@click.option("--from", "lowest", type=click.FloatRange(1.0), metavar="RPM", help="Lowest shaft speed [default: 0.5 of the scene's].")
-@click.option("--to", "highest", type=click.FloatRange(1.0), metavar="RPM", help="Highest shaft speed [default: 1.3 of the scene's].")
-@click.option("--points", default=33, show_default=True, type=click.IntRange(2, 1000), help="Number of speeds.")
-@click.option("--level", default="planar", show_default=True, type=click.Choice(["planar", "spatial"]), help="Level with vibration.")
-@csv_option("Write the results to a table.")
-@picture_option("Draw the results")
-@json_option
-def resonances(scene_name, overrides, lowest, highest, points, level, table, picture, as_json):
+@_speed_option("--from", "lowest", "Lowest", otherwise=" [default: 0.5 of the scene's]")
+@_speed_option("--to", "highest", "Highest", otherwise=" [default: 1.3 of the scene's]")
+@option("--points", "Number of speeds.", IntRange(2, 1000), default=33)
+@_vibrating_level
+@_varied_scene
+def resonances(scene_name, overrides, lowest, highest, points, level):
     """Show over speed where the passing rollers make the inner ring of SCENE vibrate on its contacts, and in which states it stays."""
     import numpy as np
 
-    from bearing_sim.scene.loader import SceneError, load_scene
-
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, [*overrides, f"level={level}"])
+    scene = scene_of(scene_name, overrides, level)
     announce_compilation(scene)
     from bearing_sim.studies.resonances import draw, resonances
 
@@ -236,13 +219,15 @@ def resonances(scene_name, overrides, lowest, highest, points, level, table, pic
         found = resonances(scene, speeds, show)
     rows = [row for each in found for row in _resonance_rows(each)]
     title = f"{' '.join([scene_name, *overrides])}: the inner ring on its rollers, level {level}"
-    _write(table, rows, picture, lambda draft: draw(draft, title, found))
-    if as_json:
-        print_json({"scene": scene_name, "level": level, "points": rows})
-    else:
-        columns = ("speed [rpm]", "over passage", "multiplier", "nearby", "slip [%]", "life [h]", "state")
-        texts = [tuple(cell if isinstance(cell, str) else number_text(cell) for cell in _resonance_cells(row)) for row in rows]
-        print_rows(f"{scene_name}: the inner ring on its rollers over speed, level {level}", columns, texts, words=("over passage", "state"))
+    return _over_points(
+        f"{scene_name}: the inner ring on its rollers over speed, level {level}",
+        ("speed [rpm]", "over passage", "multiplier", "nearby", "slip [%]", "life [h]", "state"),
+        rows,
+        lambda draft: draw(draft, title, found),
+        {"scene": scene_name, "level": level},
+        [(speed, f"{low:.2f}, {high:.2f}", *others) for speed, low, high, *others in (row.values() for row in rows)],
+        ("over passage", "state"),
+    )
 
 
 def _resonance_rows(speed) -> list[dict]:
@@ -259,57 +244,30 @@ def _resonance_rows(speed) -> list[dict]:
     return [known | {"slip_percent": slip, "rating_life_h": life, "state": start} for slip, life, start in states]
 
 
-def _resonance_cells(row) -> tuple:
-    ratios = f"{row['lower_ratio']:.2f}, {row['higher_ratio']:.2f}"
-    return row["shaft_speed_rpm"], ratios, row["multiplier"], row["multiplier_nearby"], row["slip_percent"], row["rating_life_h"], row["state"]
-
-
-def _response_row(one, relative) -> dict:
-    return {
-        "model": one.model,
-        "shaft_speed_rpm": one.shaft_speed * 30 / math.pi,
-        "slip_percent": 100 * one.slip,
-        "largest_inner_load_n": one.largest_load,
-        "ring_motion_um": 1e6 * one.ring_swing,
-        "outer_ring_motion_um": 1e6 * one.outer_swing,
-        "damage_over_slip": relative[one.model, one.shaft_speed],
-        "support_power_w": one.support_power,
-    }
-
-
-@click.command("friction", cls=WritingCommand)
-@scene_argument
-@set_option
-@click.option(
-    "--series", metavar="SERIES", help="Series of SCENE's bearing: 10, 2, 3, 4, 22, 23, or NCF 22, NCF 29, NCF 30 [default: by its designation]."
-)
+@command("friction")
+@scene_options
+@option("--series", "Series of SCENE's bearing: 10, 2, 3, 4, 22, 23, or NCF 22, NCF 29, NCF 30 [default: by its designation].", metavar="SERIES")
 @json_option
-def friction(scene_name, overrides, series, as_json):
+def friction(scene_name, overrides, series):
     """Compare the friction of SCENE at its operating point with makers' models.
 
     With heat.law network SCENE is in thermal equilibrium, as in `bearing-sim run`; where there is none, the command fails and says why.
     """
-    from bearing_sim.scene.display import force, number, power
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.simulation import IntegrationError
+    from bearing_sim.scene.display import force, power
     from bearing_sim.studies.friction import SERIES, compare, series_of
     from bearing_sim.studies.sheet import temperatures, temperatures_text
 
     announce_compilation()
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, overrides)
+    scene = scene_of(scene_name, overrides)
     refuse_idle_temperature(scene, overrides)
     series = " ".join(series.upper().split()) if series else series_of(scene.bearing.designation or scene.bearing.name)
     if series not in SERIES:
         named = scene.bearing.designation or scene.bearing.name
         raise UsageError(f"--series: makers publish constants for series {', '.join(SERIES)}; name that of {named!r}, or the nearest")
     warn_of_scene(scene, before_results=False)
-    with as_usage_error(ValueError), as_failed_run(IntegrationError):
+    with as_usage_error(ValueError):
         found = compare(scene, series)
     warm = temperatures(found.temperatures)
-    if as_json:
-        print_json({"scene": scene.name, **found._replace(temperatures=warm)._asdict()})
-        return
     rows = (
         ("model", found.model),
         ("model without hydrodynamic rolling resistance", found.without_resistance),
@@ -317,22 +275,28 @@ def friction(scene_name, overrides, series, as_json):
         ("SKF's friction model", found.skf),
         ("coefficient 0.0011", found.coefficient),
     )
-    title = f"{scene.name}: friction at {number(abs(scene.operating.shaft_speed) * 30 / math.pi, 6)} rpm and {force(scene.operating.radial_load)}"
-    known = [("temperatures", words)] if (words := temperatures_text(warm)) else []
-    warmth = [*known, ("viscosity", f"{number(found.viscosity)} mm²/s in the contacts")]
-    print_table(title, [(name, power(watts)) for name, watts in rows] + warmth)
+    speed, load = abs(scene.operating.shaft_speed) * 30 / math.pi, scene.operating.radial_load
+    warmth = [
+        *(("temperatures", words) for words in [temperatures_text(warm)] if words),
+        ("viscosity", f"{number(found.viscosity)} mm²/s in the contacts"),
+    ]
+    return Result(
+        {"scene": scene.name, **found._replace(temperatures=warm)._asdict()},
+        lambda: print_table(
+            f"{scene.name}: friction at {number(speed, 6)} rpm and {force(load)}", [*((name, power(watts)) for name, watts in rows), *warmth]
+        ),
+    )
 
 
-@click.command("clearance", cls=WritingCommand)
-@scene_argument
-@set_option
-@click.option("--speed", "speeds", metavar="START:STOP:N", help="Shaft speeds [default: 9 from 20 to 120 % of the scene's].")
-@click.option("--load", "loads", metavar="START:STOP:N", help="Radial loads, or one [default: 7 from 0.5 to 3.5 times the scene's].")
-@click.option("--life-above", default="10 h", show_default=True, metavar="LIFE", help="Life below which it counts as lost.")
-@click.option("-o", "--out", type=OutputTable(), metavar="PATH.parquet", help="Also write the table, and PATH.csv.")
+@command("clearance")
+@scene_options
+@option("--speed", "speeds", "Shaft speeds [default: 9 from 20 to 120 % of the scene's].", metavar="START:STOP:N")
+@option("--load", "loads", "Radial loads, or one [default: 7 from 0.5 to 3.5 times the scene's].", metavar="START:STOP:N")
+@option("--life-above", "Life below which it counts as lost.", default="10 h", metavar="LIFE")
+@option("-o", "--out", "Also write the table, and PATH.csv.", OutputTable(), metavar="PATH.parquet")
 @picture_option("Draw the map; lines with one load")
 @json_option
-def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as_json):
+def clearance(scene_name, overrides, speeds, loads, life_above, out, picture):
     """Map the running clearance of SCENE over speed and load, in thermal equilibrium where it has a thermal network.
 
     Says at which speeds the clearance is gone, the fit of the shaft is lost, the life is too short, and above which heat closes the bearing
@@ -342,11 +306,9 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as
     """
     from pydantic_core import ValidationError
 
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.sweep.grid import FieldError, read_axis
+    from bearing_sim.sweep.grid import read_axis
 
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, overrides)
+    scene = scene_of(scene_name, overrides)
     warn_of_scene(scene)
     announce_compilation()
     from bearing_sim.studies.clearance_map import LOAD, SPEED, draw, in_words, map_clearance
@@ -357,7 +319,7 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as
         (SPEED, speeds or _from_to(operating.shaft_speed, 0.2, 1.2, 9, "rad/s")),
         (LOAD, loads or _from_to(operating.radial_load, 0.5, 3.5, 7, "N")),
     )
-    with as_usage_error(FieldError, ValueError):
+    with as_usage_error(ValueError):
         grid = [sorted(read_axis(f"{field}={text}", written=True).values) for field, text in defaults]
         least = quantity_of("--life-above", life_above, "h")
     files, study = [], study_digest("clearance", scene, grid, least)
@@ -365,25 +327,18 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as
         require_same_study(out, study)
     with progress_bar("points", math.prod(map(len, grid))) as show, as_usage_error(ValidationError):
         found = map_clearance(scene, *grid, least, show)
-    with as_file_error():
-        if out is not None:
-            require_same_study(out, study)
-            table = found.table._replace(about=found.table.about | {"command": command_line(), "study": study})
-            files += write_table(out.path, table)
-        if picture is not None:
-            with picture.draft() as draft:
-                draw(draft, _title(scene, overrides), found)
-            files.append(picture.path)
-    words = in_words(found)
-    if as_json:
-        losses = [each._asdict() for each in found.losses]
-        print_json({"scene": scene.name, "heat": scene.heat.law, "found": words, "losses": losses, "points": found.table.rows})
-        return
-    _print_clearances(found.table)
-    for line in words:
-        click.echo(line)
-    if files:
-        click.echo(", ".join(map(str, files)))
+    if out is not None:
+        require_same_study(out, study)
+        files += write_table(out.path, signed(found.table, study))
+    if picture is not None:
+        picture_into(picture, draw, _title(scene, overrides), found)
+        files.append(picture.path)
+    words, losses = in_words(found), [each._asdict() for each in found.losses]
+    return Result(
+        {"scene": scene.name, "heat": scene.heat.law, "found": words, "losses": losses, "points": found.table.rows},
+        lambda: _print_clearances(found.table),
+        remarks=[*words, *([", ".join(map(str, files))] if files else [])],
+    )
 
 
 def _from_to(value: float, low: float, high: float, count: int, unit: str) -> str:
@@ -421,45 +376,45 @@ def _print_clearances(table) -> None:
     print_rows(title, headings, zip(*columns), words=("status",), keys=2)
 
 
-@click.command("extremes", cls=WritingCommand)
-@scene_argument
-@set_option
-@click.option("--samples", default=100, show_default=True, type=click.IntRange(1, 1_000_000), help="Number of variants.")
-@click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the variants.")
-@click.option("--journal", type=OutputJournal(), metavar="PATH", help="File from which an interrupted study resumes.")
-@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
+@command("extremes")
+@scene_options
+@option("--samples", "Number of variants.", IntRange(1, 1_000_000), default=100)
+@option("--seed", "Seed of the variants.", IntRange(0), default=0)
+@option("--journal", "File from which an interrupted study resumes.", OutputJournal(), metavar="PATH")
+@option("--workers", "Number of processes [default: all cores].", IntRange(1, 1024), metavar="N")
 @json_option
 @picture_option("Draw the map")
 @csv_option("Write all runs, one per line.")
-def extremes(scene_name, overrides, samples, seed, journal, workers, as_json, picture, table):
+def extremes(scene_name, overrides, samples, seed, journal, workers):
     """Run variants of SCENE at its extremes, and report which finish, are step-limited, are refused or fail.
 
     Up to twice the speed in both directions and five times the load, from -40 to 150 degC of oil, tight and loose, with light and heavy
     cages, narrow and wide pockets and lands, under steady inputs, starts, stops, reversals, steps and ripples. Every variant runs for at
     least 50 turns of its cage, or until it settles; then its books of energy are checked. Exit code 1 if any run fails.
     """
-    from bearing_sim.scene.loader import SceneError
     from bearing_sim.studies.extremes import counts, draw, run_extremes, table_rows
-    from bearing_sim.sweep.tasks import JournalInUse
 
     announce_compilation()
-    with as_file_error(), as_usage_error(SceneError, JournalInUse), Points("variants", samples) as points:
+    with Points("variants", samples) as points:
         outcomes = run_extremes(scene_name, overrides, samples, seed, journal and journal.path, workers, points.update)
-    found = counts(outcomes)
-    _write(table, table_rows(outcomes), picture, lambda draft: draw(draft, f"{scene_name}: {samples} variants at its extremes", outcomes))
+    found, title = counts(outcomes), f"{scene_name}: {samples} variants at its extremes"
     others = [one for one in outcomes if one.status != "finished"]
     worst = max((one for one in outcomes if math.isfinite(one.books)), key=lambda one: abs(one.books), default=None)
-    if as_json:
-        cases = [{"case": one.case.name, "status": one.status, "reason": one.reason, "overrides": list(one.case.overrides)} for one in others]
-        print_json({"scene": scene_name, **found, "books": worst and {"case": worst.case.name, "off": worst.books}, "others": cases})
-    else:
+
+    def show():
         rows = [(status.replace("_", "-"), str(count)) for status, count in found.items()]
         if worst is not None:
             rows.append(("books of energy", f"off by at most {100 * abs(worst.books):.2g} % ({worst.case.name})"))
-        print_table(f"{scene_name}: {samples} variants at its extremes", rows)
+        print_table(title, rows)
         if others:
-            print_rows(
-                "not finished", ("variant", "outcome", "reason"), [(o.case.name, o.status, o.reason) for o in others], words=("outcome", "reason")
-            )
-    if found["failed"]:
-        raise FailedRun(f"{found['failed']} of {samples} variants failed")
+            columns = "variant", "outcome", "reason"
+            print_rows("not finished", columns, [(one.case.name, one.status, one.reason) for one in others], words=columns[1:])
+
+    cases = [{"case": one.case.name, "status": one.status, "reason": one.reason, "overrides": list(one.case.overrides)} for one in others]
+    return Result(
+        {"scene": scene_name, **found, "books": worst and {"case": worst.case.name, "off": worst.books}, "others": cases},
+        show,
+        lambda draft: draw(draft, title, outcomes),
+        table_rows(outcomes),
+        ending=FailedRun(f"{found['failed']} of {samples} variants failed") if found["failed"] else None,
+    )

@@ -6,37 +6,34 @@ from contextlib import suppress
 
 import click
 
-from bearing_sim.cli.options import executor_options, json_option, picture_option, scene_argument, set_option, table_option
-from bearing_sim.cli.outputs import WritingCommand
+from bearing_sim.cli.options import executor_options, json_option, option, picture_option, scene_argument, set_option, table_option
 from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
-    as_file_error,
-    as_usage_error,
     column_texts,
-    command_line,
-    print_json,
     print_rows,
     refuse_idle_temperature,
+    scene_of,
     seconds_of,
     warn,
 )
+from bearing_sim.cli.results import Result, command, picture_into, resumed, signed
 
 
-@click.command("sweep", cls=WritingCommand)
+@command("sweep")
 @scene_argument
-@click.option(
+@option(
     "--vary",
     "axes",
+    "Vary a field over N evenly spaced values, or over a list, FIELD=a,b,c; repeat the option for a grid.",
     multiple=True,
     required=True,
     metavar="FIELD=START:STOP:N",
-    help="Vary a field over N evenly spaced values, or over a list, FIELD=a,b,c; repeat the option for a grid.",
 )
 @set_option
-@click.option("--level", metavar="LEVEL", help="Level of fidelity, instead of the scene's.")
-@click.option("--duration", default="0.5 s", show_default=True, metavar="S", help="Shortest simulated time per point; extended until it has settled.")
+@option("--level", "Level of fidelity, instead of the scene's.", metavar="LEVEL")
+@option("--duration", "Shortest simulated time per point; extended until it has settled.", default="0.5 s", metavar="S")
 @table_option("sweep.parquet", "Results; also written: PATH.csv and")
 @executor_options
 @picture_option("Draw the results")
@@ -51,47 +48,39 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
     bearing-sim sweep deng2017_table1 --vary bearing.outer_raceway.low_radius=34.86mm:34.8675mm:7 --picture sweep.png
     """
     from bearing_sim.model.plausibility import plausibility
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.sweep.grid import FieldError, plan_sweep, point_count, read_axis
-    from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse, run_tasks
+    from bearing_sim.scene.loader import SceneError
+    from bearing_sim.sweep.grid import plan_sweep, point_count, read_axis
+    from bearing_sim.sweep.tasks import run_tasks
 
     seconds = seconds_of(duration)
-    with as_usage_error(FieldError):
-        varied = [read_axis(text, written=True) for text in axes]
-        count = point_count(varied)
+    varied = [read_axis(text, written=True) for text in axes]
+    count = point_count(varied)
     _check_sweep(varied, level)
-    from bearing_sim.sweep.pictures import NotDrawable, draw, require_drawable
+    from bearing_sim.sweep.pictures import draw, require_drawable
 
-    with as_usage_error(NotDrawable):
-        require_drawable([axis.values for axis in varied]) if picture is not None else None
+    require_drawable([axis.values for axis in varied]) if picture is not None else None
     with suppress(SceneError):  # what varies may be what makes the scene valid
-        warn(plausibility(load_scene(scene_name, overrides)))
+        warn(plausibility(scene_of(scene_name, overrides)))
     announce_compilation()
-    from bearing_sim.sweep.table import require_same_study, study_digest, write_table
+    from bearing_sim.sweep.table import study_digest, write_table
 
     points = Points("sweep", count)
-    with as_file_error(), as_usage_error(SceneError, ClusterError, JournalInUse):
-        plan = plan_sweep(scene_name, [*overrides, *([f"level={level}"] if level else [])], varied, seconds)
-        first = next(each for each in plan.scenes if not isinstance(each, SceneError))
-        refuse_idle_temperature(first, [*overrides, *(axis.field.path for axis in varied)])
-        study = study_digest("sweep", [(axis.field.path, axis.values) for axis in plan.axes], plan.duration, list(map(_defined, plan.scenes)))
-        require_same_study(out, study)
-        with Journal(out.path.with_suffix(".journal")) as journal, points:
-            table = plan.table(run_tasks(plan.tasks, journal, workers, dask, points.update))
-        require_same_study(out, study)
-        files = write_table(out.path, table._replace(about=table.about | {"command": command_line(), "study": study}))
+    plan = plan_sweep(scene_name, [*overrides, *([f"level={level}"] if level else [])], varied, seconds)
+    first = next(each for each in plan.scenes if not isinstance(each, SceneError))
+    refuse_idle_temperature(first, [*overrides, *(axis.field.path for axis in varied)])
+    study = study_digest("sweep", [(axis.field.path, axis.values) for axis in plan.axes], plan.duration, list(map(_defined, plan.scenes)))
+    with resumed(out, study, points) as journal:
+        table = plan.table(run_tasks(plan.tasks, journal, workers, dask, points.update))
+    files = write_table(out.path, signed(table, study))
     drawn = None
     try:
         if picture is not None:
-            with as_file_error(), as_usage_error(NotDrawable), picture.draft() as draft:
-                draw(draft, table)
+            picture_into(picture, draw, table)
             drawn = picture
     finally:  # what was computed is told, also where the picture cannot be written
         report = _report_sweep(table, points, files, drawn)
-        if as_json:
-            print_json(report | {"points": table.rows})
-        else:
-            _print_sweep(table, report)
+        result = Result(report | {"points": table.rows}, lambda: _print_sweep(table, report))
+        result.deliver(as_json)
 
 
 def _defined(scene):

@@ -2,68 +2,46 @@
 """``bearing-sim table``: the table of operating points of level ``steady``."""
 
 import math
-import sys
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import click
+from click import IntRange
 
-from bearing_sim.cli.options import json_option, scene_argument, set_option
-from bearing_sim.cli.outputs import OutputFile, WritingCommand
+from bearing_sim.cli.options import PATH, flag, json_option, option, scene_options
+from bearing_sim.cli.outputs import OutputFile
 from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
-    as_failed_run,
     as_usage_error,
-    print_json,
+    attributes,
+    note,
     print_table,
     progress_bar,
+    scene_of,
 )
+from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.display import SHOWN, force, number, quantity_text, shown
 
-_LINE_EVERY = 10.0  # [s], of progress where nothing can change a line
 
-
-@click.command("table", cls=WritingCommand)
-@scene_argument
-@set_option
-@click.option("--rebuild", is_flag=True, help="Build the table even if it exists.")
-@click.option("--workers", type=click.IntRange(1, 256), metavar="N", help="Number of threads [default: all cores].")
-@click.option(
-    "--at", "points", multiple=True, metavar="RPM,N[,DEGC[,DEG]]", help="Show this operating point, interpolated and solved; can be repeated."
-)
-@click.option("-o", "--out", type=OutputFile(), metavar="FILE.npz", help="Also write the table to this file, for another machine.")
-@click.option(
-    "--from",
-    "shared",
-    type=click.Path(path_type=Path),
-    metavar="FILE.npz",
-    help="Build nothing: keep the table that another machine has written for this scene with -o.",
-)
-@click.option(
-    "--against-slip",
-    type=click.IntRange(1, 10_000),
-    metavar="N",
-    help="Instead compare the solver with level slip at N random operating points.",
-)
-@click.option("--seed", default=2017, show_default=True, help="Seed of the random points.")
-@click.option(
-    "--bands", is_flag=True, help="Instead build the response to the uncertain fields, from which bands and calibration follow, or show it."
-)
-@click.option("--dask", metavar="ADDRESS", help="Compute that response on this Dask cluster, such as tcp://10.0.0.1:8786.")
+@command("table")
+@scene_options
+@flag("--rebuild", "Build the table even if it exists.")
+@option("--workers", "Number of threads [default: all cores].", IntRange(1, 256), metavar="N")
+@option("--at", "points", "Show this operating point, interpolated and solved; can be repeated.", multiple=True, metavar="RPM,N[,DEGC[,DEG]]")
+@option("-o", "--out", "Also write the table to this file, for another machine.", OutputFile(), metavar="FILE.npz")
+@option("--from", "shared", "Build nothing: keep the table that another machine has written for this scene with -o.", PATH, metavar="FILE.npz")
+@option("--against-slip", "Instead compare the solver with level slip at N random operating points.", IntRange(1, 10_000), metavar="N")
+@option("--seed", "Seed of the random points.", default=2017)
+@flag("--bands", "Instead build the response to the uncertain fields, from which bands and calibration follow, or show it.")
+@option("--dask", "Compute that response on this Dask cluster, such as tcp://10.0.0.1:8786.", metavar="ADDRESS")
 @json_option
-def table(scene_name, overrides, rebuild, workers, points, out, shared, against_slip, seed, bands, dask, as_json):
+def table(scene_name, overrides, rebuild, workers, points, out, shared, against_slip, seed, bands, dask):
     """Build the table of operating points of SCENE at level steady, or show the existing one.
 
     Its range is given in the scene's block `table` (maximum_speed, maximum_load, minimum_temperature, maximum_temperature, tolerance);
     it covers all directions of the load. A point of --at is as warm as a run there: with heat.law network in thermal equilibrium.
     """
-    from bearing_sim.scene.loader import SceneError, load_scene
-
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, [*overrides, "level=steady"])
+    scene = scene_of(scene_name, overrides, "steady")
     if (bands or against_slip is not None) and (out is not None or shared is not None):
         raise UsageError("-o and --from are for the table itself; leave --bands and --against-slip out")
     if shared is not None and rebuild:
@@ -71,13 +49,11 @@ def table(scene_name, overrides, rebuild, workers, points, out, shared, against_
     if bands:
         if points or against_slip is not None:
             raise UsageError("--bands goes with --rebuild, --workers and --dask only; leave --at and --against-slip out")
-        _show_response(scene, rebuild, workers, dask, as_json)
-        return
+        return _response(scene, rebuild, workers, dask)
     if dask is not None:
         raise UsageError("--dask goes with --bands only: the table itself is built by the threads of this machine; leave --dask out, or add --bands")
     if against_slip is not None:
-        _compare(scene, against_slip, seed, as_json)
-        return
+        return _compare(scene, against_slip, seed)
     asked = [_condition(text, scene) for text in points]
     if shared is not None:
         table, quality = _taken(shared, scene)
@@ -89,13 +65,10 @@ def table(scene_name, overrides, rebuild, workers, points, out, shared, against_
 
         out.write_bytes(shared_table(scene, table, quality))
     report = _report(scene, table, quality, [_answers(scene, table, condition) for condition in asked])
-    if as_json:
-        print_json(report)
-    else:
-        _print(report)
+    return Result(report, lambda: _print(report))
 
 
-def _show_response(scene, rebuild, workers, dask, as_json) -> None:
+def _response(scene, rebuild, workers, dask) -> Result:
     """Build the response of a scene to its uncertain fields, or take the one that is kept, and show what it is good for."""
     from bearing_sim.cli.estimation import response_with_progress
     from bearing_sim.estimation.response import bundled_path, response_path
@@ -104,10 +77,7 @@ def _show_response(scene, rebuild, workers, dask, as_json) -> None:
     found = response_with_progress(scene, rebuild, workers, dask)
     places = response_path(scene), bundled_path(scene)
     domain, path = found.domain, str(next(filter(Path.exists, places), places[0]))
-    if as_json:
-        report = {"scene": scene.name, "file": path, "fields": list(found.names), "points": found.points, "seconds": found.seconds}
-        print_json({**report, "domain": domain._asdict()})
-        return
+    report = {"scene": scene.name, "file": path, "fields": list(found.names), "domain": domain._asdict(), **attributes(found, "points", "seconds")}
     rpm, celsius = [speed * 30 / math.pi for speed in domain.speeds], [kelvin - 273.15 for kelvin in domain.temperatures]
     rows = [
         ("uncertain fields", ", ".join(found.names)),
@@ -116,7 +86,7 @@ def _show_response(scene, rebuild, workers, dask, as_json) -> None:
         ("oil temperature", f"{number(celsius[0])} to {number(celsius[1])} °C"),
         ("built", f"from {found.points} settled points in {found.seconds:.3g} s; {path}"),
     ]
-    print_table(f"response of {scene.name} to its uncertain fields", rows)
+    return Result(report, lambda: print_table(f"response of {scene.name} to its uncertain fields", rows))
 
 
 def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
@@ -130,53 +100,25 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
     rebuild : whether to build it even if it exists.
     """
     from bearing_sim.levels.steady.table_builder import cached_table, obtain_table
-    from bearing_sim.scene.loader import SceneError
     from bearing_sim.studies.correction_points import obtain_correction
-    from bearing_sim.sweep.tasks import JournalInUse
 
     kept = None if rebuild else cached_table(scene, temperatures)
     if kept is not None:
         return kept
-    click.echo(f"building the table of operating points of {scene.name}, once for this bearing and oil ...", err=True)
+    note(f"building the table of operating points of {scene.name}, once for this bearing and oil ...")
     correction = None
     if (level := scene.table.correction) != "none":
-        with as_usage_error(SceneError, ValueError, JournalInUse), progress_bar(f"operating points at level {level}", 1.0) as show:
+        with as_usage_error(ValueError), progress_bar(f"operating points at level {level}", 1.0) as show:
             correction = obtain_correction(scene, temperatures, workers, lambda done, most: show(done / most), rebuild)
-    with _points_solved() as show:
-        return obtain_table(scene, temperatures, workers, show, rebuild, correction and (lambda: correction))
-
-
-@contextmanager
-def _points_solved() -> Iterator[Callable[[int, int], None]]:
-    """Tell on stderr how many operating points are solved, of how many, and how long the rest takes; yields the function that takes both numbers.
-
-    The grid is refined in rounds until it is good enough: the rest is that of the present round.  A terminal gets one line that changes, anything
-    else a line every ten seconds.
-    """
-    begun = told = time.monotonic()
-    is_terminal = sys.stderr.isatty()
-
-    def show(solved: int, wanted: int) -> None:
-        nonlocal told
-        if (now := time.monotonic()) - told >= (1.0 if is_terminal else _LINE_EVERY):
-            told = now
-            left = (wanted - solved) * (now - begun) / max(solved, 1)
-            done = f"operating points: {number(solved, 9)} of {number(wanted, 9)} after {now - begun:.0f} s"
-            line = f"{done}, about {number(left, 2)} s left in this round of refinement"
-            click.echo(f"\r{line}\033[K" if is_terminal else line, err=True, nl=not is_terminal)
-
-    yield show
-    if is_terminal and told > begun:
-        click.echo("\r\033[K", err=True, nl=False)
+    with progress_bar("operating points", 1.0) as show:
+        return obtain_table(scene, temperatures, workers, lambda done, most: show(done / most), rebuild, correction and (lambda: correction))
 
 
 def _taken(path, scene):
     """Return the table of a file that another machine has written, and its quality, and keep it for the scene."""
-    from bearing_sim.files.limits import FileError
     from bearing_sim.levels.steady.shared_table import take_table
 
-    with as_usage_error(FileError, OSError):
-        return take_table(path, scene)
+    return take_table(path, scene)
 
 
 def _condition(text, scene) -> tuple[float, float, float, float]:
@@ -197,19 +139,17 @@ def _answers(scene, table, condition) -> dict:
     from bearing_sim.levels.steady.operating_point import ANSWER
     from bearing_sim.levels.steady.table_builder import holds, look_up
     from bearing_sim.model.sample import NODE_OBSERVABLES
-    from bearing_sim.simulation import Inputs, IntegrationError
+    from bearing_sim.simulation import Inputs
     from bearing_sim.studies.sheet import temperatures
     from bearing_sim.sweep.thermal import operating_state, solved_answer, table_condition
 
     speed, load, kelvin, angle = condition
     inputs = Inputs(speed, load * math.cos(angle), load * math.sin(angle), kelvin)
-    with as_failed_run(IntegrationError):
-        state = operating_state(scene, inputs)
+    state = operating_state(scene, inputs)
     place = table_condition(state, inputs)
     solved, interpolated = solved_answer(state, inputs), look_up(table, [place])[0]
     named = {name: [float(interpolated[column]), float(solved[column])] for name, column in ANSWER._asdict().items()}
-    rpm, degrees = speed * 30 / math.pi, math.degrees(angle)
-    where = {"speed_rpm": rpm, "load": load, "oil_temperature_c": kelvin - 273.15, "load_angle_deg": degrees}
+    where = _place(*condition)
     where |= temperatures(dict(zip(NODE_OBSERVABLES, state.temperatures.tolist())))
     return {**where, "held": holds(table, *place[:3], growth=place[4]), "table_and_solution": named}
 
@@ -241,28 +181,22 @@ def _correction_of(scene) -> dict | None:
     found = read_correction(correction_path(scene, correction_domain(scene))) if scene.table.correction != "none" else None
     if found is None:
         return None
-    return {
+    return attributes(found, "failed", "seconds", "slip_error", "life_error") | {
         "level": scene.table.correction,
         "points": len(found.conditions),
-        "failed": found.failed,
-        "seconds": found.seconds,
-        "slip_error": found.slip_error,
-        "life_error": found.life_error,
         "two_states": [
-            {
-                "speed_rpm": speed * 30 / math.pi,
-                "load": load,
-                "oil_temperature_c": kelvin - 273.15,
-                "load_angle_deg": math.degrees(angle),
-                "slip": own,
-                "slip_from_more": other,
-            }
+            _place(speed, load, kelvin, angle) | {"slip": own, "slip_from_more": other}
             for speed, load, kelvin, angle, own, other in found.two_states.tolist()
         ],
     }
 
 
-def _compare(scene, count, seed, as_json) -> None:
+def _place(speed, load, kelvin, angle) -> dict:
+    """Return an operating point for JSON, in the units of its names."""
+    return {"speed_rpm": speed * 30 / math.pi, "load": load, "oil_temperature_c": kelvin - 273.15, "load_angle_deg": math.degrees(angle)}
+
+
+def _compare(scene, count, seed) -> Result:
     from bearing_sim.studies.steady_check import compare
 
     announce_compilation(scene)
@@ -271,15 +205,17 @@ def _compare(scene, count, seed, as_json) -> None:
         for row in compare(scene, count, seed):
             rows.append(row._asdict() | {"agrees": row.agrees})
             progress(len(rows))
-    if as_json:
-        print_json({"scene": scene.name, "agreeing": sum(row["agrees"] for row in rows), "points": rows})
-        return
+    agreeing = sum(row["agrees"] for row in rows)
+    remark = f"{agreeing} of {count} agree: slip within 2 % or 0.05 points, and life within 2 %"
+    return Result({"scene": scene.name, "agreeing": agreeing, "points": rows}, lambda: _print_comparison(rows), remarks=[remark])
+
+
+def _print_comparison(rows) -> None:
     for row in rows:
         slip = f"slip {100 * row['marched_slip']:8.4f} % simulated, {100 * row['solved_slip']:8.4f} % solved"
         life = f"life {row['marched_life']:9.4g} h, {100 * (row['solved_life'] / row['marched_life'] - 1):+.2f} %"
         where = f"{row['speed_rpm']:7.0f} rpm {row['load']:6.0f} N {row['load_angle_deg']:5.0f} deg {row['oil_temperature_c']:4.0f} °C"
         click.echo(f"{where}: {slip}; {life}{'' if row['agrees'] else '; differs'}")
-    click.echo(f"{sum(row['agrees'] for row in rows)} of {count} agree: slip within 2 % or 0.05 points, and life within 2 %")
 
 
 def _row_of(name, of_table, solved) -> tuple[str, str]:

@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 import click
+from click import FloatRange, IntRange
 
 from bearing_sim.cli.options import (
     channel_sources,
@@ -12,24 +13,24 @@ from bearing_sim.cli.options import (
     json_option,
     level_type,
     log_options,
+    option,
     picture_option,
     quick_option,
-    scene_argument,
-    set_option,
+    scene_options,
 )
-from bearing_sim.cli.outputs import OutputJournal, WritingCommand
+from bearing_sim.cli.outputs import OutputJournal
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
     UsageError,
     announce_compilation,
-    as_file_error,
     as_usage_error,
     judged,
-    print_json,
+    note,
     print_rows,
-    write_csv,
+    scene_of,
 )
+from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.quantity import in_digits
 
 _COURSES = ("manoeuvre", "run_down", "start", "idle")
@@ -47,38 +48,29 @@ _ERRORS = {
 _FASTER, _CLOSER = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
 
 
-@click.command("trade", cls=WritingCommand)
-@scene_argument
-@set_option
-@click.option("--level", "levels", multiple=True, type=level_type, help="Measure this level; can be repeated [default: all].")
-@click.option("--against", type=level_type, help="Level of the reference [default: planar, or the highest that can compute the scene].")
-@click.option(
+@command("trade")
+@scene_options
+@option("--level", "levels", "Measure this level; can be repeated [default: all].", level_type, multiple=True)
+@option("--against", "Level of the reference [default: planar, or the highest that can compute the scene].", level_type)
+@option(
     "--course",
     "course_name",
+    f"What to measure on: {', '.join(_COURSES)}, or a log: a recording as `replay` takes it, or a table with --mapping.",
     default=_COURSES[0],
-    show_default=True,
     metavar="COURSE",
-    help=f"What to measure on: {', '.join(_COURSES)}, or a log: a recording as `replay` takes it, or a table with --mapping.",
 )
-@click.option("--mapping", "mapping_name", metavar="MAPPING", help="Of a table: which columns are what, as for import-csv.")
-@click.option("--windows", type=click.IntRange(1, 1000), default=12, show_default=True, metavar="K", help="Windows of a log that are measured.")
-@click.option(
-    "--window-turns", type=click.FloatRange(6.0, 1e5), default=60.0, show_default=True, metavar="N", help="Cage turns of a window of a log."
-)
+@option("--mapping", "mapping_name", "Of a table: which columns are what, as for import-csv.", metavar="MAPPING")
+@option("--windows", "Windows of a log that are measured.", IntRange(1, 1000), default=12, metavar="K")
+@option("--window-turns", "Cage turns of a window of a log.", FloatRange(6.0, 1e5), default=60.0, metavar="N")
 @log_options
-@click.option("--factor", type=click.FloatRange(min=0.0, min_open=True), help="Recommend the most accurate setting at this multiple of real time.")
-@click.option(
-    "--error",
-    type=click.FloatRange(min=0.0, min_open=True),
-    help="Recommend the fastest setting with at most this error of slip [percentage points].",
-)
-@click.option("--journal", type=OutputJournal(), metavar="PATH", help="File from which an interrupted trade resumes.")
-@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
-@click.option(
+@option("--factor", "Recommend the most accurate setting at this multiple of real time.", FloatRange(min=0.0, min_open=True))
+@option("--error", "Recommend the fastest setting with at most this error of slip [percentage points].", FloatRange(min=0.0, min_open=True))
+@option("--journal", "File from which an interrupted trade resumes.", OutputJournal(), metavar="PATH")
+@option("--workers", "Number of processes [default: all cores].", IntRange(1, 1024), metavar="N")
+@option(
     "--keep/--no-keep",
+    "Keep the settings for this bearing and machine, for `level: auto` and the node's governor; --quick keeps nothing.",
     default=True,
-    show_default=True,
-    help="Keep the settings for this bearing and machine, for `level: auto` and the node's governor; --quick keeps nothing.",
 )
 @csv_option("Write all settings to a table.")
 @picture_option("Draw error against speed")
@@ -101,9 +93,6 @@ def trade(
     journal,
     workers,
     keep,
-    table,
-    picture,
-    as_json,
     quick,
     **channels,
 ):
@@ -115,40 +104,31 @@ def trade(
     cage turns are measured, evenly spread over the time during which the shaft turns; the first third of each is ignored. Times are processor
     time of one core; other programs still slow down shared memory. --workers 1 disturbs them least.
     """
-    from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError
-    from bearing_sim.sweep.tasks import JournalInUse
 
-    with as_usage_error(SceneError), as_file_error():
-        scene = load_scene(scene_name, overrides)  # fails before anything is compiled
+    scene = scene_of(scene_name, overrides)  # fails before anything is compiled
     reading = mapping_name, joint, stamps, channels
     course = _course(course_name, scene, reading, windows, window_turns, longest_gap, quick)
     announce_compilation()
-    from bearing_sim.studies.trade import recommend, trade
+    from bearing_sim.studies.trade import draw, recommend, trade
 
-    with Points("trade", 0) as points, as_usage_error(SceneError, ValueError, JournalInUse), as_file_error():
+    with Points("trade", 0) as points, as_usage_error(ValueError):
         try:
             found = trade(scene_name, overrides, levels, quick, points.update, against, course, journal and journal.path, workers)
         except IntegrationError as error:
             raise FailedRun(f"the reference failed: {error}") from None
-    with as_file_error():
-        if table is not None:
-            write_csv(table, rows_of(found))
-        if picture is not None:
-            from bearing_sim.studies.trade import draw
-
-            with picture.draft() as draft:
-                draw(draft, scene_name, found)
     kept = _keep(scene, found) if keep and not quick else None
     best = recommend(found, factor, error) if factor is not None or error is not None else None
-    if as_json:
-        print_json(_report(found) | {"recommended": best and best.setting.name, "kept": kept and str(kept.path)})
-    else:
+
+    def show():
         print_trade(scene_name, found)
         if kept is not None:
             names = ", ".join(dict.fromkeys(course.name for course in kept.courses))
             click.echo(f"kept for this bearing and machine ({names}): {kept.path}")
         _print_advice(found, factor, error, best)
+
+    report = _report(found) | {"recommended": best and best.setting.name, "kept": kept and str(kept.path)}
+    return Result(report, show, lambda draft: draw(draft, scene_name, found), rows_of(found))
 
 
 def _keep(scene, found):
@@ -158,12 +138,12 @@ def _keep(scene, found):
 
     if not found.is_complete:
         level = found.reference_level
-        click.echo(f"not kept: errors against level {level} say nothing of what it leaves out; leave out --against, or give planar", err=True)
+        note(f"not kept: errors against level {level} say nothing of what it leaves out; leave out --against, or give planar")
         return None
     try:
         return keep(scene, kept_course(found))
     except OSError as error:
-        click.echo(f"warning: the settings are not kept: {error}", err=True)
+        note(f"warning: the settings are not kept: {error}")
         return None
 
 
@@ -195,22 +175,20 @@ def _course(name, scene, reading, windows, window_turns, longest_gap, quick):
 
 def _read(path, mapping_name, joint, stamps, channels):
     """Return the input log of a recording or, with a mapping, of a table."""
-    from bearing_sim.inputs.csv_import import TableError, input_log, load_mapping, read_table
-    from bearing_sim.inputs.log import InputLogError, read_input_log
-    from bearing_sim.scene.loader import SceneError
+    from bearing_sim.inputs.csv_import import input_log, load_mapping, read_table
+    from bearing_sim.inputs.log import read_input_log
 
     names, constants = channel_sources(**channels)
-    with as_usage_error(SceneError, InputLogError, TableError), as_file_error():
-        if mapping_name:
-            if names or constants:
-                raise UsageError("--mapping says what the columns are; give constants there, and leave out the options for topics")
-            return input_log(read_table(path, load_mapping(mapping_name)[0]), path)
-        from bearing_sim.studies.fleet_logs import is_text
+    if mapping_name:
+        if names or constants:
+            raise UsageError("--mapping says what the columns are; give constants there, and leave out the options for topics")
+        return input_log(read_table(path, load_mapping(mapping_name)[0]), path)
+    from bearing_sim.studies.fleet_logs import is_text
 
-        if path.is_file() and is_text(path):
-            hint = f"propose one with: bearing-sim import-csv --guess {path} -o mapping.yaml"
-            raise UsageError(f"--course {path} is a table, which needs a mapping that says which columns are what (--mapping): {hint}")
-        return read_input_log(path, names, joint, stamps, constants=constants)
+    if path.is_file() and is_text(path):
+        hint = f"propose one with: bearing-sim import-csv --guess {path} -o mapping.yaml"
+        raise UsageError(f"--course {path} is a table, which needs a mapping that says which columns are what (--mapping): {hint}")
+    return read_input_log(path, names, joint, stamps, constants=constants)
 
 
 def rows_of(found) -> list[dict]:

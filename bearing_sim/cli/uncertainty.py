@@ -2,44 +2,44 @@
 """``bearing-sim uncertainty``: bands of slip and life where nobody knows some fields, and which field they come from."""
 
 import time
-from pathlib import Path
 
-import click
+from click import IntRange
 
-from bearing_sim.cli.options import csv_option_of, executor_options, json_option, level_type, picture_option, scene_argument, set_option
-from bearing_sim.cli.outputs import OutputWithJournal, WritingCommand
+from bearing_sim.cli.options import PATH, csv_option, executor_options, json_option, level_type, option, picture_option, scene_options
+from bearing_sim.cli.outputs import OutputWithJournal
 from bearing_sim.cli.reporting import (
     Points,
     announce_compilation,
-    as_file_error,
     as_usage_error,
+    attributes,
     judged,
-    print_json,
+    note,
     print_table,
     refuse_idle_temperature,
+    scene_of,
     unknown_report,
     warn_of_scene,
     write_csv,
 )
+from bearing_sim.cli.results import Result, command, picture_into
+from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import quantities, shown, without_dimensions, without_range
 
 SEED = 2017
 
 
-@click.command("uncertainty", cls=WritingCommand)
-@scene_argument
-@set_option
-@click.option(
-    "--samples", default=256, show_default=True, type=click.IntRange(2, 65536), help="Size of each of the two samples; rounded up to a power of two."
-)
-@click.option("--seed", default=SEED, show_default=True, type=click.IntRange(0), help="Seed of the samples.")
-@click.option("--level", type=level_type, help="Level of fidelity [default: the fastest that supports the scene].")
-@click.option("--log", type=click.Path(path_type=Path), metavar="IN.mcap", help="Compute the ranges over time, for speed and load in a log.")
-@click.option("--stretches", default=24, show_default=True, type=click.IntRange(1, 10_000), help="Number of intervals into which the log is divided.")
+@command("uncertainty")
+@scene_options
+@option("--samples", "Size of each of the two samples; rounded up to a power of two.", IntRange(2, 65536), default=256)
+@option("--seed", "Seed of the samples.", IntRange(0), default=SEED)
+@option("--level", "Level of fidelity [default: the fastest that supports the scene].", level_type)
+@option("--log", "Compute the ranges over time, for speed and load in a log.", PATH, metavar="IN.mcap")
+@option("--stretches", "Number of intervals into which the log is divided.", IntRange(1, 10_000), default=24)
 @executor_options
-@csv_option_of(OutputWithJournal(), "Write all points; also written: PATH.journal, from which an interrupted run resumes.")
+@csv_option("Write all points; also written: PATH.journal, from which an interrupted run resumes.", OutputWithJournal())
 @picture_option("Draw ranges and shares")
 @json_option
-def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, workers, dask, table, picture, as_json):
+def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, workers, dask, table, picture):
     """Compute quantiles (5, 50 and 95 %) of slip and life of SCENE, with uncertain fields drawn from the ranges in its block `uncertainty`.
 
     With N samples and d ranges the bearing is computed N (d + 2) times; Sobol' indices show which fields the spread comes from.
@@ -47,40 +47,32 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     unless the scene has another one for them.
     To change a range: --set "uncertainty.lubricant.temperature=[90 degC, 130 degC]"; to remove one: --set uncertainty.FIELD=null.
     """
-    from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.sweep.tasks import Journal, JournalInUse
+    from bearing_sim.sweep.tasks import Journal
 
-    with as_usage_error(SceneError):
-        scene = load_scene(scene_name, overrides)
+    scene = scene_of(scene_name, overrides)
     refuse_idle_temperature(scene, overrides)
     warn_of_scene(scene, before_results=False)
     scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
-    with as_file_error(), as_usage_error(JournalInUse):
-        from bearing_sim.studies.uncertainty_propagation import rounded_up
-        from bearing_sim.sweep.table import note_points, same_points, study_digest
+    from bearing_sim.studies.uncertainty_propagation import rounded_up
+    from bearing_sim.sweep.table import note_points, same_points, study_digest
 
-        conditions = course and (course.seconds.tolist(), course.conditions.tolist())
-        digest = study_digest("uncertainty", scene, rounded_up(samples), seed, level, conditions)
+    conditions = course and (course.seconds.tolist(), course.conditions.tolist())
+    digest = study_digest("uncertainty", scene, rounded_up(samples), seed, level, conditions)
+    if table is not None:
+        table = same_points(table, digest)
+    with Journal(table and table.path.with_suffix(".journal")) as journal:
+        found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
         if table is not None:
-            table = same_points(table, digest)
-        with Journal(table and table.path.with_suffix(".journal")) as journal:
-            found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
-            if table is not None:
-                write_csv(table, _rows(found))
-                note_points(journal, digest, table.path)
-    with as_file_error():
-        if picture is not None:
-            from bearing_sim.studies.run_plot import life_label
-            from bearing_sim.studies.uncertainty_propagation import draw
+            write_csv(table, _rows(found))
+            note_points(journal, digest, table.path)
+    name = scene.name if log is None else f"{scene.name} under {log.name}"
+    if picture is not None:
+        from bearing_sim.studies.run_plot import life_label
+        from bearing_sim.studies.uncertainty_propagation import draw
 
-            ranges = f"{len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
-            with picture.draft() as draft:
-                title = f"{scene.name}{'' if log is None else f' under {log.name}'}: {ranges}"
-                draw(draft, title, found, life_label([scene]), course and course.middles)
-    if as_json:
-        print_json({"scene": scene.name, "log": log and log.name, **report, **unknown})
-    else:
-        print_bands(scene.name if log is None else f"{scene.name} under {log.name}", report)
+        title = f"{name}: {len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
+        picture_into(picture, draw, title, found, life_label([scene]), course and course.middles)
+    return Result({"scene": scene.name, "log": log and log.name, **report, **unknown}, lambda: print_bands(name, report))
 
 
 def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, workers=None, dask=None):
@@ -94,17 +86,12 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, w
     course : `bearing_sim.studies.uncertainty_propagation.Stretches`, or None.
     """
     announce_compilation()
-    from bearing_sim.studies.uncertainty_propagation import UncertaintyError, lowest_level, rounded_up, study, varied_ranges
-    from bearing_sim.sweep.tasks import ClusterError
+    from bearing_sim.studies.uncertainty_propagation import lowest_level, rounded_up, study, varied_ranges
 
     base = rounded_up(samples)
     began, given = time.perf_counter(), (course.conditions, course.seconds) if course is not None else None
-    with as_usage_error(UncertaintyError):
-        fields = len(varied_ranges(lowest_level(scene, level)[0]))
-    with (
-        Points(f"uncertainty of {scene.name}", base * (fields + 2)) as points,
-        as_usage_error(UncertaintyError, ClusterError, ValueError),
-    ):
+    fields = len(varied_ranges(lowest_level(scene, level)[0]))
+    with Points(f"uncertainty of {scene.name}", base * (fields + 2)) as points, as_usage_error(ValueError):
         found = study(scene, base, seed, level=level, course=given, journal=journal, workers=workers, dask=dask, progress=points.update)
     return found, {**_report(scene, found, seed, time.perf_counter() - began, course), "kept_from_before": points.kept}
 
@@ -113,15 +100,13 @@ def _course(log, scene, count):
     """Return the scene, without ranges of fields that the log gives, the log's inputs in intervals, and for how long they are unknown."""
     import math
 
-    from bearing_sim.inputs.log import InputLogError, read_input_log
-    from bearing_sim.scene.uncertainty import without_range
+    from bearing_sim.inputs.log import read_input_log
     from bearing_sim.studies.uncertainty_propagation import stretches
 
-    with as_usage_error(InputLogError), as_file_error():
-        course = judged(read_input_log(log), scene)
+    course = judged(read_input_log(log), scene)
     kelvin = math.nan  # the scene's own, which may be uncertain
     if "oil_temperature" in course.stamps and any(one.field == "lubricant.temperature" for one in scene.uncertainty):
-        click.echo("the log gives the oil temperature: its range in the scene is not used", err=True)
+        note("the log gives the oil temperature: its range in the scene is not used")
         scene = without_range(scene, "lubricant.temperature")
     run = course.segment(None, kelvin)
     return scene, stretches(run.instants * 1e-9, run.inputs, run.in_gap, count), unknown_report(course)
@@ -140,10 +125,7 @@ def _report(scene, found, seed, seconds, course) -> dict:
         "evaluations": len(found.design.points),
         "without_answer": found.absent,
         "wall_seconds": seconds,
-        "ranges": {
-            one.field: {"low": one.low, "high": one.high, "distribution": one.distribution, "mode": one.mode, "source": one.source}
-            for one in found.ranges
-        },
+        "ranges": {one.field: attributes(one, "low", "high", "distribution", "mode", "source") for one in found.ranges},
     }
     for name, band in found.bands.items():
         shares = found.indices[name]
@@ -177,7 +159,6 @@ def _report(scene, found, seed, seconds, course) -> dict:
 def band_rows(report) -> list[tuple[str, str]]:
     """Return table rows: the quantiles with their sampling errors, and the fields they depend on, most important first."""
     from bearing_sim.scene.display import number
-    from bearing_sim.scene.uncertainty import without_dimensions
 
     rows, note = [], without_dimensions(report["ranges"])
     for name, label, scale, unit in (("cage_slip", "cage slip", 100.0, "%"), ("life_hours", "life", 1.0, "h")):
@@ -229,9 +210,6 @@ def _share(share: float, interval, samples: int) -> str:
 
 def print_bands(name, report) -> None:
     """Print a report as a table."""
-    from bearing_sim.scene.scene import Scene
-    from bearing_sim.scene.uncertainty import quantities, shown
-
     known = quantities(Scene)
     ranges = [
         f"{field}: {shown(known, field, one['low'])} to {shown(known, field, one['high'])}, {one['distribution']}"
@@ -257,9 +235,6 @@ def print_bands(name, report) -> None:
 
 
 def _rows(found) -> list[dict]:
-    from bearing_sim.scene.scene import Scene
-    from bearing_sim.scene.uncertainty import quantities
-
     known = quantities(Scene)
     columns = [f"{one.field} [{known[one.field].unit if one.field in known and known[one.field].unit else '1'}]" for one in found.ranges]
     answers = zip(found.answers["cage_slip"].tolist(), found.answers["life_hours"].tolist())

@@ -2,24 +2,21 @@
 """``bearing-sim vibration``: cage speed, and what is damaged, out of the record of an accelerometer."""
 
 import math
-from pathlib import Path
 
 import click
 import numpy as np
+from click import IntRange
 
-from bearing_sim.cli.options import allow_outside_option, csv_option, json_option, picture_option
-from bearing_sim.cli.outputs import WritingCommand
+from bearing_sim.cli.options import PATH, allow_outside_option, csv_option, flag, json_option, option, picture_option
 from bearing_sim.cli.reporting import (
     UsageError,
-    as_file_error,
-    as_usage_error,
-    print_json,
     print_rows,
     print_table,
     quantity_of,
     tell_use,
-    write_csv,
 )
+from bearing_sim.cli.results import Result, command
+from bearing_sim.scene.loader import load_bearing, load_scene
 
 _LARGEST_PARTS = 100_000
 _MARGIN = 1.5  # times the largest slip of the model and of draws of its uncertain fields (assumption: draws are few)
@@ -27,33 +24,33 @@ _CAGE = "the cage, or a roller at each turn of the cage"
 _SOURCES = {"lines": "by its own lines", "recorded": "as recorded", "given": "as given; it has no clear lines of its own"}
 
 
-@click.command("vibration", cls=WritingCommand)
-@click.argument("data", type=click.Path(path_type=Path), metavar="FILE")
+@command("vibration")
+@click.argument("data", type=PATH, metavar="FILE")
 @allow_outside_option
-@click.option("--bearing", metavar="BEARING", help="Designation such as 'NU 205', or a bundled bearing; its rollers and diameters are used.")
-@click.option("--scene", "scene_name", metavar="SCENE", help="Scene whose bearing it is, instead.")
-@click.option("--rollers", type=click.IntRange(3, 400), metavar="Z", help="Number of rollers, where the bearing is not known otherwise.")
-@click.option("--roller-diameter", metavar="LENGTH", help="Diameter of the rollers as measured, such as 7.5mm.")
-@click.option("--pitch-diameter", metavar="LENGTH", help="Diameter of their pitch circle as measured, such as 38.5mm.")
-@click.option("--measured-geometry", is_flag=True, help="The diameters of --bearing or --scene were measured on this bearing.")
-@click.option("--speed", metavar="SPEED", help="Shaft speed, about, such as 600rpm; it is taken from the shaft's own lines.")
-@click.option("--tolerance", default="2%", show_default=True, metavar="FRACTION", help="Within which the speed is known.")
-@click.option(
+@option("--bearing", "Designation such as 'NU 205', or a bundled bearing; its rollers and diameters are used.", metavar="BEARING")
+@option("--scene", "scene_name", "Scene whose bearing it is, instead.", metavar="SCENE")
+@option("--rollers", "Number of rollers, where the bearing is not known otherwise.", IntRange(3, 400), metavar="Z")
+@option("--roller-diameter", "Diameter of the rollers as measured, such as 7.5mm.", metavar="LENGTH")
+@option("--pitch-diameter", "Diameter of their pitch circle as measured, such as 38.5mm.", metavar="LENGTH")
+@flag("--measured-geometry", "The diameters of --bearing or --scene were measured on this bearing.")
+@option("--speed", "Shaft speed, about, such as 600rpm; it is taken from the shaft's own lines.", metavar="SPEED")
+@option("--tolerance", "Within which the speed is known.", default="2%", metavar="FRACTION")
+@option(
     "--largest-slip",
-    metavar="FRACTION",
-    help="Of the cage that is possible: no other lines are looked for [default: with --scene what level steady finds, with its uncertain fields;"
+    "Of the cage that is possible: no other lines are looked for [default: with --scene what level steady finds, with its uncertain fields;"
     " otherwise 10%].",
+    metavar="FRACTION",
 )
-@click.option("--no-shaft-lines", is_flag=True, help="Take the speed as it is given, without looking for the shaft's own lines.")
-@click.option("--channel", metavar="NAME", help="The vibration in FILE: a column, variable, data set, matrix column as NAME[k], or /topic.field.")
-@click.option("--rate", metavar="RATE", help="Sampling rate, such as 50kHz [default: as FILE says].")
-@click.option("--time-channel", metavar="NAME", help="Column of times in seconds, from which the rate follows [default: one that is called so].")
-@click.option("--speed-channel", metavar="NAME", help="Shaft speed in FILE, one value a sample.")
-@click.option("--speed-unit", default="rpm", show_default=True, metavar="UNIT", help="Of --speed-channel.")
-@click.option("--band", metavar="LOW:HIGH", help="Band of the envelope, such as 6kHz:12kHz [default: chosen by kurtogram].")
-@click.option("--from", "begin", metavar="TIME", help="Leave out what is before this time of the record, such as 2s.")
-@click.option("--to", "end", metavar="TIME", help="Leave out what is after this time of the record.")
-@click.option("--every", metavar="TIME", help="Cage speed in parts of this length [default: quarters of the record].")
+@flag("--no-shaft-lines", "Take the speed as it is given, without looking for the shaft's own lines.")
+@option("--channel", "The vibration in FILE: a column, variable, data set, matrix column as NAME[k], or /topic.field.", metavar="NAME")
+@option("--rate", "Sampling rate, such as 50kHz [default: as FILE says].", metavar="RATE")
+@option("--time-channel", "Column of times in seconds, from which the rate follows [default: one that is called so].", metavar="NAME")
+@option("--speed-channel", "Shaft speed in FILE, one value a sample.", metavar="NAME")
+@option("--speed-unit", "Of --speed-channel.", default="rpm", metavar="UNIT")
+@option("--band", "Band of the envelope, such as 6kHz:12kHz [default: chosen by kurtogram].", metavar="LOW:HIGH")
+@option("--from", "begin", "Leave out what is before this time of the record, such as 2s.", metavar="TIME")
+@option("--to", "end", "Leave out what is after this time of the record.", metavar="TIME")
+@option("--every", "Cage speed in parts of this length [default: quarters of the record].", metavar="TIME")
 @csv_option("Write the cage speed in parts of the record to a table.")
 @picture_option("Draw the envelope spectrum with the lines that were found")
 @json_option
@@ -79,8 +76,6 @@ def vibration(
     end,
     every,
     table,
-    picture,
-    as_json,
 ):
     """Find the cage speed in the vibration that FILE holds, and which ring or roller shows; or that there is no line.
 
@@ -91,10 +86,8 @@ def vibration(
     same designation moves it by 3 %.
     """
     from bearing_sim.files.limits import VIBRATION_ANALYSED
-    from bearing_sim.scene.loader import SceneError
     from bearing_sim.vibration.analysis import analyse
     from bearing_sim.vibration.reading import read_vibration
-    from bearing_sim.vibration.signal import VibrationError
 
     hertz = None if rate is None else _positive("--rate", rate, "Hz")
     shaft_speed = None if speed is None else quantity_of("--speed", speed, "rad/s")
@@ -103,31 +96,26 @@ def vibration(
     within = quantity_of("--tolerance", tolerance, "")
     if not 0.0 < within <= 0.2:
         raise UsageError(f"--tolerance {tolerance}: expected more than 0 and at most 20 %, such as 2%")
-    with as_usage_error(SceneError, VibrationError), as_file_error():
-        geometry = _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, measured_geometry)
-        record = read_vibration(data, channel, hertz, time_channel, speed_channel, speed_unit)
-        if record.tally is not None:
-            tell_use(record.tally, data)
-        record = _cut(record, begin, end)
-        VIBRATION_ANALYSED.check(len(record.samples), f"{record.name}, which --from and --to cut")
-        parts = _parts(record, every)
-        geometry = geometry._replace(largest_slip=_largest_slip(largest_slip, scene_name, shaft_speed, record))
-        found = analyse(record, geometry, shaft_speed, within, _band(band, record.rate), not no_shaft_lines, parts)
+    geometry = _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, measured_geometry)
+    record = read_vibration(data, channel, hertz, time_channel, speed_channel, speed_unit)
+    if record.tally is not None:
+        tell_use(record.tally, data)
+    record = _cut(record, begin, end)
+    VIBRATION_ANALYSED.check(len(record.samples), f"{record.name}, which --from and --to cut")
+    parts = _parts(record, every)
+    geometry = geometry._replace(largest_slip=_largest_slip(largest_slip, scene_name, shaft_speed, record))
+    found = analyse(record, geometry, shaft_speed, within, _band(band, record.rate), not no_shaft_lines, parts)
     rows = [_row(part) for part in found.parts]
-    with as_file_error():
-        if table is not None:
-            if not rows:
-                raise UsageError(f"{table}: nothing to write: {found.reason}")
-            write_csv(table, rows)
-        if picture is not None:
-            from bearing_sim.vibration.picture import draw
+    if table is not None and not rows:
+        raise UsageError(f"{table}: nothing to write: {found.reason}")
 
-            with picture.draft() as draft:
-                draw(draft, record, geometry, found)
-    if as_json:
-        print_json({"file": data.name, **_report(found, record, geometry), "parts": rows})
-    else:
-        _print(data.name, record, geometry, found)
+    def draw(draft):
+        from bearing_sim.vibration.picture import draw
+
+        draw(draft, record, geometry, found)
+
+    report = {"file": data.name, **_report(found, record, geometry), "parts": rows}
+    return Result(report, lambda: _print(data.name, record, geometry, found), draw, rows)
 
 
 def _positive(option: str, text: str, unit: str) -> float:
@@ -156,8 +144,6 @@ def _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, mea
         return Geometry(rollers, size, True, f"{rollers} rollers")
     if roller_diameter is not None or pitch_diameter is not None:
         raise UsageError("--roller-diameter and --pitch-diameter go with --rollers")
-    from bearing_sim.scene.loader import load_bearing, load_scene
-
     chosen = load_bearing(bearing) if bearing is not None else load_scene(scene_name).bearing
     return Geometry(chosen.roller.count, chosen.roller.diameter / chosen.pitch_diameter, measured, chosen.designation or chosen.name)
 
@@ -174,7 +160,6 @@ def _largest_slip(text, scene_name, shaft_speed, record) -> float:
     if scene_name is None:
         return LARGEST_SLIP
     from bearing_sim.cli.reporting import announce_compilation
-    from bearing_sim.scene.loader import load_scene
     from bearing_sim.simulation import IntegrationError, scene_inputs
     from bearing_sim.studies.uncertainty_propagation import UncertaintyError, largest_slip
 

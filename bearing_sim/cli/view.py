@@ -6,51 +6,51 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import click
+from click import IntRange
 
-from bearing_sim.cli.options import size_option
-from bearing_sim.cli.outputs import OutputFile, WritingCommand, default_output
-from bearing_sim.cli.reporting import FailedRun, UsageError, as_file_error, as_usage_error, progress_bar, tell_use
+from bearing_sim.cli.options import PATH, flag, option, size_option
+from bearing_sim.cli.outputs import OutputFile, default_output
+from bearing_sim.cli.reporting import FailedRun, UsageError, as_usage_error, note, progress_bar, tell_use
+from bearing_sim.cli.results import command
 from bearing_sim.files.outputs import Output
 
 
-@click.command("view", cls=WritingCommand)
-@click.argument("recording", type=click.Path(path_type=Path), metavar="RUN.mcap")
-@click.option("-o", "--out", type=OutputFile(), metavar="RUN.rrd", help="File for rerun [default: next to the recording].")
-@click.option("--screenshot", type=OutputFile(), metavar="PICTURE.png", help="Write a picture of the view instead of opening it.")
-@click.option("--at", "seconds", type=float, metavar="SECONDS", help="Simulated time of the picture [default: the end].")
+@command("view")
+@click.argument("recording", type=PATH, metavar="RUN.mcap")
+@option("-o", "--out", "File for rerun [default: next to the recording].", OutputFile(), metavar="RUN.rrd")
+@option("--screenshot", "Write a picture of the view instead of opening it.", OutputFile(), metavar="PICTURE.png")
+@option("--at", "seconds", "Simulated time of the picture [default: the end].", float, metavar="SECONDS")
 @size_option
-@click.option(
+@option(
     "--speed",
     "--speed-topic",
     "speed",
+    "In a bag from another source: shaft speed, /topic or /topic.field[0] or a constant such as 1500rpm [default: /shaft_speed].",
     metavar="TOPIC",
-    help="In a bag from another source: shaft speed, /topic or /topic.field[0] or a constant such as 1500rpm [default: /shaft_speed].",
 )
-@click.option("--load", "--load-topic", "load", metavar="TOPIC", help="Likewise for the radial load, or 800N [default: /radial_load].")
-@click.option("--cage", "--cage-topic", "cage", metavar="TOPIC", help="Likewise for a measured cage speed [default: /cage_speed_measured].")
-@click.option(
+@option("--load", "--load-topic", "load", "Likewise for the radial load, or 800N [default: /radial_load].", metavar="TOPIC")
+@option("--cage", "--cage-topic", "cage", "Likewise for a measured cage speed [default: /cage_speed_measured].", metavar="TOPIC")
+@option(
     "--clearance",
     "--clearance-topic",
     "clearance",
+    "Likewise for a measured running clearance [default: /running_clearance_measured].",
     metavar="TOPIC",
-    help="Likewise for a measured running clearance [default: /running_clearance_measured].",
 )
-@click.option(
+@option(
     "--oil-temperature",
     "--temperature",
     "--temperature-topic",
     "temperature",
+    "Likewise for the oil temperature [default: /oil_temperature].",
     metavar="TOPIC",
-    help="Likewise for the oil temperature [default: /oil_temperature].",
 )
-@click.option("--speed-unit", metavar="UNIT", help="Unit of the speeds that are fields, such as rpm [default: rad/s].")
-@click.option("--load-unit", metavar="UNIT", help="Unit of a load that is a field, such as kN [default: N].")
-@click.option("--clearance-unit", metavar="UNIT", help="Unit of a clearance that is a field, such as um [default: m].")
-@click.option("--web", "is_web", is_flag=True, help="Show it in a browser: serve rerun's web viewer on 127.0.0.1 until Ctrl-C.")
-@click.option(
-    "--web-port", type=click.IntRange(0, 65535), metavar="PORT", help="Port on 127.0.0.1 for --web; 0 for any that is free [default: 9090]."
-)
-@click.option("--open/--no-open", "opens", default=None, help="Open rerun [default: if there is a display].")
+@option("--speed-unit", "Unit of the speeds that are fields, such as rpm [default: rad/s].", metavar="UNIT")
+@option("--load-unit", "Unit of a load that is a field, such as kN [default: N].", metavar="UNIT")
+@option("--clearance-unit", "Unit of a clearance that is a field, such as um [default: m].", metavar="UNIT")
+@flag("--web", "is_web", "Show it in a browser: serve rerun's web viewer on 127.0.0.1 until Ctrl-C.")
+@option("--web-port", "Port on 127.0.0.1 for --web; 0 for any that is free [default: 9090].", IntRange(0, 65535), metavar="PORT")
+@option("--open/--no-open", "opens", "Open rerun [default: if there is a display].", default=None)
 def view(
     recording,
     out,
@@ -76,7 +76,6 @@ def view(
     time; topics that cannot be shown are listed. --web needs neither a display nor the internet, and nobody can connect from another
     machine, except by a tunnel (ssh -L 9090:127.0.0.1:9090).
     """
-    from bearing_sim.recording.bag import RecordingError
 
     if web_port is not None and not is_web:
         raise UsageError("--web-port goes with --web")
@@ -85,7 +84,7 @@ def view(
     given = {"speed": (speed, speed_unit), "load": (load, load_unit), "cage_speed": (cage, speed_unit), "temperature": (temperature, None)}
     given["clearance"] = clearance, clearance_unit
     lines = _lines({role: texts for role, texts in given.items() if texts[0]})
-    with as_usage_error(RecordingError), as_file_error(), ExitStack() as stack:
+    with ExitStack() as stack:
         if out is None and screenshot is not None:  # nobody has asked for the file itself
             out = Output(Path(stack.enter_context(TemporaryDirectory())) / "view.rrd")
         out = out or default_output((recording.with_suffix("") if recording.suffix == ".active" else recording).with_suffix(".rrd"))
@@ -142,11 +141,11 @@ def _write_bag(recording: Path, out: Path, seconds: float | None, lines: dict, c
     found = read_bag_series(recording, lines, constants)
     tell_use(found.tally, recording)
     _require_within(seconds, 0.0, found.duration)
-    click.echo(f"shown as a bag from another source ({why}); not shown:", err=True)
+    note(f"shown as a bag from another source ({why}); not shown:")
     for line in found.left_out[:_MOST_LEFT_OUT]:
-        click.echo(f"  {line}", err=True)
+        note(f"  {line}")
     if (more := len(found.left_out) - _MOST_LEFT_OUT) > 0:
-        click.echo(f"  and {more} more, which the view lists", err=True)
+        note(f"  and {more} more, which the view lists")
     write_bag_view(out, recording.name, found)
     return 0.0, found.duration
 
@@ -178,8 +177,7 @@ def _take_picture(rrd: Path, picture: Output, seconds: float, size: tuple[int, i
             content, problems = viewer.png(), viewer.problems()
     except ViewerFailed as error:
         raise FailedRun(f"no picture: {error}") from None
-    with as_file_error():
-        picture.write_bytes(content)
+    picture.write_bytes(content)
     if problems:
         raise FailedRun(f"{picture} was written, but the viewer reports: {'; '.join(problems)}")
 

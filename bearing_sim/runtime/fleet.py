@@ -58,7 +58,7 @@ def run_fleet(scene: Scene, bearings: int, seconds: float) -> FleetRun:
         elapsed, spent = time.monotonic() - began, time.process_time() - had
         simulated = [_simulated(model) - before for model, before in zip(models, times)]
         given_up = max(model.solver.pace.lost - before for model, before in zip(models, lost))
-        return FleetRun(bearings, spent / sum(simulated), given_up, min(simulated) / elapsed, beats / elapsed)
+        return FleetRun(bearings, spent / sum(simulated) if any(simulated) else math.inf, given_up, min(simulated) / elapsed, beats / elapsed)
     finally:
         for model in models:
             model.close()

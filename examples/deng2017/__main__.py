@@ -10,11 +10,12 @@ sys.path[:0] = [str(ROOT), str(ROOT / "examples")]
 import click  # noqa: E402
 
 from bearing_sim.cli.options import executor_options, json_option, set_option  # noqa: E402
-from bearing_sim.cli.outputs import OutputFolder, WritingCommand  # noqa: E402
-from bearing_sim.cli.reporting import Points, announce_compilation, as_file_error, as_usage_error, print_json  # noqa: E402
+from bearing_sim.cli.outputs import OutputFolder  # noqa: E402
+from bearing_sim.cli.reporting import Points, announce_compilation, as_ending, print_json  # noqa: E402
+from bearing_sim.cli.results import Command  # noqa: E402
 
 
-@click.command("deng2017", cls=WritingCommand)
+@click.command("deng2017", cls=Command)
 @click.option("-o", "--out", type=OutputFolder(), default="deng2017", show_default=True, metavar="FOLDER", help="Output folder.")
 @set_option
 @click.option("--quick", is_flag=True, help="Few points and short runs, to check that everything works.")
@@ -26,15 +27,12 @@ def deng2017(out, overrides, quick, workers, dask, as_json):
     Writes tables (Parquet, CSV), figures, claims and a page of them, report.html, to FOLDER.  An interrupted study
     resumes where it stopped.  With --set every scene of the study departs from the paper, for example by a support.
     """
-    from bearing_sim.scene.loader import SceneError
-    from bearing_sim.sweep.tasks import ClusterError, JournalInUse
-
     announce_compilation()
     from deng2017.page import study_page
     from deng2017.run import require_same_study, run_study
 
     points = Points("deng2017", 0)
-    with as_file_error(), as_usage_error(SceneError, ClusterError, JournalInUse), points:
+    with as_ending(), points:
         require_same_study(out, quick, overrides)
         findings = run_study(out.path, quick, workers, dask, points.update, overrides)
         (out.path / "report.html").write_text(study_page(out.path))

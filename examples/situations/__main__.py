@@ -11,12 +11,13 @@ sys.path[:0] = [str(ROOT), str(ROOT / "examples")]
 import click  # noqa: E402
 
 from bearing_sim.cli.options import json_option, size_option  # noqa: E402
-from bearing_sim.cli.outputs import OutputFolder, WritingCommand  # noqa: E402
-from bearing_sim.cli.reporting import FailedRun, announce_compilation, as_file_error, print_json, print_rows, progress_bar  # noqa: E402
+from bearing_sim.cli.outputs import OutputFolder  # noqa: E402
+from bearing_sim.cli.reporting import FailedRun, announce_compilation, as_ending, print_json, print_rows, progress_bar  # noqa: E402
+from bearing_sim.cli.results import Command  # noqa: E402
 from bearing_sim.files.outputs import Output  # noqa: E402
 
 
-@click.command("situations", cls=WritingCommand)
+@click.command("situations", cls=Command)
 @click.option("-o", "--out", type=OutputFolder(), required=True, metavar="FOLDER", help="Folder for NAME.rrd and NAME.png.")
 @click.option("--only", "names", multiple=True, metavar="NAME", help="Run only this situation; can be repeated.")
 @size_option
@@ -36,7 +37,7 @@ def situations(out, names, size, pictures, as_json):
             raise click.BadParameter(f"{name}: expected one of {', '.join(known)}", param_hint="--only")
     announce_compilation()
     report = {}
-    with as_file_error():
+    with as_ending():
         views = {name: Output(out.path / f"{name}.rrd", out.force) for name in names or known}
         drawn = {name: Output(out.path / f"{name}.png", out.force) for name in names or known}
         out.path.mkdir(exist_ok=True)

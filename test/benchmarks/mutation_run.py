@@ -178,7 +178,7 @@ def is_compiled(fault: Fault) -> bool:
 def imports_of(path: Path) -> set[str]:
     """Return the modules of the package that a file imports, also by name as the command line does."""
     text = path.read_text(encoding="utf-8")
-    found = {f"{PACKAGE}.{path.parent.name}.{module}" for module in re.findall(r'Entry\("(\w+):', text)}
+    found = {f"{PACKAGE}.{path.parent.name}.{module}" for module in re.findall(r"^[\w-]+ +(\w+):\w+ +[A-Z]", text, re.M)}
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith(PACKAGE):
             found |= {node.module, *(f"{node.module}.{name.name}" for name in node.names)}

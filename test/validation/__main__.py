@@ -11,14 +11,14 @@ sys.path[:0] = [str(ROOT), str(ROOT / "test"), str(ROOT / "examples")]
 import click  # noqa: E402
 
 from bearing_sim.cli.options import allow_outside_option, csv_option, json_option, level_type, picture_option, set_option  # noqa: E402
-from bearing_sim.cli.outputs import OutputFile, OutputJournal, WritingCommand, default_output  # noqa: E402
+from bearing_sim.cli.outputs import OutputFile, OutputJournal, default_output  # noqa: E402
 from bearing_sim.cli.reporting import (  # noqa: E402
     FailedRun,
     Points,
     UsageError,
     announce_compilation,
+    as_ending,
     as_failed_run,
-    as_file_error,
     as_usage_error,
     command_line,
     print_json,
@@ -28,6 +28,7 @@ from bearing_sim.cli.reporting import (  # noqa: E402
     seconds_of,
     write_csv,
 )
+from bearing_sim.cli.results import Command  # noqa: E402
 from bearing_sim.files.limits import FileError  # noqa: E402
 from bearing_sim.scene.display import number as number_text  # noqa: E402
 from bearing_sim.scene.errors import did_you_mean  # noqa: E402
@@ -37,7 +38,7 @@ _SHOWN = 12  # reasons per table
 _HTML, _MARKDOWN = (".html", ".htm"), ".md"
 
 
-@click.command("report", cls=WritingCommand)
+@click.command("report", cls=Command)
 @click.option("-o", "--out", type=OutputFile(), metavar="PATH", help="The page, .html or .md [default: validation.html].")
 @click.option("--only", "names", multiple=True, metavar="CHECK", help="Run only this check; can be repeated.")
 @click.option(
@@ -75,7 +76,7 @@ def report(out, names, tests, recordings, quick):
     with progress_bar("checks", len(chosen)) as show:
         results = [*run(chosen, quick, show), *held_by_tests]
     page = (markdown_page if out.path.suffix.lower() == _MARKDOWN else html_page)(results, command_line())
-    with as_file_error():
+    with as_ending():
         out.write_text(page)
     for each in results:
         if each.verdict != "holds":
@@ -132,7 +133,7 @@ def _print_slices(name, found) -> None:
     print_rows(f"{name}: results by number of slices", columns, rows)
 
 
-@click.command("scenes", cls=WritingCommand)
+@click.command("scenes", cls=Command)
 @click.option("--count", default=500, show_default=True, type=click.IntRange(1, 1_000_000), help="Random scenes.")
 @click.option("--level", type=level_type, default="slip", show_default=True, help="Level of fidelity.")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the scenes.")
@@ -223,7 +224,7 @@ def _errors(one) -> str:
     return f"off by {100 * one['median']:.2g} % in the median, {100 * one['p95']:.2g} % at 95 %, {100 * one['largest']:.2g} % at most"
 
 
-@click.command("nightly", cls=WritingCommand)
+@click.command("nightly", cls=Command)
 @click.option("--level", "levels", multiple=True, type=level_type, help="Run this level; can be repeated [default: all].")
 @click.option(
     "--samples",
@@ -248,7 +249,7 @@ def nightly(levels, samples, first, seed, corners, long, journal, table, workers
 
     announce_compilation()
     wanted = {level: SAMPLES[level] if samples is None else samples for level in levels or SAMPLES}
-    with as_file_error(), as_usage_error(JournalInUse), Points("nightly", 0) as points:
+    with as_ending(), as_usage_error(JournalInUse), Points("nightly", 0) as points:
         report = run_nightly(wanted, seed, corners, long, journal and journal.path, workers, points.update, first)
         if table is not None:
             write_csv(table, report.cases)
@@ -283,7 +284,7 @@ def _print_nightly(report) -> None:
             click.echo(f"{row.level}, {row.runs}: {name} failed: {reason}")
 
 
-@click.command("friction", cls=WritingCommand)
+@click.command("friction", cls=Command)
 @set_option
 @csv_option("Write all operating points to a table.")
 @json_option
@@ -300,7 +301,7 @@ def friction(overrides, table, as_json):
     found, speeds = moment_table(overrides=overrides), thermal_speeds(overrides=overrides)
     rows = [{**one._asdict(), "simple": one.simple, "ratio": one.ratio} for one in found]
     if table is not None:
-        with as_file_error():
+        with as_ending():
             write_csv(table, rows)
     with progress_bar("film ratios", len(FILM_BEARINGS)) as show:
         ratios = part_ratios(lambda name: show(FILM_BEARINGS.index(name)), overrides, FILM_BEARINGS)
@@ -367,7 +368,7 @@ def _print_films(films) -> None:
     print_rows(title, ("kappa", "whole moment", "rolling over M_rr", "sliding over M_sl", "cage slip [%]"), rows)
 
 
-@click.command("extremes", cls=WritingCommand)
+@click.command("extremes", cls=Command)
 @click.option("--samples", default=500, show_default=True, type=click.IntRange(0, 1_000_000), help="Scenes of the Latin hypercube per level.")
 @click.option("--level", "levels", multiple=True, type=level_type, help="Study this level; can be repeated [default: all].")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the Latin hypercube.")
@@ -386,7 +387,7 @@ def extremes(samples, levels, seed, long, workers, as_json, picture, table):
 
     with progress_bar("extremes", 1.0) as progress:
         report, outcomes = run_extremes(samples, levels, seed, long, lambda text: click.echo(f"{text} ...", err=True), progress, workers)
-    with as_file_error():
+    with as_ending():
         if table is not None:
             write_csv(table, table_rows(outcomes))
         if picture is not None:
