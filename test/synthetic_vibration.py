@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Synthetic vibration of a bearing whose cage speed is known, for checking what `bearing_sim.vibration.analysis` finds.
+"""Synthetic vibration of a bearing whose cage speed is known, for checking what `bearing_sim.watchers.vibration.analysis` finds.
 
 A spot on a raceway or a roller is met at the instants that the kinematics give; each meeting excites a decaying oscillation of the housing.
 Rollers stand somewhere in their pockets, anew at each meeting, and the cage's speed wanders.  To it come the shaft's own lines, two machines
@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.signal
 
-from bearing_sim.vibration.signal import Vibration
+from bearing_sim.watchers.vibration.signal import Vibration
 
 _DAMPING = 0.04  # of the housing's oscillation, relative (assumption: bolted steel, 0.01 to 0.1)
 _WANDERINGS = 40  # of the cage speed over a record

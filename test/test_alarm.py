@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from bearing_sim.monitoring.monitor import Alarm
 from bearing_sim.scene.scene import Hold
+from bearing_sim.watchers.monitoring.monitor import Alarm
 
 HOLD = Hold(hysteresis=0.1, raise_after=1.0, clear_after=2.0)
 STEP = 0.1  # s

@@ -22,8 +22,6 @@ STANDARD = set(sys.stdlib_module_names)
 # A room imports only rooms above it in this table, so there is no cycle.
 ROOMS = {
     "__init__": ("", ""),
-    "extras": ("", ""),
-    "programs": ("", "extras"),
     "files": ("numpy platformdirs yaml", ""),
     "scene": ("numpy scipy pint pydantic pydantic_core yaml", "files"),
     "numerics": ("numpy numba llvmlite", "files"),
@@ -33,31 +31,26 @@ ROOMS = {
     "simulation": ("numpy", "scene numerics model levels"),
     "messages": ("numpy rosbags", "files model"),
     "recording": ("lz4 mcap numpy pyarrow rosbags yaml zstandard", "files scene model messages"),
-    "stored_state": ("numpy pyarrow", "files scene model messages recording"),
-    "inputs": ("numpy pyarrow pydantic yaml", "extras files scene simulation messages recording"),
-    "vibration": ("h5py matplotlib nptdms numpy pyarrow pyuff scipy", "extras files scene messages recording"),
-    "monitoring": ("numpy scipy", "scene physics model messages"),
-    "estimation": ("numpy scipy", "files scene numerics physics model levels messages monitoring"),
-    "runtime": ("numpy", "files scene numerics model levels simulation messages recording stored_state inputs monitoring estimation vibration"),
+    "watchers": ("numpy pyarrow h5py matplotlib nptdms pyuff scipy", "files scene model messages recording physics numerics levels"),
+    "inputs": ("numpy pyarrow pydantic yaml", "files scene simulation messages recording"),
+    "runtime": ("numpy", "files scene numerics model levels simulation messages recording watchers inputs"),
     "view": ("PIL numpy rerun rerun_cli", "files scene messages recording"),
-    "sweep": (
-        "numpy pandas pyarrow matplotlib distributed xarray scipy",
-        "files scene numerics physics model levels simulation recording inputs",
-    ),
+    "sweep": ("numpy pandas pyarrow matplotlib distributed xarray scipy", "files scene numerics physics model levels simulation inputs"),
     "studies": (
         "numpy numba pandas scipy matplotlib pydantic sksundae",
-        "files scene numerics physics model levels simulation messages recording inputs monitoring estimation runtime sweep",
+        "files scene physics model levels simulation messages recording inputs watchers runtime sweep",
     ),
     "cli": (
         "click numpy pydantic_core rich",
-        "extras files scene numerics model levels simulation messages recording stored_state inputs vibration estimation runtime view sweep studies",
+        "files scene numerics model levels simulation messages recording watchers inputs runtime view sweep studies",
     ),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",
-        "extras programs files scene numerics simulation messages recording stored_state inputs estimation vibration runtime view",
+        "files scene simulation messages recording watchers inputs runtime view",
     ),
 }
 MOST_FLOORS = 10  # including launch_scripts, which import ros
+MOST_ROOMS, MOST_ARROWS = 18, 90
 
 
 def _imports(path):
@@ -100,6 +93,10 @@ def test_the_law_names_all_rooms_and_no_arrow_that_nobody_needs():
     used = {(_room(name), _room(imported)) for name, path in MODULES.items() for imported in _imports(path) if imported.startswith("bearing_sim")}
     assert {_room(name) for name in MODULES} == set(ROOMS)
     assert {(room, other) for room, (_, rooms) in ROOMS.items() for other in rooms.split()} == {(a, b) for a, b in used if a != b}
+
+
+def test_the_house_has_few_rooms_and_few_arrows_between_them():
+    assert len(ROOMS) <= MOST_ROOMS and sum(len(rooms.split()) for _, rooms in ROOMS.values()) <= MOST_ARROWS
 
 
 def test_the_house_has_at_most_ten_floors():
@@ -203,10 +200,10 @@ def test_quantities_in_the_scene_are_declared_once_with_unit_and_meaning():
 
 
 def test_cores_are_counted_in_one_place():
-    """The bench pins itself to cores and tells the machine's; whoever shares out work asks `bearing_sim.numerics.cores`."""
+    """The bench pins itself to cores and tells the machine's; whoever shares out work asks `bearing_sim.files.cores`."""
     counting = {
         path.relative_to(PACKAGE).as_posix()
         for path in MODULES.values()
         if re.search(r"len\(os\.sched_getaffinity|os\.cpu_count\(\) or", path.read_text())
     }
-    assert counting == {"numerics/cores.py"}
+    assert counting == {"files/cores.py"}

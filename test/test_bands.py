@@ -9,14 +9,14 @@ import pytest
 from made_up_response import FACTOR, FIELD, asking_scene, made_up_response
 
 from bearing_sim import Inputs, Simulation, load_scene
-from bearing_sim.estimation import response as kept
-from bearing_sim.estimation.bands import QUANTITIES, BandEstimator, prior_draws, quantiles
-from bearing_sim.estimation.lives import SlipAndOil
-from bearing_sim.estimation.response import ANSWERS, conditions_at, domain_of, fit_response, read_response, scene_fields, write_response
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.studies.response_points import design, obtain_response, settled_points
 from bearing_sim.studies.uncertainty_propagation import UncertaintyError
+from bearing_sim.watchers.estimation import response as kept
+from bearing_sim.watchers.estimation.bands import QUANTITIES, BandEstimator, prior_draws, quantiles
+from bearing_sim.watchers.estimation.lives import SlipAndOil
+from bearing_sim.watchers.estimation.response import ANSWERS, conditions_at, domain_of, fit_response, read_response, scene_fields, write_response
 
 SCENE = asking_scene()
 CLEARANCE_BAND = QUANTITIES.index("running_clearance")

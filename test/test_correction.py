@@ -10,16 +10,6 @@ from click.testing import CliRunner
 from scipy.stats import qmc
 
 from bearing_sim.cli.main import main
-from bearing_sim.estimation.correction import (
-    changed,
-    changes_between,
-    correction_domain,
-    correction_path,
-    fit_correction,
-    read_correction,
-    write_correction,
-)
-from bearing_sim.estimation.response import Domain, conditions_at
 from bearing_sim.levels.steady import table_builder
 from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CAGE_SLIPS
 from bearing_sim.levels.steady.table_builder import look_up
@@ -29,6 +19,16 @@ from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies import correction_points as studied
 from bearing_sim.sweep.point import run_until_settled
+from bearing_sim.watchers.estimation.correction import (
+    changed,
+    changes_between,
+    correction_domain,
+    correction_path,
+    fit_correction,
+    read_correction,
+    write_correction,
+)
+from bearing_sim.watchers.estimation.response import Domain, conditions_at
 
 DOMAIN = Domain((100.0, 5000.0), (10.0, 5000.0), (330.0, 430.0), 2.0 * math.pi / 3.0, 0.0)
 FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.reference_modification_factor + 1)

@@ -8,7 +8,7 @@ import pytest
 from scipy.signal import lfilter
 from scipy.stats import kstest
 
-from bearing_sim.monitoring.residual import Cusum, Whitener, run_length, threshold_for
+from bearing_sim.watchers.monitoring.residual import Cusum, Whitener, run_length, threshold_for
 
 
 def correlated(lot, count, correlation):

@@ -15,12 +15,12 @@ from validation.estimator_command import estimator as study_estimator
 from validation.estimator_study import CLEARANCE as STUDIED_CLEARANCE
 from validation.estimator_study import PAUSE, TEMPERATURES, Machine, judge, machines, samples, wandering
 
-from bearing_sim.estimation.causes import CLEARANCE, LOAD, OIL, OIL_QUANTITY, SENSOR, TRACTION, Evidence, causes_of
-from bearing_sim.estimation.estimator import Estimator, _Scatter
-from bearing_sim.estimation.live import LiveEstimation
-from bearing_sim.estimation.lives import SlipAndOil
-from bearing_sim.estimation.response import conditions_at, domain_of, fit_response, scene_fields, slip_scale
 from bearing_sim.scene.loader import load_scene
+from bearing_sim.watchers.estimation.causes import CLEARANCE, LOAD, OIL, OIL_QUANTITY, SENSOR, TRACTION, Evidence, causes_of
+from bearing_sim.watchers.estimation.estimator import Estimator, _Scatter
+from bearing_sim.watchers.estimation.live import LiveEstimation
+from bearing_sim.watchers.estimation.lives import SlipAndOil
+from bearing_sim.watchers.estimation.response import conditions_at, domain_of, fit_response, scene_fields, slip_scale
 
 QUANTITY, SCALE, RADIUS = "lubricant.mixture_fraction", "lubricant.traction_scale", "bearing.outer_raceway.low_radius"
 FIELDS = (QUANTITY, SCALE, RADIUS)

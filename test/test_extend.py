@@ -39,7 +39,7 @@ def test_a_watcher_is_one_file_and_one_line(changed):
     assert CHANGES["watcher"].count("\n+++ ") == 2 and CHANGES["watcher"].count("\n-") - CHANGES["watcher"].count("\n--- ") == 0
     found = python(
         "import json, numpy as np; from bearing_sim import load_scene; from bearing_sim.model.sample import new_block\n"
-        "from bearing_sim.monitoring.watchers import Watchers\n"
+        "from bearing_sim.watchers.monitoring.watchers import Watchers\n"
         "scene = load_scene('deng2017_table1', ['watchers=[hottest_roller]']); watchers = Watchers(scene)\n"
         "block = new_block(2, scene.bearing.roller.count); block['shaft_speed'] = 1000.0; block['inner_load'][:, 3] = 500.0\n"
         "watchers.see(block); print(json.dumps([watchers.values(0.0), [event.kind for event in watchers.events(0.0)]]))"

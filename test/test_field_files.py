@@ -14,7 +14,7 @@ from bearing_sim.inputs.csv_import import TableError, mapping_from_yaml, read_ta
 from bearing_sim.inputs.log import InputLogError, read_input_log
 from bearing_sim.inputs.mission import write_mission
 from bearing_sim.messages.definitions import decoder, ros2_name
-from bearing_sim.vibration.reading import read_vibration
+from bearing_sim.watchers.vibration.reading import read_vibration
 
 RPM = np.pi / 30.0
 LABVIEW = (

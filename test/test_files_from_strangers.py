@@ -16,7 +16,6 @@ from click.testing import CliRunner
 
 from bearing_sim import load_scene
 from bearing_sim.cli.main import main
-from bearing_sim.estimation import response
 from bearing_sim.files import limits
 from bearing_sim.files.limits import FileError, LimitError, printable
 from bearing_sim.files.outside import allowing_outside, why_outside
@@ -26,6 +25,7 @@ from bearing_sim.inputs.csv_import import mapping_from_yaml, read_table
 from bearing_sim.inputs.csv_text import TableError
 from bearing_sim.scene.loader import SceneError, scene_from_yaml, scene_to_yaml
 from bearing_sim.scene.quantity import to_si
+from bearing_sim.watchers.estimation import response
 
 sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
 

@@ -13,8 +13,6 @@ import pytest
 from made_up_response import asking_scene, made_up_response
 
 from bearing_sim import load_scene
-from bearing_sim.estimation.correction import Correction, read_correction, write_correction
-from bearing_sim.estimation.response import Domain, read_response, write_response
 from bearing_sim.files import kept
 from bearing_sim.files.kept import checked_contents, kept_if_possible, read_kept, with_checksum, write_kept
 from bearing_sim.files.limits import JSON_FILE
@@ -24,11 +22,13 @@ from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.levels.steady.table_builder import Quality, assembled, read_table, write_table
 from bearing_sim.scene import kept_front
 from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, front_path, read_front
-from bearing_sim.stored_state import history
-from bearing_sim.stored_state.state import new_state
-from bearing_sim.stored_state.state_file import StateError, StateFile, previous_path, read_state
-from bearing_sim.stored_state.totals import Totals
 from bearing_sim.sweep.tasks import Journal, JournalInUse
+from bearing_sim.watchers.estimation.correction import Correction, read_correction, write_correction
+from bearing_sim.watchers.estimation.response import Domain, read_response, write_response
+from bearing_sim.watchers.stored_state import history
+from bearing_sim.watchers.stored_state.state import new_state
+from bearing_sim.watchers.stored_state.state_file import StateError, StateFile, previous_path, read_state
+from bearing_sim.watchers.stored_state.totals import Totals
 
 FLIPS, CUTS = 200, 20
 SCENE = load_scene("deng2017_table1")

@@ -16,11 +16,6 @@ from sim_time_bench import course, write
 from synthetic_run import synthetic_block
 from test_live import Bench
 
-from bearing_sim.estimation import bands
-from bearing_sim.estimation.bands import BandEstimator
-from bearing_sim.estimation.estimator import Estimator
-from bearing_sim.estimation.live import LiveEstimation
-from bearing_sim.estimation.response import conditions_at
 from bearing_sim.inputs.log import read_input_log
 from bearing_sim.inputs.profile import judge
 from bearing_sim.messages import topics
@@ -37,10 +32,15 @@ from bearing_sim.recording.writer import McapSink
 from bearing_sim.runtime.replay import replay
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Counters, Inputs
-from bearing_sim.stored_state.keeper import StateKeeper
-from bearing_sim.stored_state.state import Damaged, StoredState, migrated, new_state
 from bearing_sim.view.blueprint import blueprint
 from bearing_sim.view.worker import RerunFile
+from bearing_sim.watchers.estimation import bands
+from bearing_sim.watchers.estimation.bands import BandEstimator
+from bearing_sim.watchers.estimation.estimator import Estimator
+from bearing_sim.watchers.estimation.live import LiveEstimation
+from bearing_sim.watchers.estimation.response import conditions_at
+from bearing_sim.watchers.stored_state.keeper import StateKeeper
+from bearing_sim.watchers.stored_state.state import Damaged, StoredState, migrated, new_state
 
 START = 1_700_000_000_000_000_000
 SCENE = asking_scene()

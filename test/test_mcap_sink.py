@@ -19,11 +19,11 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 
+from bearing_sim.files import provenance
 from bearing_sim.messages.cdr import load_message_types
 from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, ReceivedInputs
 from bearing_sim.messages.topics import ALWAYS_KNOWN, Origin, outputs, recorded
 from bearing_sim.model.sample import new_block
-from bearing_sim.recording import provenance
 from bearing_sim.recording.writer import METADATA, McapFile, McapSink, message_type
 from bearing_sim.scene.loader import load_scene, scene_from_yaml
 from bearing_sim.simulation import Inputs

@@ -10,9 +10,9 @@ from bearing_sim.messages.events import Level
 from bearing_sim.model.oil import oil_at
 from bearing_sim.model.params import pack
 from bearing_sim.model.sample import new_block
-from bearing_sim.monitoring.film_ratio import ThinnestFilm
-from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.scene.loader import SceneError, load_scene
+from bearing_sim.watchers.monitoring.film_ratio import ThinnestFilm
+from bearing_sim.watchers.monitoring.monitor import Monitor
 
 STEP = 0.1  # s
 ROUGH = ["bearing.roughness={roller: 0.1 um, raceway: 0.2 um}"]

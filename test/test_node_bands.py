@@ -13,12 +13,12 @@ from rclpy.qos import qos_profile_sensor_data  # noqa: E402
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 
-from bearing_sim.estimation.response import response_path, write_response  # noqa: E402
 from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.messages.bands import BANDS, ESTIMATES, bands_of_message  # noqa: E402
 from bearing_sim.messages.events import Event  # noqa: E402
 from bearing_sim.recording.reader import Recording  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
+from bearing_sim.watchers.estimation.response import response_path, write_response  # noqa: E402
 
 pytestmark = pytest.mark.timeout(180)
 OVERRIDES = ("uncertainty=null", f"uncertainty.{FIELD}=[0.0201, 0.0601]", "estimation.bands=true", f"estimation.calibrated=[{FIELD}]")

@@ -13,7 +13,7 @@ from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 from state_kills import kill_nodes  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 
-from bearing_sim.stored_state.state_file import read_state  # noqa: E402
+from bearing_sim.watchers.stored_state.state_file import read_state  # noqa: E402
 
 SCENE = ("-p", "scene:=deng2017_table1", "-p", "overrides:=['level=steady']", "-p", "governor:=false")
 

@@ -14,7 +14,7 @@ import yaml
 catkin_package = pytest.importorskip("catkin_pkg.package", reason="catkin_pkg reads package.xml and the changelog; it comes with colcon")
 from catkin_pkg.changelog import get_changelog_from_path  # noqa: E402
 
-from bearing_sim.extras import EXTRAS, what_is_missing  # noqa: E402
+from bearing_sim.files.extras import EXTRAS, what_is_missing  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 TOP_LEVEL = {

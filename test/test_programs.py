@@ -28,7 +28,7 @@ def run(code, folder, **environment):
 @pytest.mark.parametrize("interrupted", [0, 130])
 def test_a_signal_during_the_import_ends_a_program_without_a_word(tmp_path, interrupted, sent):
     (tmp_path / "slow.py").write_text(SLOW)
-    done = run(f"import sys; from bearing_sim.programs import _run; sys.exit(_run('slow', {interrupted}))", tmp_path, SENT=sent)
+    done = run(f"import sys; from bearing_sim.files.programs import _run; sys.exit(_run('slow', {interrupted}))", tmp_path, SENT=sent)
     assert done.returncode == interrupted and done.stderr == done.stdout == ""
 
 
@@ -45,7 +45,7 @@ def test_a_command_is_interrupted_in_the_usual_way_but_not_in_the_middle_of_an_i
     (tmp_path / "slow.py").write_text(SLOW)
     (tmp_path / "command.py").write_text("import os, signal\ndef main():\n    os.kill(os.getpid(), signal.SIGINT)")
     (tmp_path / "importing.py").write_text("def main():\n    import slow")
-    start = "import sys; from bearing_sim.programs import _INTERRUPTED, _interrupt, _run\n"
+    start = "import sys; from bearing_sim.files.programs import _INTERRUPTED, _interrupt, _run\n"
     caught = run(f"{start}try: _run('command', _INTERRUPTED, _interrupt)\nexcept KeyboardInterrupt: print('caught')", tmp_path)
     assert caught.stdout == "caught\n"
     ended = run(f"{start}_run('importing', _INTERRUPTED, _interrupt)", tmp_path)

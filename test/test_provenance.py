@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from bearing_sim.recording import provenance
+from bearing_sim.files import provenance
 
 
 def test_hash_is_that_of_the_checkout_the_package_lies_in():

@@ -25,7 +25,6 @@ from bearing_sim.cli.main import main
 from bearing_sim.inputs.log import read_input_log
 from bearing_sim.inputs.profile import judge
 from bearing_sim.messages.events import Event, Level, Start
-from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.recording.append_file import AppendFile
 from bearing_sim.recording.writer import McapSink
 from bearing_sim.runtime import replay as replaying
@@ -33,6 +32,7 @@ from bearing_sim.runtime.replay import Replay, replay
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Thresholds
 from bearing_sim.simulation import Counters, Inputs, Simulation
+from bearing_sim.watchers.monitoring.monitor import Monitor
 
 SCENE = load_scene("deng2017_table1")
 HELD = Inputs(0.0, 0.0, 0.0, 393.15)

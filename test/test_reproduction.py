@@ -15,7 +15,6 @@ from recording_kills import kill_recordings
 from recordings import steady_log
 
 from bearing_sim.cli.main import main
-from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import BANDS
 from bearing_sim.messages.events import Measurement, ReceivedInputs
@@ -29,6 +28,7 @@ from bearing_sim.runtime.pacing import tick_schedule
 from bearing_sim.runtime.reproduction import reproduce
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs, Simulation, start_sample
+from bearing_sim.watchers.estimation.live import LiveEstimation
 
 START = 1_700_000_000_000_000_000
 

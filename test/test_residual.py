@@ -8,11 +8,11 @@ import pytest
 from scipy.signal import lfilter
 
 from bearing_sim.model.sample import new_block
-from bearing_sim.monitoring.monitor import Monitor
-from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import ResidualDetection
 from bearing_sim.simulation import Simulation
+from bearing_sim.watchers.monitoring.monitor import Monitor
+from bearing_sim.watchers.monitoring.residual import ResidualMonitor
 
 SPEED = 4712.0  # rad/s
 RATE = 10.0  # Hz

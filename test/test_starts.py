@@ -14,7 +14,8 @@ ROOT = Path(__file__).resolve().parents[1]
 # Numba imports the package coverage where it is installed, and with compiled code scipy.linalg.
 _HEAVY = "pint matplotlib pandas xarray pyarrow rich rerun h5py distributed rosbags.rosbag2".split()
 _SCIPY = [f"scipy.{name}" for name in "stats signal interpolate ndimage optimize special spatial".split()]
-_OWN = "bearing_sim.estimation.response bearing_sim.estimation.live bearing_sim.recording bearing_sim.view bearing_sim.vibration".split()
+_WATCHERS = [f"bearing_sim.watchers.{name}" for name in ("estimation.response", "estimation.live", "vibration")]
+_OWN = [*_WATCHERS, "bearing_sim.recording", "bearing_sim.view"]
 _RUN = [*_HEAVY, *_SCIPY, *_OWN, "rosbags", "mcap", "rclpy"]
 _NO_MODEL = [*_RUN, "scipy", "numba", "bearing_sim.levels", "bearing_sim.physics", "bearing_sim.simulation"]
 _HIGHER = ["bearing_sim.levels.planar", "bearing_sim.levels.spatial"]
@@ -50,7 +51,7 @@ STARTS = {
     "node": (
         "import bearing_sim.ros.node",
         950,
-        [*_HEAVY, *_SCIPY, *_HIGHER, "scipy.linalg", "bearing_sim.estimation.live", "bearing_sim.vibration"],
+        [*_HEAVY, *_SCIPY, *_HIGHER, "scipy.linalg", "bearing_sim.watchers.estimation.live", "bearing_sim.watchers.vibration"],
     ),
 }
 _LONG = ("run planar", "run spatial")
@@ -80,7 +81,7 @@ def test_a_start_imports_what_it_uses(start):
     assert len(found) > 0.5 * most, "the limit is far above what is there: lower it"
 
 
-@pytest.mark.parametrize("added", ["pint", "scipy.stats", "bearing_sim.levels.spatial.model", "bearing_sim.estimation.bands"])
+@pytest.mark.parametrize("added", ["pint", "scipy.stats", "bearing_sim.levels.spatial.model", "bearing_sim.watchers.estimation.bands"])
 def test_an_import_that_is_not_used_is_found(added):
     code, most, forbidden = STARTS["import"]
     assert faults(modules(f"{code}; import {added}"), most, forbidden) != []

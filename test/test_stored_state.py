@@ -19,7 +19,6 @@ from sim_time_bench import SCENE as SIM_SCENE
 from bearing_sim.cli.main import main
 from bearing_sim.messages.events import Level
 from bearing_sim.model.sample import new_block
-from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.recording.compare import compare
 from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.writer import McapSink
@@ -28,14 +27,15 @@ from bearing_sim.runtime.pacing import tick_schedule
 from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs, Simulation, start_sample
-from bearing_sim.stored_state import history
-from bearing_sim.stored_state.counting import LifeCounter
-from bearing_sim.stored_state.covered import MOST, Covered
-from bearing_sim.stored_state.keeper import RECORD, StateKeeper
-from bearing_sim.stored_state.merging import merge
-from bearing_sim.stored_state.state import StoredState, new_state
-from bearing_sim.stored_state.state_file import StateError, StateFile, checked_serial, default_path, previous_path, read_state
-from bearing_sim.stored_state.totals import Criteria, Totals
+from bearing_sim.watchers.monitoring.residual import ResidualMonitor
+from bearing_sim.watchers.stored_state import history
+from bearing_sim.watchers.stored_state.counting import LifeCounter
+from bearing_sim.watchers.stored_state.covered import MOST, Covered
+from bearing_sim.watchers.stored_state.keeper import RECORD, StateKeeper
+from bearing_sim.watchers.stored_state.merging import merge
+from bearing_sim.watchers.stored_state.state import StoredState, new_state
+from bearing_sim.watchers.stored_state.state_file import StateError, StateFile, checked_serial, default_path, previous_path, read_state
+from bearing_sim.watchers.stored_state.totals import Criteria, Totals
 
 SECOND = 1_000_000_000
 MIDNIGHT = 20_000 * 86_400 * SECOND  # 2024-10-04
@@ -368,7 +368,7 @@ def test_without_pyarrow_the_history_is_csv_and_joins_the_parquet_table_later(tm
 
 
 def test_a_keeper_moves_yesterday_to_the_history_and_keeps_today(tmp_path, monkeypatch):
-    from bearing_sim.stored_state import keeper as module
+    from bearing_sim.watchers.stored_state import keeper as module
 
     def moved(path, days, number):
         return history.write_history(path, [{"day": day, **history.row_of(totals)} for day, totals in days.items()], number)

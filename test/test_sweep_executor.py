@@ -17,9 +17,9 @@ from click.testing import CliRunner
 from sweep_tasks import deadly, noted, tasks
 
 from bearing_sim.cli.main import main
-from bearing_sim.estimation.response import read_response
 from bearing_sim.studies.response_points import obtain_response
 from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse, run_tasks, task
+from bearing_sim.watchers.estimation.response import read_response
 
 HERE = Path(__file__).resolve().parent
 
@@ -196,7 +196,7 @@ def test_the_response_that_a_cluster_builds_is_the_one_that_is_built_alone(tmp_p
     words = ["table", "deng2017_table1", "--bands", "--set", "life.reliability=0.95", "--json"]  # whose response does not come with the package
 
     def built(name, *more):
-        monkeypatch.setattr("bearing_sim.estimation.response.FOLDER", tmp_path / name)
+        monkeypatch.setattr("bearing_sim.watchers.estimation.response.FOLDER", tmp_path / name)
         result = CliRunner().invoke(main, [*words, *more], catch_exceptions=False)
         assert result.exit_code == 0, result.output
         report = json.loads(result.stdout)
@@ -215,6 +215,6 @@ def test_a_scheduler_that_is_not_there_is_told(tmp_path, monkeypatch):
     monkeypatch.setattr("bearing_sim.sweep.tasks._DASK_TIMEOUT", 0.5)
     with Journal() as journal, pytest.raises(ClusterError, match="no Dask scheduler answers"):
         run_tasks(tasks(tmp_path / "notes", 2), journal, dask="tcp://127.0.0.1:9")
-    monkeypatch.setattr("bearing_sim.estimation.response.FOLDER", tmp_path)
+    monkeypatch.setattr("bearing_sim.watchers.estimation.response.FOLDER", tmp_path)
     result = CliRunner().invoke(main, ["table", "deng2017_table1", "--set", "life.reliability=0.95", "--bands", "--dask", "tcp://127.0.0.1:9"])
     assert result.exit_code == 2 and "no Dask scheduler answers at tcp://127.0.0.1:9" in result.output

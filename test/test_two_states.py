@@ -14,10 +14,6 @@ from test_live import Bench
 
 from bearing_sim.cli import table as table_command
 from bearing_sim.cli.main import main
-from bearing_sim.estimation import correction as corrections
-from bearing_sim.estimation.correction import Correction, correction_domain, correction_path, write_correction
-from bearing_sim.estimation.response import coordinates, embedded
-from bearing_sim.estimation.two_states import TwoStates, laws_of_table
 from bearing_sim.levels.steady import table_builder
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import empty_table
@@ -27,6 +23,10 @@ from bearing_sim.recording.reader import Recording
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies import fleet as fleet_replay
+from bearing_sim.watchers.estimation import correction as corrections
+from bearing_sim.watchers.estimation.correction import Correction, correction_domain, correction_path, write_correction
+from bearing_sim.watchers.estimation.response import coordinates, embedded
+from bearing_sim.watchers.estimation.two_states import TwoStates, laws_of_table
 
 PAPER = "deng2017_table1"
 CORRECTED = ("level=steady", "table.correction=planar")

@@ -37,8 +37,6 @@ from bearing_sim.model.validity import (
     outside,
     still_sample,
 )
-from bearing_sim.monitoring.film_ratio import ThinnestFilm
-from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.physics.film import DOWSON_TOYODA
 from bearing_sim.recording.reader import Recording
 from bearing_sim.runtime.live import LiveModel, warmed_up
@@ -46,6 +44,8 @@ from bearing_sim.scene.ratings import rate
 from bearing_sim.studies.settle import settle
 from bearing_sim.sweep import grading
 from bearing_sim.sweep.point import point_row
+from bearing_sim.watchers.monitoring.film_ratio import ThinnestFilm
+from bearing_sim.watchers.monitoring.limits import LimitsMonitor
 
 MOTOR = """
 name: nu210
@@ -615,7 +615,7 @@ def test_samples_are_judged_at_most_ten_times_a_second(scenes, monkeypatch):
         judged.append(len(block))
         return Conditions(scene, block, params)
 
-    monkeypatch.setattr("bearing_sim.monitoring.limits.Conditions", counted_conditions)
+    monkeypatch.setattr("bearing_sim.watchers.monitoring.limits.Conditions", counted_conditions)
     for k in range(1000):
         monitor.take(block_of(scene, [k * 1e-3], [1e3]))
     assert sum(judged) == 10

@@ -26,13 +26,13 @@ from synthetic_vibration import Machine, _turns, record
 from bearing_sim.cli.main import main
 from bearing_sim.files.limits import VARIABLE, FileError
 from bearing_sim.recording.writer import McapFile
-from bearing_sim.vibration.analysis import Geometry, analyse
-from bearing_sim.vibration.comb import families, orders_of, spectra
-from bearing_sim.vibration.order_tracking import constant_shaft, find_shaft, recorded_shaft
-from bearing_sim.vibration.phase import Track, follow, mean_rate, smoothed
-from bearing_sim.vibration.reading import read_vibration
-from bearing_sim.vibration.regularity import _judged
-from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, repetition
+from bearing_sim.watchers.vibration.analysis import Geometry, analyse
+from bearing_sim.watchers.vibration.comb import families, orders_of, spectra
+from bearing_sim.watchers.vibration.order_tracking import constant_shaft, find_shaft, recorded_shaft
+from bearing_sim.watchers.vibration.phase import Track, follow, mean_rate, smoothed
+from bearing_sim.watchers.vibration.reading import read_vibration
+from bearing_sim.watchers.vibration.regularity import _judged
+from bearing_sim.watchers.vibration.signal import Band, Spectrum, Vibration, VibrationError, repetition
 
 ROLLERS, SIZE, RATE = 13, 0.19, 25_600.0
 SPEED = 3000.0 * math.pi / 30.0

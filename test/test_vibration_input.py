@@ -11,9 +11,9 @@ import pytest
 from synthetic_vibration import Machine, record
 
 from bearing_sim.scene.loader import SceneError, scene_from_mapping
-from bearing_sim.vibration.meter import CageSpeedMeter
-from bearing_sim.vibration.reading import Block, block_of
-from bearing_sim.vibration.worker import Outcome
+from bearing_sim.watchers.vibration.meter import CageSpeedMeter
+from bearing_sim.watchers.vibration.reading import Block, block_of
+from bearing_sim.watchers.vibration.worker import Outcome
 
 RATE, LENGTH, SPEED = 1000.0, 100, 300.0
 FOUND = Outcome(True, True, "outer_ring", "", 0.4, 0.001, 120.0, 0.3, SPEED)

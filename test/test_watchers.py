@@ -12,9 +12,9 @@ from bearing_sim import SceneError, load_scene
 from bearing_sim.messages.diagnostics import subject_of
 from bearing_sim.messages.events import Event, Level, Measurement, Report
 from bearing_sim.model.sample import new_block
-from bearing_sim.monitoring.loaded_rollers import LoadedRollers
-from bearing_sim.monitoring.watchers import Watcher, Watchers
 from bearing_sim.scene import watchers as registry
+from bearing_sim.watchers.monitoring.loaded_rollers import LoadedRollers
+from bearing_sim.watchers.monitoring.watchers import Watcher, Watchers
 
 
 class Seen(Watcher):
@@ -76,7 +76,7 @@ def test_a_watcher_that_fails_is_named_and_the_run_continues(seen, tmp_path, mon
 
 
 def test_without_watchers_named_nothing_is_imported_for_them():
-    code = "import sys; from bearing_sim.runtime import live, replay; print('bearing_sim.monitoring.loaded_rollers' in sys.modules)"
+    code = "import sys; from bearing_sim.runtime import live, replay; print('bearing_sim.watchers.monitoring.loaded_rollers' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split() == ["False"]
 
 

@@ -107,7 +107,7 @@ def _override(found) -> list[str]:
 
 
 def _write(out, log, found) -> None:
-    from bearing_sim.recording.provenance import package_version
+    from bearing_sim.files.provenance import package_version
 
     fields = ", ".join(one.range.field for one in found.fitted)
     head = f"# Calibrated by bearing_sim {package_version()}: {fields} fitted to the cage speed in {log.name}, {len(found.blocks.slip)} blocks.\n"

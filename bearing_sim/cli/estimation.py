@@ -50,8 +50,8 @@ def response_with_progress(scene, rebuild=False, workers=None, dask=None):
     UsageError
         The scene has no uncertain fields, another command is building the response, or the scheduler does not answer.
     """
-    from bearing_sim.estimation.response import kept_response
     from bearing_sim.studies.response_points import obtain_response
+    from bearing_sim.watchers.estimation.response import kept_response
 
     if not rebuild and (kept := kept_response(scene)) is not None:
         return kept
@@ -61,10 +61,10 @@ def response_with_progress(scene, rebuild=False, workers=None, dask=None):
 
 
 def estimation_with_progress(scene):
-    """Return what estimates during a run of a scene that asks for it (`bearing_sim.estimation.live.LiveEstimation`); None otherwise."""
+    """Return what estimates during a run of a scene that asks for it (`bearing_sim.watchers.estimation.live.LiveEstimation`); None otherwise."""
     if not scene.estimation.is_asked:
         return None
-    from bearing_sim.estimation.live import LiveEstimation
+    from bearing_sim.watchers.estimation.live import LiveEstimation
 
     return LiveEstimation(scene, response_with_progress(scene))
 
@@ -75,7 +75,7 @@ def band_rows(statistics, scene) -> list[tuple[str, str]]:
 
 
 def live_band_rows(newest, scene) -> list[tuple[str, str]]:
-    """Return the rows of a table for the newest bands of a run of a scene (`bearing_sim.estimation.live.LiveEstimation.newest`)."""
+    """Return the rows of a table for the newest bands of a run of a scene (`bearing_sim.watchers.estimation.live.LiveEstimation.newest`)."""
     return _rows(_NEWEST, newest, scene)
 
 

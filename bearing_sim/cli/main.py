@@ -9,7 +9,7 @@ from typing import NamedTuple
 import click
 
 from bearing_sim.cli.reporting import ARGUMENTS, EXIT_CODES, UsageError, as_ending, require_whole
-from bearing_sim.extras import what_is_missing
+from bearing_sim.files.extras import what_is_missing
 from bearing_sim.files.standard_streams import standard_streams
 from bearing_sim.files.tally import PartlyUsedWarning
 

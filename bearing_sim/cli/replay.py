@@ -99,9 +99,9 @@ def replay(
     from bearing_sim.runtime.replay import replay
     from bearing_sim.scene.loader import load_scene
     from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-    from bearing_sim.stored_state.keeper import RECORD, StateKeeper
-    from bearing_sim.stored_state.state_file import checked_serial
     from bearing_sim.sweep.grading import graded
+    from bearing_sim.watchers.stored_state.keeper import RECORD, StateKeeper
+    from bearing_sim.watchers.stored_state.state_file import checked_serial
 
     names, constants = channel_sources(**channels)
     with as_ending():
@@ -193,9 +193,9 @@ def _choice(scene, course) -> dict:
     import numpy as np
 
     from bearing_sim.cli.table import build_with_progress
-    from bearing_sim.estimation.two_states import laws_of_table
     from bearing_sim.model.table_span import rounded_temperatures, spanning
     from bearing_sim.simulation import Simulation
+    from bearing_sim.watchers.estimation.two_states import laws_of_table
 
     scene = spanning(scene, float(np.abs(course.values["shaft_speed"]).max()))  # else each faster operating point is solved by itself
     kelvin = np.append(course.values.get("oil_temperature", ()), [] if "oil_temperature" in course.stamps else scene.lubricant.temperature)
@@ -319,11 +319,11 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
     out : the `bearing_sim.files.outputs.Output` of the new recording, or None.
     as_json : whether to print JSON.
     """
-    from bearing_sim.recording.provenance import git_hash, package_version
+    from bearing_sim.files.provenance import git_hash, package_version
     from bearing_sim.recording.reader import Recording
     from bearing_sim.recording.writer import McapSink
     from bearing_sim.runtime import reproduction
-    from bearing_sim.stored_state.keeper import RECORD
+    from bearing_sim.watchers.stored_state.keeper import RECORD
 
     with as_usage_error(ValueError), ExitStack() as stack:
         recording = Recording(path, allow_partial=True)

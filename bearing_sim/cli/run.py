@@ -66,7 +66,6 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
     --uncertainty uses the settled bearing at the fastest level that supports the scene; `bearing-sim
     uncertainty` shows more.
     """
-    from bearing_sim.estimation.two_states import laws_of_table
     from bearing_sim.messages.events import validity_event
     from bearing_sim.model.validity import outside
     from bearing_sim.scene.loader import load_scene
@@ -74,6 +73,7 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
     from bearing_sim.sweep.grading import graded
     from bearing_sim.sweep.states import SKID, other_states, skid_start, state_rows
     from bearing_sim.sweep.thermal import begin_in_equilibrium
+    from bearing_sim.watchers.estimation.two_states import laws_of_table
 
     if duration is not None and at_most is not None:
         raise UsageError("--at-most is for a run without --duration; give one of them")

@@ -11,7 +11,7 @@ from bearing_sim.cli.reporting import UsageError, as_usage_error, note, print_ta
 from bearing_sim.cli.results import Result, command
 from bearing_sim.files.outputs import remember_input
 from bearing_sim.scene.display import number
-from bearing_sim.stored_state.state_file import StateFile, checked_serial, default_path, known_serials, previous_path, read_state
+from bearing_sim.watchers.stored_state.state_file import StateFile, checked_serial, default_path, known_serials, previous_path, read_state
 
 _TABLES = (".csv", ".parquet")
 _state_argument = click.argument("name", metavar="STATE")
@@ -39,7 +39,7 @@ def _read(path: Path):
 
 def _days(path: Path, state) -> list[dict]:
     """Return the totals of all days, those in the history and those that are not there yet."""
-    from bearing_sim.stored_state.history import all_days
+    from bearing_sim.watchers.stored_state.history import all_days
 
     with as_usage_error(ValueError):
         return all_days(path, state)
@@ -61,7 +61,7 @@ def show(name):
 
 def _rows(path: Path, state) -> list[tuple[str, str]]:
     from bearing_sim.messages.topics import ZERO_CELSIUS
-    from bearing_sim.stored_state.state import time_text
+    from bearing_sim.watchers.stored_state.state import time_text
 
     totals = state.totals
     rows = [
@@ -108,7 +108,7 @@ def _estimate(path: str, numbers) -> str:
 
 
 def _regimes(totals) -> list[tuple[str, str]]:
-    from bearing_sim.stored_state.totals import KAPPA_BOUNDS, LOAD_BOUNDS, SLIP_BOUNDS
+    from bearing_sim.watchers.stored_state.totals import KAPPA_BOUNDS, LOAD_BOUNDS, SLIP_BOUNDS
 
     def hours(seconds, bounds, factor=1.0, unit=""):
         edges = [f"{factor * bound:g}{unit}" for bound in bounds]
@@ -136,7 +136,7 @@ def export(name, out):
 
         out.write_text(json.dumps({**state.as_mapping(), "history": days}, indent=1) + "\n")
     else:
-        from bearing_sim.stored_state.history import export_days
+        from bearing_sim.watchers.stored_state.history import export_days
 
         with out.draft() as draft:
             export_days(draft, days, as_parquet=suffix == ".parquet")
@@ -153,7 +153,7 @@ def merge(name, recordings):
     The node must not use the state meanwhile. Logs of other programs are counted by `bearing-sim replay --state-file`.
     """
     from bearing_sim.recording.reader import Recording
-    from bearing_sim.stored_state.merging import merge as fill
+    from bearing_sim.watchers.stored_state.merging import merge as fill
 
     path, filled = _path_of(name), {}
     for each in recordings:

@@ -71,7 +71,7 @@ def table(scene_name, overrides, rebuild, workers, points, out, shared, against_
 def _response(scene, rebuild, workers, dask) -> Result:
     """Build the response of a scene to its uncertain fields, or take the one that is kept, and show what it is good for."""
     from bearing_sim.cli.estimation import response_with_progress
-    from bearing_sim.estimation.response import bundled_path, response_path
+    from bearing_sim.watchers.estimation.response import bundled_path, response_path
 
     announce_compilation(scene)
     found = response_with_progress(scene, rebuild, workers, dask)
@@ -176,7 +176,7 @@ def _report(scene, table, quality, answers) -> dict:
 
 def _correction_of(scene) -> dict | None:
     """Return what the correction of a scene's table was measured from and how sure it is, or None where there is none."""
-    from bearing_sim.estimation.correction import correction_domain, correction_path, read_correction
+    from bearing_sim.watchers.estimation.correction import correction_domain, correction_path, read_correction
 
     found = read_correction(correction_path(scene, correction_domain(scene))) if scene.table.correction != "none" else None
     if found is None:

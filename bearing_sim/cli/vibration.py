@@ -86,8 +86,8 @@ def vibration(
     same designation moves it by 3 %.
     """
     from bearing_sim.files.limits import VIBRATION_ANALYSED
-    from bearing_sim.vibration.analysis import analyse
-    from bearing_sim.vibration.reading import read_vibration
+    from bearing_sim.watchers.vibration.analysis import analyse
+    from bearing_sim.watchers.vibration.reading import read_vibration
 
     hertz = None if rate is None else _positive("--rate", rate, "Hz")
     shaft_speed = None if speed is None else quantity_of("--speed", speed, "rad/s")
@@ -110,7 +110,7 @@ def vibration(
         raise UsageError(f"{table}: nothing to write: {found.reason}")
 
     def draw(draft):
-        from bearing_sim.vibration.picture import draw
+        from bearing_sim.watchers.vibration.picture import draw
 
         draw(draft, record, geometry, found)
 
@@ -127,7 +127,7 @@ def _positive(option: str, text: str, unit: str) -> float:
 
 def _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, measured):
     """Return the geometry by the options."""
-    from bearing_sim.vibration.analysis import Geometry
+    from bearing_sim.watchers.vibration.analysis import Geometry
 
     if sum(each is not None for each in (bearing, scene_name, rollers)) != 1:
         raise UsageError("the number of rollers must be known: give one of --bearing, --scene and --rollers")
@@ -150,7 +150,7 @@ def _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, mea
 
 def _largest_slip(text, scene_name, shaft_speed, record) -> float:
     """Return the largest possible slip: as given, by the model of a scene, or the usual assumption."""
-    from bearing_sim.vibration.analysis import LARGEST_SLIP
+    from bearing_sim.watchers.vibration.analysis import LARGEST_SLIP
 
     if text is not None:
         largest = quantity_of("--largest-slip", text, "")
@@ -197,7 +197,7 @@ def _parts(record, every) -> int:
 def _band(text, rate):
     if text is None:
         return None
-    from bearing_sim.vibration.signal import Band
+    from bearing_sim.watchers.vibration.signal import Band
 
     low, colon, high = text.partition(":")
     if not colon:
@@ -255,7 +255,7 @@ def _report(found, record, geometry) -> dict:
 
 
 def _print(name, record, geometry, found) -> None:
-    from bearing_sim.vibration.analysis import PARTS, rarity
+    from bearing_sim.watchers.vibration.analysis import PARTS, rarity
 
     shaft = found.shaft
     turns = f"{60.0 * shaft.frequency:.6g} rpm ± {60.0 * shaft.standard_error:.2g}, {_SOURCES[shaft.source]}"

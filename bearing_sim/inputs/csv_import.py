@@ -25,6 +25,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationError
 
+from bearing_sim.files.provenance import git_hash, package_version
 from bearing_sim.files.tally import Tally
 from bearing_sim.inputs.csv_text import (
     AT_FULL_SCALE,
@@ -48,7 +49,6 @@ from bearing_sim.inputs.gate import shown, value_refusal, with_values
 from bearing_sim.inputs.log import InputLog, Series
 from bearing_sim.inputs.parquet_table import checksum, is_parquet, parquet_layout, parquet_records
 from bearing_sim.messages import topics
-from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.recording.writer import McapFile
 from bearing_sim.scene.loader import InvalidField, SceneError, invalid_fields, read_named, yaml_mapping
 from bearing_sim.scene.quantity import check, quantity, record, to_si

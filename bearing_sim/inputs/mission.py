@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from bearing_sim.files.provenance import git_hash, package_version
 from bearing_sim.messages import topics
-from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.recording.writer import McapFile
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation

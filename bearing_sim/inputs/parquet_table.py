@@ -8,7 +8,7 @@ import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from bearing_sim.extras import what_is_missing
+from bearing_sim.files.extras import what_is_missing
 from bearing_sim.files.limits import TABLE_BYTES, TABLE_FILE, TABLE_ROWS, FileError
 from bearing_sim.files.reading import open_regular
 from bearing_sim.inputs.csv_text import Layout, Marks, TableError, within

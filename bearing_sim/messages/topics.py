@@ -389,7 +389,8 @@ VIBRATION = Topic(
     "noticed",
     lambda stamp_ns, samples: {"layout": {"dim": [], "data_offset": 0}, "data": samples},
 )
-"""The topic from which a live run finds the cage speed (see `bearing_sim.vibration.meter`); recordings have the cage speed, not the blocks."""
+"""The topic from which a live run finds the cage speed (see `bearing_sim.watchers.vibration.meter`); recordings have the cage speed, not the
+blocks."""
 
 MEASURED, RESIDUAL, MEASURED_CLEARANCE = "cage_speed_measured", "cage_slip_residual", "running_clearance_measured"
 MEASURED_CHANNELS = (MEASURED, MEASURED_CLEARANCE)

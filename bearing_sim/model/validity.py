@@ -5,7 +5,7 @@ The limits are data beside the laws, ``physics/limits.toml``: the quantity, its 
 what to use instead.  An entry of `LAWS` adds which scenes use the law, how the quantity follows from a scene and its samples, and what to compute
 otherwise to see what it does.  A result outside a range is still computed, but it carries an exceedance: `outside` finds them all,
 `bearing_sim.sweep.grading` says by how much each moves slip, life, power and film, the command line prints those that move one of them, and
-`bearing_sim.monitoring.limits` turns all into events.  A new limit is one entry in each, and one case in ``test/test_validity.py``.
+`bearing_sim.watchers.monitoring.limits` turns all into events.  A new limit is one entry in each, and one case in ``test/test_validity.py``.
 
 Some limits are judged by more than a scene and its samples, such as by what is kept of a table on disk.  Who knows it passes laws that
 replace those of the same name (see `sample_laws`).
@@ -767,7 +767,7 @@ def _is_as_of_jets(fraction: float) -> bool:
 
 LAWS = (
     _law("table_correction", _has_corrected_table, towards_ends),
-    # in place of whose quantity comes that of a table: `bearing_sim.estimation.two_states`
+    # in place of whose quantity comes that of a table: `bearing_sim.watchers.estimation.two_states`
     _law("table_states", _has_corrected_table, lambda at: at.while_turning(np.zeros(len(at.samples)))),
     _law("oil_4109_class", _with_traction(Oil4109Traction), _class_viscosity, _EYRING, of_scene=True),
     _law("oil_4109_base", _with_traction(Oil4109Traction), lambda scene: float(scene.lubricant.oil.base != "aviation"), _EYRING, of_scene=True),
@@ -1029,7 +1029,7 @@ def sample_laws(scene: Scene, laws: Iterable[Law] = ()) -> list[tuple[Law, float
     Parameters
     ----------
     scene : of the samples.
-    laws : that replace those of the same name, such as `bearing_sim.estimation.two_states.laws_of_table`.
+    laws : that replace those of the same name, such as `bearing_sim.watchers.estimation.two_states.laws_of_table`.
     """
     known = BY_NAME | {law.name: law for law in laws}
     return [(law, *law.limits(scene)) for law in known.values() if not law.of_scene and law.applies(scene)]

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.files.outputs import rename_without_replacing, synchronise
+from bearing_sim.files.provenance import git_hash, package_version, versions
 from bearing_sim.messages import diagnostics, topics
 from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.cdr import message_type
@@ -25,7 +26,6 @@ from bearing_sim.recording.append_file import AppendFile, set_aside
 from bearing_sim.recording.bag import ACTIVE, QOS_TEXT, UNLIMITED, Limits, Part, TopicCount, bag_metadata, write_bag_metadata
 from bearing_sim.recording.mcap_format import OWN_TOPIC, Message
 from bearing_sim.recording.mcap_writer import CHUNK_SIZE, McapWriter, SampleRows, widened
-from bearing_sim.recording.provenance import git_hash, package_version, versions
 from bearing_sim.scene.loader import scene_to_yaml
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene

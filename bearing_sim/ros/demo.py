@@ -21,7 +21,6 @@ from pathlib import Path
 import click
 import numpy as np
 
-from bearing_sim.estimation.response import kept_response
 from bearing_sim.files.outside import OPTION
 from bearing_sim.files.standard_streams import standard_streams
 from bearing_sim.messages import topics
@@ -36,6 +35,7 @@ from bearing_sim.runtime.precompilation import compile_for
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import number_at, quantities, ranges_of, shown
+from bearing_sim.watchers.estimation.response import kept_response
 
 _DOMAINS = range(60, 100)  # above the usual choices of users, below where ports collide with ephemeral ports
 _NODE_ENDS_WITHIN = 30.0  # [s]

@@ -22,8 +22,7 @@ from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 from std_srvs.srv import SetBool, Trigger
 
-from bearing_sim.estimation.response import ResponseModel, kept_response, response_path
-from bearing_sim.extras import what_is_missing
+from bearing_sim.files.extras import what_is_missing
 from bearing_sim.inputs.gate import REQUIRED, Sources
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import Bands
@@ -48,9 +47,10 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import messages, with_values
 from bearing_sim.simulation import IntegrationError, Simulation
-from bearing_sim.stored_state.keeper import RECORD, StateKeeper
-from bearing_sim.stored_state.state_file import checked_serial, default_path
 from bearing_sim.view.viewer import stream_url, viewer_command
+from bearing_sim.watchers.estimation.response import ResponseModel, kept_response, response_path
+from bearing_sim.watchers.stored_state.keeper import RECORD, StateKeeper
+from bearing_sim.watchers.stored_state.state_file import checked_serial, default_path
 
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
 _SCALAR = "std_msgs/msg/Float64"
@@ -621,7 +621,7 @@ class BearingInterface:
         if live is None:  # the message was on its way when the run ended
             return
         try:
-            from bearing_sim.vibration.reading import block_of
+            from bearing_sim.watchers.vibration.reading import block_of
 
             block = block_of(deserialize_message(cdr, kind))
         except Exception as error:  # its type depends on the middleware

@@ -16,7 +16,7 @@ itself, and activates itself once the first of its models is compiled, so that *
 import sys
 
 if __name__ == "__main__":  # before anything is imported, which takes a second or two: a signal must end the node cleanly in the meantime, too
-    from bearing_sim.programs import bearing_node
+    from bearing_sim.files.programs import bearing_node
 
     sys.exit(bearing_node())
 
@@ -35,11 +35,11 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
+from bearing_sim.files.cores import cores
 from bearing_sim.inputs.static_transforms import StaticTransforms
 from bearing_sim.messages import diagnostics, topics
 from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.numerics.cores import cores
 from bearing_sim.recording.recorder import Recorder
 from bearing_sim.ros.interface import BearingInterface, PublishedTopics
 from bearing_sim.ros.messages import message_class

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from bearing_sim.estimation.two_states import laws_of_table
 from bearing_sim.inputs.gate import CHANNELS, REQUIRED, Coverage, InputGate, PublisherConflict, Sources, unused_event, with_values
 from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.messages import topics
@@ -22,10 +21,6 @@ from bearing_sim.messages.diagnostics import SETTING_ERRORS, further_condition, 
 from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, ReceivedInputs, Report
 from bearing_sim.model.plausibility import plausibility
 from bearing_sim.model.sample import RING_TEMPERATURES, joined
-from bearing_sim.monitoring.limits import LimitsMonitor
-from bearing_sim.monitoring.monitor import Monitor
-from bearing_sim.monitoring.residual import ResidualMonitor
-from bearing_sim.monitoring.watchers import Watchers
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health, Phase, level_of, numbers, remarks
 from bearing_sim.runtime.pacing import LONGEST_TICK, Decimator, OutputCount, Pacer, WallClock, tick_schedule
@@ -39,13 +34,18 @@ from bearing_sim.scene.kept_front import KeptCourse, KeptSetting
 from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import IntegrationError, Simulation
-from bearing_sim.stored_state.keeper import StateKeeper
+from bearing_sim.watchers.estimation.two_states import laws_of_table
+from bearing_sim.watchers.monitoring.limits import LimitsMonitor
+from bearing_sim.watchers.monitoring.monitor import Monitor
+from bearing_sim.watchers.monitoring.residual import ResidualMonitor
+from bearing_sim.watchers.monitoring.watchers import Watchers
+from bearing_sim.watchers.stored_state.keeper import StateKeeper
 
 if TYPE_CHECKING:
-    from bearing_sim.estimation.live import LiveEstimation
-    from bearing_sim.estimation.response import ResponseModel
-    from bearing_sim.vibration.meter import CageSpeedMeter
-    from bearing_sim.vibration.reading import Block
+    from bearing_sim.watchers.estimation.live import LiveEstimation
+    from bearing_sim.watchers.estimation.response import ResponseModel
+    from bearing_sim.watchers.vibration.meter import CageSpeedMeter
+    from bearing_sim.watchers.vibration.reading import Block
 
 _REPLACED_WITHIN = 10.0  # [s] for the reset of a model that is held
 _CLOCKS = 3  # times 0 by clocks before the present one under which a recording may have its stamps
@@ -529,13 +529,13 @@ class Model:
 
 # Imported where a scene asks for them, because they take as long as all the rest.
 def _estimation(scene: Scene, response: "ResponseModel") -> "LiveEstimation":
-    from bearing_sim.estimation.live import LiveEstimation
+    from bearing_sim.watchers.estimation.live import LiveEstimation
 
     return LiveEstimation(scene, response)
 
 
 def _meter(scene: Scene) -> "CageSpeedMeter":
-    from bearing_sim.vibration.meter import CageSpeedMeter
+    from bearing_sim.watchers.vibration.meter import CageSpeedMeter
 
     return CageSpeedMeter(scene)
 

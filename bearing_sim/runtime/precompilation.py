@@ -16,7 +16,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from bearing_sim.numerics.cores import cores
+from bearing_sim.files.cores import cores
 from bearing_sim.runtime.durations import expected, keep
 
 if TYPE_CHECKING:

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearing_sim.monitoring.monitor import Monitor
-from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.simulation import Inputs, Simulation, begin_at_temperatures
-from bearing_sim.stored_state.keeper import StateKeeper
+from bearing_sim.watchers.monitoring.monitor import Monitor
+from bearing_sim.watchers.monitoring.residual import ResidualMonitor
+from bearing_sim.watchers.stored_state.keeper import StateKeeper
 
 if TYPE_CHECKING:
-    from bearing_sim.estimation.live import LiveEstimation
+    from bearing_sim.watchers.estimation.live import LiveEstimation
 
 
 def warm_start(keeper: StateKeeper, now_ns: Callable[[], int]) -> Callable[[Simulation, Inputs], None]:

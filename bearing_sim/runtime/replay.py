@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.inputs.profile import InputProfile
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import BANDS, Bands
@@ -20,16 +19,17 @@ from bearing_sim.messages.events import Event, MeasuredClearance, Measurement, R
 from bearing_sim.model.sample import joined
 from bearing_sim.model.turning import SLIP_FROM_SPEED, Use, slip_statistics, slipping_seconds, turns, use_of
 from bearing_sim.model.validity import Exceedance, Law
-from bearing_sim.monitoring.limits import LimitsMonitor
-from bearing_sim.monitoring.monitor import Monitor
-from bearing_sim.monitoring.residual import Comparison, ResidualMonitor
-from bearing_sim.monitoring.watchers import Watchers
 from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
 from bearing_sim.runtime.health import Changes
 from bearing_sim.runtime.remembering import note, recall, warm_start
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import Inputs, Simulation
-from bearing_sim.stored_state.keeper import StateKeeper
+from bearing_sim.watchers.estimation.response import ResponseModel
+from bearing_sim.watchers.monitoring.limits import LimitsMonitor
+from bearing_sim.watchers.monitoring.monitor import Monitor
+from bearing_sim.watchers.monitoring.residual import Comparison, ResidualMonitor
+from bearing_sim.watchers.monitoring.watchers import Watchers
+from bearing_sim.watchers.stored_state.keeper import StateKeeper
 
 _REPORT_EVERY = 1.0  # [s] of simulated time between diagnostics
 _PROGRESS_EVERY = 50  # items
@@ -67,8 +67,8 @@ class Replay:
     events : number of events by kind.
     given_up : why the run ended before the log did, or ``""``.
     warnings : laws used outside of their ranges, each with its worst value.
-    bands : 5 and 95 % quantiles of the results (`bearing_sim.estimation.bands.QUANTITIES`), where the scene asks for them; NaN for the slip while
-        the shaft does not turn.
+    bands : 5 and 95 % quantiles of the results (`bearing_sim.watchers.estimation.bands.QUANTITIES`), where the scene asks for them; NaN for the slip
+        while the shaft does not turn.
     slip_from_speed : speed from which on the shaft turns [rad/s] (`bearing_sim.model.turning`).
     """
 
@@ -206,7 +206,7 @@ def replay(
     model : makes the simulation.
     keeper : of the state of the bearing whose log it is; times that the state contains are not counted again.  None counts nothing.
     response : of the scene, for what its block ``estimation`` asks for; None estimates nothing.
-    laws : that replace those of the same name (see `bearing_sim.monitoring.limits.LimitsMonitor`).
+    laws : that replace those of the same name (see `bearing_sim.watchers.monitoring.limits.LimitsMonitor`).
 
     Returns
     -------
@@ -234,7 +234,7 @@ class _Run:
         self._keeper = keeper
         self._estimation = None
         if response is not None and scene.estimation.is_asked:
-            from bearing_sim.estimation.live import LiveEstimation
+            from bearing_sim.watchers.estimation.live import LiveEstimation
 
             self._estimation = LiveEstimation(scene, response)
             self._estimation.know([channel for channel, stamps in profile.stamps.items() if len(stamps)])

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearing_sim.estimation.live import LiveEstimation
-from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.messages.bands import ESTIMATES, Bands
 from bearing_sim.messages.topics import INPUTS, MEASURED, MEASURED_CHANNELS
 from bearing_sim.model.turning import turns
 from bearing_sim.recording.reader import Received, Recording, measured_numbers
-from bearing_sim.stored_state.state import StoredState
+from bearing_sim.watchers.estimation.live import LiveEstimation
+from bearing_sim.watchers.estimation.response import ResponseModel
+from bearing_sim.watchers.stored_state.state import StoredState
 
 _NEAR = 0.1  # of the width of a band
 

@@ -19,7 +19,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import RING_TEMPERATURES, new_block
@@ -31,10 +30,11 @@ from bearing_sim.scene.fidelity import NUMBERS
 from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, begin_at_temperatures, inputs_of, start_sample, thermal_nodes
-from bearing_sim.stored_state.counting import LifeCounter
-from bearing_sim.stored_state.keeper import RECORD
-from bearing_sim.stored_state.state import StoredState
-from bearing_sim.stored_state.state_file import parsed
+from bearing_sim.watchers.estimation.response import ResponseModel
+from bearing_sim.watchers.stored_state.counting import LifeCounter
+from bearing_sim.watchers.stored_state.keeper import RECORD
+from bearing_sim.watchers.stored_state.state import StoredState
+from bearing_sim.watchers.stored_state.state_file import parsed
 
 _SKIPPED = 0.25  # fraction of a spacing by which angle and stamps may disagree before time counts as skipped
 _ROUND_OFF = 1e-6  # of an angle, relative

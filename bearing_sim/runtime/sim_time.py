@@ -16,13 +16,11 @@ from enum import Enum
 
 import numpy as np
 
-from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.inputs.gate import REQUIRED, ClockJumpFilter, InputGate, Message, Verdict
 from bearing_sim.inputs.profile import Arrival, OnlineInputProfile, gap_event
 from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, ReceivedInputs
 from bearing_sim.messages.events import Start as StartRecord
-from bearing_sim.monitoring.residual import Comparison
 from bearing_sim.runtime.advance_segment import Begun, Output
 from bearing_sim.runtime.live import Model, Published
 from bearing_sim.runtime.remembering import warm_start
@@ -30,7 +28,9 @@ from bearing_sim.runtime.sink_registry import Sink
 from bearing_sim.runtime.solver import SimTimeSolver, Start
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
-from bearing_sim.stored_state.keeper import StateKeeper
+from bearing_sim.watchers.estimation.response import ResponseModel
+from bearing_sim.watchers.monitoring.residual import Comparison
+from bearing_sim.watchers.stored_state.keeper import StateKeeper
 
 CAUGHT_UP = "all known is computed and passed on"
 """Diagnostics key: whether the model has come as far as clock and messages allow, and all its results are collected."""

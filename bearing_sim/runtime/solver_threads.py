@@ -16,7 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from bearing_sim.numerics.cores import cores
+from bearing_sim.files.cores import cores
 
 THREAD_NAME = "bearing-solver"
 """Name of the solver threads in top -H and /proc; Linux keeps 15 letters."""

@@ -30,7 +30,7 @@ VARIABLE = "BEARING_SIM_FRONTS"
 """Environment variable that names another folder for measured fronts than that in the user's cache."""
 FOLDER = Path(os.environ.get(VARIABLE) or cache_folder() / "fronts")
 _PACKAGE = Path(__file__).resolve().parents[1]
-_SOURCES = ("numerics/*.py", "physics/*.py", "levels/**/*.py", "model/*.py", "simulation.py", "estimation/*.py")
+_SOURCES = ("numerics/*.py", "physics/*.py", "levels/**/*.py", "model/*.py", "simulation.py", "watchers/estimation/*.py")
 _STUDIES = ("studies/trade.py", "studies/trade_course.py", "studies/correction_points.py")
 _VERSION = 2  # of the files
 _SLACK = 1.25  # factor by which a scene may operate outside of what was measured in speed and load; assumption

@@ -141,7 +141,7 @@ class InputLimits:
 
 @record
 class Hold:
-    """Hysteresis and delays of an alarm (see `bearing_sim.monitoring.monitor.Alarm`)."""
+    """Hysteresis and delays of an alarm (see `bearing_sim.watchers.monitoring.monitor.Alarm`)."""
 
     hysteresis: quantity("", "fraction of the limit by which a value must return before the alarm clears", 0.0, 0.9, "%") = 0.1
     raise_after: quantity("s", "time beyond the limit before the alarm is raised", 0.0, 86400.0) = 0.5
@@ -160,7 +160,7 @@ def _detection_errors(detection: "ResidualDetection | TemperatureResidualDetecti
 
 @record
 class ResidualDetection:
-    """How measured slip is compared with predicted slip (see `bearing_sim.monitoring.residual`)."""
+    """How measured slip is compared with predicted slip (see `bearing_sim.watchers.monitoring.residual`)."""
 
     false_alarm_time: quantity("s", "mean time between false alarms", 60.0, 1e10, "h") = 3.6e6
     tolerance: quantity("", "lasting change of the residual that is not a fault: the error of the model between conditions", 1e-6, 1.0, "%") = 0.002
@@ -178,7 +178,7 @@ class ResidualDetection:
 class TemperatureResidualDetection:
     """How measured temperatures of rings are compared with those that the thermal network has without them.
 
-    See `bearing_sim.monitoring.residual`.
+    See `bearing_sim.watchers.monitoring.residual`.
     """
 
     false_alarm_time: quantity("s", "mean time between false alarms", 60.0, 1e10, "h") = 3.6e6
@@ -389,7 +389,7 @@ class Scene:
     uncertainty: tuple[Range, ...] = ()  # a mapping of field to range in a file, see `bearing_sim.scene.uncertainty`
     estimation: Estimation = field(default_factory=Estimation)
     vibration: VibrationInput = field(default_factory=VibrationInput)
-    watchers: tuple[str, ...] = ()  # names of optional watchers of a run, see `bearing_sim.monitoring.watchers`
+    watchers: tuple[str, ...] = ()  # names of optional watchers of a run, see `bearing_sim.watchers.monitoring.watchers`
 
     def at(
         self,

@@ -1,12 +1,12 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Names of the optional watchers of a run that a scene may ask for, and where each of them is; see `bearing_sim.monitoring.watchers`."""
+"""Names of the optional watchers of a run that a scene may ask for, and where each of them is; see `bearing_sim.watchers.monitoring.watchers`."""
 
 from importlib.metadata import entry_points
 
 from bearing_sim.scene.errors import did_you_mean
 
 WATCHERS = {
-    "loaded_rollers": "bearing_sim.monitoring.loaded_rollers:LoadedRollers",
+    "loaded_rollers": "bearing_sim.watchers.monitoring.loaded_rollers:LoadedRollers",
 }
 """Module and class by name."""
 

@@ -14,12 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.files.provenance import git_hash, package_version
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.model.running_clearance import mounted, seat_pressure
 from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.thermal_network import POWERS
-from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, hours
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation

@@ -19,7 +19,6 @@ from bearing_sim.model.params import pack
 from bearing_sim.model.plausibility import minimum_load
 from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.validity import contact_speeds
-from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.physics.heat import hertz_half_width
 from bearing_sim.physics.thermal_network import NODES
 from bearing_sim.scene.display import ZERO_CELSIUS
@@ -31,6 +30,7 @@ from bearing_sim.sweep.pictures import new_figure, plain_numbers, save
 from bearing_sim.sweep.settling import advance_until_settled, longest_run, shortest_run
 from bearing_sim.sweep.states import ROLLING, SKID, at_level_slip, standing_cage
 from bearing_sim.sweep.thermal import SKIDS, equilibrium_temperatures, simulation_held_at
+from bearing_sim.watchers.monitoring.film_ratio import ThinnestFilm
 
 DEFAULT_SCENE = "nu232_wind_gearbox"
 DEFAULT_OVERRIDES = ("lubricant.supply={law: oil_bath}", "lubricant.mixture_fraction=null")  # of that scene: no oil flows that stays cold

@@ -13,18 +13,6 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import qmc
 
-from bearing_sim.estimation.correction import (
-    LIFE_EXPONENT,
-    STATES_APART,
-    Correction,
-    correction_domain,
-    correction_path,
-    fit_correction,
-    measured_scene,
-    read_correction,
-    write_correction,
-)
-from bearing_sim.estimation.response import CONDITIONS, Domain, conditions_at, coordinates, embedded
 from bearing_sim.files.kept import kept_if_possible
 from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER, CAGE_SLIPS
 from bearing_sim.levels.steady.table import Table
@@ -38,6 +26,18 @@ from bearing_sim.studies.batches import answers_at
 from bearing_sim.studies.trade_course import cage_rate
 from bearing_sim.sweep.settling import Outcome, advance_until_settled
 from bearing_sim.sweep.tasks import Journal, Progress, in_silence
+from bearing_sim.watchers.estimation.correction import (
+    LIFE_EXPONENT,
+    STATES_APART,
+    Correction,
+    correction_domain,
+    correction_path,
+    fit_correction,
+    measured_scene,
+    read_correction,
+    write_correction,
+)
+from bearing_sim.watchers.estimation.response import CONDITIONS, Domain, conditions_at, coordinates, embedded
 
 FIRST_POINTS, ENOUGH_POINTS, MOST_POINTS = 256, 512, 1024
 SLIP_GOAL, LIFE_GOAL = 5e-4, 0.01  # errors at points left out, root mean square, below which no more points are added
@@ -66,7 +66,7 @@ def measured_points(scene: Scene, conditions: tuple[tuple[float, ...], ...]) -> 
     Parameters
     ----------
     scene : without a law of heat.
-    conditions : columns `bearing_sim.estimation.response.CONDITIONS`.
+    conditions : columns `bearing_sim.watchers.estimation.response.CONDITIONS`.
 
     Returns
     -------

@@ -18,8 +18,8 @@ from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
+from bearing_sim.files.provenance import git_hash, package_version
 from bearing_sim.model.validity import merged
-from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.scene.display import hours, number
 from bearing_sim.scene.loader import SceneError, load_scene, scene_to_yaml
 from bearing_sim.scene.scene import Scene

@@ -15,11 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES, joined
-from bearing_sim.numerics.time_stepping import STEP_BUDGET
 from bearing_sim.scene.fidelity import level_of
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Scene
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
+from bearing_sim.simulation import STEP_BUDGET, Inputs, IntegrationError, Simulation, scene_inputs
 from bearing_sim.sweep.point import LIVES
 from bearing_sim.sweep.settling import SHORTEST_TURNS, advance_until_settled, cage_turn, sampled
 

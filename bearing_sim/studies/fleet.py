@@ -18,8 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bearing_sim.estimation.response import ResponseModel, response_digest
-from bearing_sim.estimation.two_states import laws_of_table
+from bearing_sim.files.provenance import git_hash, package_version
 from bearing_sim.files.tally import PartlyUsedWarning
 from bearing_sim.inputs.csv_text import TableError
 from bearing_sim.inputs.log import InputLogError
@@ -29,7 +28,6 @@ from bearing_sim.levels.steady.table_builder import obtain_table, table_path
 from bearing_sim.model.plausibility import minimum_load
 from bearing_sim.model.table_span import HEADROOM, Span, rounded_temperatures, span_of
 from bearing_sim.model.validity import cell
-from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.runtime.replay import Replay, replay
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.scene import Scene
@@ -38,6 +36,8 @@ from bearing_sim.studies.fleet_logs import Bearing, Log, read_log
 from bearing_sim.sweep.point import FAILED, OK, REFUSED, Column
 from bearing_sim.sweep.table import Table
 from bearing_sim.sweep.tasks import UNAVAILABLE, Journal, Task, program_hash, run_tasks, task
+from bearing_sim.watchers.estimation.response import ResponseModel, response_digest
+from bearing_sim.watchers.estimation.two_states import laws_of_table
 
 PARTLY = "partly used"
 """Status of a bearing of whose log only a part was used; the reason says how much, why, and what may help."""
@@ -48,10 +48,10 @@ _SOURCES = (
     "studies/fleet.py",
     "studies/fleet_logs.py",
     "sweep/tasks.py",
-    "estimation/*.py",
+    "watchers/estimation/*.py",
     "inputs/*.py",
     "messages/*.py",
-    "monitoring/*.py",
+    "watchers/monitoring/*.py",
     "recording/*.py",
     "runtime/*.py",
 )

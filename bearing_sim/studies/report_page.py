@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.files.provenance import versions
 from bearing_sim.files.tally import Tally
 from bearing_sim.inputs.profile import gaps_of
 from bearing_sim.messages.events import Event, Level
@@ -24,7 +25,6 @@ from bearing_sim.model.sample import OBSERVABLES, joined
 from bearing_sim.model.turning import DIVIDED, slip_statistics, stands_text, turns, use_of
 from bearing_sim.model.validity import counted
 from bearing_sim.recording.bag import ACTIVE, RecordingError
-from bearing_sim.recording.provenance import versions
 from bearing_sim.recording.reader import Recording
 from bearing_sim.scene.display import hours, number
 from bearing_sim.scene.loader import SceneError, scene_from_yaml

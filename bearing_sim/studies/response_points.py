@@ -7,9 +7,18 @@ import time
 import numpy as np
 from scipy.stats import qmc
 
-from bearing_sim.estimation.bands import prior_draws
-from bearing_sim.estimation.lives import SlipAndOil
-from bearing_sim.estimation.response import (
+from bearing_sim.files.kept import kept_if_possible
+from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
+from bearing_sim.levels.steady.table import empty_table
+from bearing_sim.physics.thermal_network import NODES
+from bearing_sim.scene.scene import Scene
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+from bearing_sim.studies.batches import answers_at
+from bearing_sim.studies.uncertainty_propagation import UncertaintyError, varied
+from bearing_sim.sweep.tasks import Journal, Progress, in_silence
+from bearing_sim.watchers.estimation.bands import prior_draws
+from bearing_sim.watchers.estimation.lives import SlipAndOil
+from bearing_sim.watchers.estimation.response import (
     ANSWERS,
     ResponseModel,
     conditions_at,
@@ -20,15 +29,6 @@ from bearing_sim.estimation.response import (
     scene_fields,
     write_response,
 )
-from bearing_sim.files.kept import kept_if_possible
-from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
-from bearing_sim.levels.steady.table import empty_table
-from bearing_sim.physics.thermal_network import NODES
-from bearing_sim.scene.scene import Scene
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-from bearing_sim.studies.batches import answers_at
-from bearing_sim.studies.uncertainty_propagation import UncertaintyError, varied
-from bearing_sim.sweep.tasks import Journal, Progress, in_silence
 
 DRAWS = 64  # of the fields' scores at each operating point, the scene's own values among them
 _POINTS = 16_384  # that a response is fitted to, a power of two
@@ -45,15 +45,15 @@ _OIL_TEMPERATURE = "lubricant.temperature"
 
 
 def settled_points(scene: Scene, fields: tuple[str, ...], points: tuple[tuple[float, ...], ...], conditions: tuple[tuple[float, ...], ...]) -> dict:
-    """Return the settled answers of level ``steady``, lists of `bearing_sim.estimation.response.ANSWERS` under the key ``answers``.
+    """Return the settled answers of level ``steady``, lists of `bearing_sim.watchers.estimation.response.ANSWERS` under the key ``answers``.
 
     Parameters
     ----------
     scene : its level is that of slip; all else is of level ``steady``.
     fields : dotted paths of uncertain fields.
     points : their values [SI] at each point.
-    conditions : columns `bearing_sim.estimation.response.CONDITIONS`.  An uncertain oil temperature is an error of the one in the conditions:
-        the value's difference from the scene's own is added to it.
+    conditions : columns `bearing_sim.watchers.estimation.response.CONDITIONS`.  An uncertain oil temperature is an error of the one in the
+        conditions: the value's difference from the scene's own is added to it.
     """
     answers: list[list[float]] = []
     equilibria: dict[tuple[float, ...], _Equilibria] = {}
@@ -196,7 +196,7 @@ def at_points(
     ----------
     scene : of any level.
     scores : of its uncertain fields, shape (n, d).
-    conditions : columns `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
+    conditions : columns `bearing_sim.watchers.estimation.response.CONDITIONS`, shape (n, 4).
     journal, workers, dask : see `bearing_sim.sweep.tasks.run_tasks`.
     progress : called with the number of finished points and of all that are not in the journal.
     level : that slip is of; all else is of level ``steady``.

@@ -18,7 +18,6 @@ from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.temperatures import film_temperatures
 from bearing_sim.model.thermal_network import oil_flow
 from bearing_sim.model.turning import turns
-from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.physics.contact import EXPONENT
 from bearing_sim.physics.lamina_life import penetration_of
 from bearing_sim.physics.rating_life import reliability_factor, viscosity_ratio
@@ -30,6 +29,7 @@ from bearing_sim.scene.scene import Scene
 from bearing_sim.studies.friction import makers_moment
 from bearing_sim.sweep.point import LIVES
 from bearing_sim.sweep.settling import mean_life
+from bearing_sim.watchers.monitoring.film_ratio import ThinnestFilm
 
 CLEARANCES = ARRAYS["running_clearance"].fields
 """The running clearance, then its parts (see `bearing_sim.model.sample`)."""

@@ -16,9 +16,9 @@ from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
+from bearing_sim.files.provenance import git_hash, package_version
 from bearing_sim.inputs.profile import InputProfile
 from bearing_sim.model.turning import REST
-from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, hours, number
 from bearing_sim.scene.loader import scene_to_yaml
 from bearing_sim.scene.scene import Scene

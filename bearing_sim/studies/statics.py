@@ -13,7 +13,6 @@ from bearing_sim.levels.common.slice_balance import about_yz, balance, leaning, 
 from bearing_sim.model.params import Life
 from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.validity import still_sample
-from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.physics.growth import Clearance, clearance_at, total_growth
 from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, OilFactors, oil_factors, rate_lives
@@ -21,6 +20,7 @@ from bearing_sim.scene.display import hours, larger_unit
 from bearing_sim.scene.scene import Scene
 from bearing_sim.sweep.pictures import new_figure, save
 from bearing_sim.sweep.thermal import operating_state
+from bearing_sim.watchers.monitoring.film_ratio import ThinnestFilm
 
 _PITCH_POSITIONS, _MOST_PITCH_POSITIONS = 20, 320  # cage angles over one roller pitch for the lives, at first and at most
 _LIFE_CHANGE = 2e-3  # of both lives by laminae, by which twice as many may change them

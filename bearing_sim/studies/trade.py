@@ -41,7 +41,7 @@ _REPEATS = 3
 _SHORT, _OFTEN = 0.01, 10  # s of processor time below which a run is timed so many times as often
 _MOST_SLICES = 200  # of the settings; edge loads are compared with theirs
 _FIRST_REST, _LONGEST_REST, _RESTS = 20.0, 2000.0, 1e-4  # cage turns in which the start settles, and the change of slip that counts as rest
-_MORE_SOURCES = ("studies/trade_course.py", "studies/correction_points.py", "estimation/*.py")  # that results depend on
+_MORE_SOURCES = ("studies/trade_course.py", "studies/correction_points.py", "watchers/estimation/*.py")  # that results depend on
 
 
 class Setting(NamedTuple):

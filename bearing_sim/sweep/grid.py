@@ -13,7 +13,7 @@ from typing import Annotated, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from bearing_sim.recording.provenance import git_hash, package_version
+from bearing_sim.files.provenance import git_hash, package_version
 from bearing_sim.scene.diameters import diameters
 from bearing_sim.scene.fidelity import Level
 from bearing_sim.scene.loader import SceneError, did_you_mean, load_scene, override_texts, scene_to_yaml

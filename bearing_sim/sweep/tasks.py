@@ -24,9 +24,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from bearing_sim.files.cores import cores
 from bearing_sim.files.kept import kept_if_possible, tell_once
 from bearing_sim.files.limits import printable
-from bearing_sim.numerics.cores import cores
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 # Sources that a result depends on besides compiled code, which `sources_hash` covers: from scene to parameters, and the runs.

@@ -11,8 +11,8 @@ from importlib import metadata
 from pathlib import Path
 
 from bearing_sim.files.outputs import FORCE, Output, RefusedOutput, replaced
+from bearing_sim.files.provenance import git_hash, package_version
 from bearing_sim.levels.level import LEVELS as ALL_LEVELS
-from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.scene.loader import load_scene, scene_to_yaml
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, write_table

@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level, Measurement
-from bearing_sim.monitoring.monitor import Monitor
-from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.runtime.health import Changes
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation, scene_inputs
+from bearing_sim.watchers.monitoring.monitor import Monitor
+from bearing_sim.watchers.monitoring.residual import ResidualMonitor
 
 BASE = "deng2017_table1"
 _BLOCK = 10  # samples

@@ -10,7 +10,7 @@ It needs scikit-learn and chaospy, which the package itself does not (`pip insta
 - polynomial chaos of slip over both,
 - a Gaussian process over operating points of both edges alone, which knows no fields: a posterior of them could not be put in.
 
-All of them see slip on its scale (`bearing_sim.estimation.response.slip_scale`), and operating points by the coordinates of the response.
+All of them see slip on its scale (`bearing_sim.watchers.estimation.response.slip_scale`), and operating points by the coordinates of the response.
 """
 
 import time
@@ -21,11 +21,20 @@ from band_accuracy import TOLERANCE, distances, samples_of, scene_and_arguments
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Matern, WhiteKernel
 
-from bearing_sim.estimation.bands import prior_draws
-from bearing_sim.estimation.lives import SlipAndOil
-from bearing_sim.estimation.response import ANSWERS, PROBABILITIES, coordinates, domain_of, fit_response, scene_fields, slip_scale, transformed
 from bearing_sim.studies.response_points import DRAWS, at_points, design
 from bearing_sim.sweep.tasks import Journal
+from bearing_sim.watchers.estimation.bands import prior_draws
+from bearing_sim.watchers.estimation.lives import SlipAndOil
+from bearing_sim.watchers.estimation.response import (
+    ANSWERS,
+    PROBABILITIES,
+    coordinates,
+    domain_of,
+    fit_response,
+    scene_fields,
+    slip_scale,
+    transformed,
+)
 
 SLIP = ANSWERS.index("cage_slip")
 POINTS = 16_384  # that all methods see

@@ -11,7 +11,7 @@ from pathlib import Path
 from hostile_files import Case
 from hostile_scenes import fifo, file, files, link, sparse
 
-from bearing_sim.stored_state.state import VERSION
+from bearing_sim.watchers.stored_state.state import VERSION
 
 _IMPORT = ("import-csv", "data.csv", "mapping.yaml", "-o", "out.mcap")
 _GUESS = ("import-csv", "data.csv", "--guess")

@@ -254,7 +254,7 @@ def _response(change: Callable[[Path], object]) -> Callable[[], None]:
     def ask() -> None:
         import click
 
-        from bearing_sim.estimation import response
+        from bearing_sim.watchers.estimation import response
 
         response.FOLDER = Path("kept").absolute()
         response.FOLDER.mkdir()
@@ -286,7 +286,7 @@ def _signed(members: Callable[[], bytes]) -> Callable[[Path], None]:
 @cache
 def _whole_response() -> dict[str, np.ndarray]:
     """Return what is in the file of a whole response, by name."""
-    from bearing_sim.estimation.response import write_response
+    from bearing_sim.watchers.estimation.response import write_response
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "whole.npz"

@@ -25,7 +25,7 @@ PACKAGE = str(ROOT / "bearing_sim") + os.sep
 SAMPLES = 100
 RATE = 0.05  # of real time, so that every sample goes its way alone
 CARRIERS = ("runtime/", "ros/", "recording/", "sinks/")  # between the solver and the recorder's pipe
-EXCLUDED_FILES = ("monitoring/", "runtime/monitor.py", "runtime/alarm.py", "runtime/cusum.py", "runtime/residual.py", "runtime/health.py")
+EXCLUDED_FILES = ("watchers/monitoring/", "runtime/monitor.py", "runtime/alarm.py", "runtime/cusum.py", "runtime/residual.py", "runtime/health.py")
 EXCLUDED_CALLS = {  # of reviews and of the input's own recording, under the names of all versions
     *("_report", "condition", "_events", "news", "look", "update_subscribed", "_state_event", "_begin_late", "_start_late", "_join_governor"),
     *("_open_those_warm", "_open_warm_bearings", "_report_is_due", "follows_clock", "tell_news", "report_news", "_flow", "check"),

@@ -37,7 +37,7 @@ from bearing_sim.cli.reporting import FailedRun, print_json, print_table  # noqa
 from bearing_sim.ros.shared_memory import remove_unfinished_ports  # noqa: E402
 from bearing_sim.scene.loader import load_scene  # noqa: E402
 from bearing_sim.simulation import Inputs, Simulation  # noqa: E402
-from bearing_sim.stored_state.state_file import previous_path, read_state  # noqa: E402
+from bearing_sim.watchers.stored_state.state_file import previous_path, read_state  # noqa: E402
 
 PROMISE = 10.0  # [s] of damage that a kill may take
 _LONGEST_LIFE = 14.0  # [s] after the first output

@@ -16,9 +16,9 @@ import math
 import numpy as np
 from vibration_study import KINDS, Condition, Synthetic, _run
 
-from bearing_sim.vibration.comb import _log_gamma_tail, families, orders_of, spectra
-from bearing_sim.vibration.order_tracking import constant_shaft
-from bearing_sim.vibration.signal import Band, Spectrum
+from bearing_sim.watchers.vibration.comb import _log_gamma_tail, families, orders_of, spectra
+from bearing_sim.watchers.vibration.order_tracking import constant_shaft
+from bearing_sim.watchers.vibration.signal import Band, Spectrum
 
 ROLLERS, SIZE = 13, 0.19
 SPIN = (1.0 - SIZE**2) / SIZE

@@ -151,8 +151,8 @@ class Record:
 
 def judged(task: tuple[int, bool]) -> dict:
     """Return what is said of one record, beside its truth."""
-    from bearing_sim.vibration.analysis import Geometry, analyse
-    from bearing_sim.vibration.signal import Vibration, VibrationError
+    from bearing_sim.watchers.vibration.analysis import Geometry, analyse
+    from bearing_sim.watchers.vibration.signal import Vibration, VibrationError
 
     record = Record(*task)
     geometry = Geometry(record.rollers, record.size, record.is_measured)

@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from synthetic_vibration import Machine, Synthetic, record  # noqa: E402
 
 from bearing_sim.cli.reporting import print_rows  # noqa: E402
-from bearing_sim.vibration.analysis import Analysis, Geometry, analyse  # noqa: E402
+from bearing_sim.watchers.vibration.analysis import Analysis, Geometry, analyse  # noqa: E402
 
 SPEEDS = (600.0, 3000.0, 10_000.0, 30_000.0)  # [rpm]
 NOISES = (0.0, -10.0, -20.0)  # [dB] impacts over noise

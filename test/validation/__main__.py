@@ -59,7 +59,7 @@ def report(out, names, tests, recordings, quick):
         raise UsageError("--tests adds the claims of the test suite to the page of all checks, --only chooses single checks; give one of them")
     out = out or default_output(Path("validation.html"))
     announce_compilation()
-    from bearing_sim.vibration.signal import VibrationError
+    from bearing_sim.watchers.vibration.signal import VibrationError
     from validation.check import run
     from validation.checks import all_checks
     from validation.page import counted, html_page, markdown_page

@@ -105,7 +105,7 @@ def _require_sensors(scene, measured) -> None:
 
 def _require_varied(scene, response, measured) -> None:
     """Raise `UsageError` where a measured clearance says nothing, because no uncertain field changes it."""
-    from bearing_sim.estimation.response import ANSWERS
+    from bearing_sim.watchers.estimation.response import ANSWERS
 
     if "clearance" in measured and ANSWERS.index("running_clearance") not in response.varied_answers():
         raise UsageError(

@@ -15,16 +15,16 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import lfilter
 
-from bearing_sim.estimation.causes import LOAD, OIL, SENSOR, group_of
-from bearing_sim.estimation.estimator import Estimator
-from bearing_sim.estimation.response import ANSWERS, ResponseModel
 from bearing_sim.messages.events import Event
 from bearing_sim.model.params import pack
 from bearing_sim.model.sample import new_block
-from bearing_sim.monitoring.residual import CALIBRATED_SLIP, ResidualMonitor
 from bearing_sim.scene.scene import Scene
 from bearing_sim.studies.response_points import at_points
 from bearing_sim.sweep.tasks import Journal
+from bearing_sim.watchers.estimation.causes import LOAD, OIL, SENSOR, group_of
+from bearing_sim.watchers.estimation.estimator import Estimator
+from bearing_sim.watchers.estimation.response import ANSWERS, ResponseModel
+from bearing_sim.watchers.monitoring.residual import CALIBRATED_SLIP, ResidualMonitor
 
 RATE = 10.0  # Hz, of the sensor and of the samples
 NOISE = 0.002  # of a reading of slip
@@ -66,9 +66,9 @@ class Machine(NamedTuple):
 
     Attributes
     ----------
-    conditions : of the p plateaus, as `bearing_sim.estimation.response.CONDITIONS`, shape (p, 4).
+    conditions : of the p plateaus, as `bearing_sim.watchers.estimation.response.CONDITIONS`, shape (p, 4).
     scores : of its hidden fields at the end, shape (d,).
-    own : columns `bearing_sim.estimation.response.ANSWERS` by the scene's own values, shape (p, 7).
+    own : columns `bearing_sim.watchers.estimation.response.ANSWERS` by the scene's own values, shape (p, 7).
     answers : of the machine at n equally spaced times of each plateau, the first and the last of them its start and its end, shape (p, n, 7).
     pause : seconds that pass in the middle of each plateau, unseen.
     """
@@ -196,7 +196,7 @@ def samples(scene: Scene, times: np.ndarray, conditions: np.ndarray, own: np.nda
     Parameters
     ----------
     times : [s], shape (n,).
-    conditions : shape (n, 4), as `bearing_sim.estimation.response.CONDITIONS`.
+    conditions : shape (n, 4), as `bearing_sim.watchers.estimation.response.CONDITIONS`.
     own : slip, shape (n,).
     """
     params = pack(scene)
@@ -217,7 +217,7 @@ def judge(
 
     Parameters
     ----------
-    scene, response, known : as of `bearing_sim.estimation.estimator.Estimator`.
+    scene, response, known : as of `bearing_sim.watchers.estimation.estimator.Estimator`.
     machine : see `machines`.
     seed : of the noise.
     measured : of `TEMPERATURES` and `CLEARANCE`, besides the cage.
@@ -385,7 +385,7 @@ class Fault(NamedTuple):
 
     Attributes
     ----------
-    group : of `bearing_sim.estimation.causes`.
+    group : of `bearing_sim.watchers.estimation.causes`.
     what : dotted path of a field, or the words of the cause.
     sign : whether it grows or falls.
     """

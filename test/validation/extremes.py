@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from bearing_sim.files.cores import cores
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.numerics.cores import cores
 from bearing_sim.studies.extreme_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, StockOutcome, at_stock, stock_result
 from bearing_sim.sweep.pictures import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task

@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Sequence
 from html import escape
 
-from bearing_sim.recording.provenance import git_hash, package_version, versions
+from bearing_sim.files.provenance import git_hash, package_version, versions
 from bearing_sim.studies.page import command as command_block
 from bearing_sim.studies.page import document, pairs, paragraph
 from validation.check import FAILS, HOLDS, IN_PART, NOT_RUN, Result

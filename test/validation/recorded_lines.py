@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from bearing_sim.files.limits import FileError
-from bearing_sim.vibration.analysis import Geometry, analyse
-from bearing_sim.vibration.reading import read_vibration
-from bearing_sim.vibration.signal import Vibration
+from bearing_sim.watchers.vibration.analysis import Geometry, analyse
+from bearing_sim.watchers.vibration.reading import read_vibration
+from bearing_sim.watchers.vibration.signal import Vibration
 from validation.check import FAILS, HOLDS, IN_PART, NOT_RUN, Check, Comparison, judged
 
 _ROLLERS = 13
@@ -28,7 +28,7 @@ class Recording(NamedTuple):
     ----------
     name : of the file, without its suffix.
     speed : nominal speed of the shaft [rpm].
-    shows : the ring that is cut, as `bearing_sim.vibration.analysis.Analysis.shows` calls it.
+    shows : the ring that is cut, as `bearing_sim.watchers.vibration.analysis.Analysis.shows` calls it.
     bearing : its designation.
     line, error : frequency of the line over that of the shaft, and its error.
     """

@@ -23,6 +23,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from bearing_sim.files.cores import cores
 from bearing_sim.files.kept import Damaged, cache_folder, kept_if_possible, packed, read_kept, unpacked, write_kept
 from bearing_sim.files.limits import KEPT_TABLE_FILE
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
@@ -33,7 +34,6 @@ from bearing_sim.model.params import Lubrication, Params, lubricate, pack
 from bearing_sim.model.table_span import Span, span_of
 from bearing_sim.model.temperatures import lubricate_scene
 from bearing_sim.numerics.compilation import sources_hash
-from bearing_sim.numerics.cores import cores
 from bearing_sim.physics.rating_life import rating_life_revolutions
 from bearing_sim.scene.scene import Scene
 
@@ -71,7 +71,7 @@ class Quality(NamedTuple):
 
 
 class Corrects(Protocol):
-    """What takes operating points of this level to what another one settles in (`bearing_sim.estimation.correction`)."""
+    """What takes operating points of this level to what another one settles in (`bearing_sim.watchers.estimation.correction`)."""
 
     slip_error: float  # at points left out, root mean square
     life_error: float  # relative, likewise
@@ -314,7 +314,8 @@ class _Grid:
 
 FOLDER = cache_folder() / "tables"
 CORRECTION_VERSION = 6
-"""Of how corrections are measured, fitted and kept (`bearing_sim.estimation.correction`); tables that others have corrected are built again."""
+"""Of how corrections are measured, fitted and kept (`bearing_sim.watchers.estimation.correction`); tables that others have corrected are built
+again."""
 
 
 class Reference(NamedTuple):

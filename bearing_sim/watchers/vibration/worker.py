@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.vibration.analysis import Geometry, analyse
-from bearing_sim.vibration.signal import Vibration, VibrationError
+from bearing_sim.watchers.vibration.analysis import Geometry, analyse
+from bearing_sim.watchers.vibration.signal import Vibration, VibrationError
 
 
 class Window(NamedTuple):
@@ -42,7 +42,7 @@ class Outcome(NamedTuple):
     ----------
     is_claim : whether the lines are those of the bearing and of nothing else.
     found : whether there are lines that may be the bearing's; otherwise all numbers are NaN.
-    shows : which part shows, as in `bearing_sim.vibration.analysis.Analysis`.
+    shows : which part shows, as in `bearing_sim.watchers.vibration.analysis.Analysis`.
     reason : why there is no line, or why the window cannot be used.
     ratio, ratio_error : cage over shaft speed, and its standard error.
     cage_speed, cage_speed_error : [rad/s], mean over the window, without a sign.

@@ -5,7 +5,7 @@ At each of some hundred operating points the departures from the scene's own ans
 the fields; their coefficients and the logarithms of the widths are splines over the operating points.  A response is fitted once to settled
 points of level ``steady`` and kept on disk (`bearing-sim table --bands`).  Evaluating it takes microseconds, so that thousands of values of
 the uncertain fields can be tried at every sample of a live run.  What slip and oil do to lives is not fitted but computed
-(`bearing_sim.estimation.lives`).
+(`bearing_sim.watchers.estimation.lives`).
 
 An uncertain field is counted by its standard-normal *score*: the value that a standard-normal number has the same probability to fall below
 as the field has to fall below its value.  All scores are independent and alike, whatever the distributions of the fields.
@@ -22,8 +22,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.estimation.lives import SlipAndOil
-from bearing_sim.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
 from bearing_sim.files.kept import Damaged, packed, read_kept, unpacked, write_kept
 from bearing_sim.files.limits import RESPONSE_FILE
 from bearing_sim.levels.steady.table import contour_period, mirror_axis
@@ -33,6 +31,8 @@ from bearing_sim.model.table_span import span_of
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import Range, number_at, ranges_of
+from bearing_sim.watchers.estimation.lives import SlipAndOil
+from bearing_sim.watchers.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
 
 CONDITIONS = ("shaft_speed", "load", "oil_temperature", "load_angle")
 """Columns of conditions: [rad/s, N, K, rad]; the load counts by its magnitude."""
@@ -640,7 +640,7 @@ def bundled_path(scene: Scene) -> Path:
     return _BUNDLED / f"{_digest(sources_hash(with_compiler=False), scene)}.bands.npz"
 
 
-_BUNDLED = Path(__file__).resolve().parents[1] / "scene" / "scenes"
+_BUNDLED = Path(__file__).resolve().parents[2] / "scene" / "scenes"
 _ARRAYS = ("centres", "metrics", "score_terms", "own_basis", "weights", "errors", "relative_errors")
 
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.recording.reader import Recording
-from bearing_sim.stored_state.keeper import RECORD, StateKeeper
-from bearing_sim.stored_state.state_file import StateError, parsed
+from bearing_sim.watchers.stored_state.keeper import RECORD, StateKeeper
+from bearing_sim.watchers.stored_state.state_file import StateError, parsed
 
 _SKIPPED = 1.5  # spacings of samples after which time was skipped by the recorded run
 

@@ -16,8 +16,8 @@ import scipy.fft
 import scipy.interpolate
 import scipy.ndimage
 
-from bearing_sim.vibration.comb import Spectra, spectra
-from bearing_sim.vibration.phase import follow, mean_rate, smoothed
+from bearing_sim.watchers.vibration.comb import Spectra, spectra
+from bearing_sim.watchers.vibration.phase import follow, mean_rate, smoothed
 
 _HARMONICS = np.arange(1.0, 6.0)
 _HIGHEST = 6.0  # orders that are kept for the shaft's lines

@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The history of a bearing: its totals by day, in a Parquet table beside the state file, or as CSV on a machine without pyarrow.
 
-The node moves days that are over to the history by ``python -m bearing_sim.stored_state.history``, so that it never loads pyarrow itself.
+The node moves days that are over to the history by ``python -m bearing_sim.watchers.stored_state.history``, so that it never loads pyarrow itself.
 Every move has a number, which the history keeps: a move that was interrupted by a kill is not made twice.
 """
 
@@ -20,8 +20,8 @@ from typing import NamedTuple, TextIO
 from bearing_sim.files.limits import HISTORY_FILE
 from bearing_sim.files.outputs import replaced
 from bearing_sim.files.reading import open_regular, read_text
-from bearing_sim.stored_state.state import StoredState
-from bearing_sim.stored_state.totals import KAPPA_BOUNDS, LOAD_BOUNDS, SLIP_BOUNDS, Totals
+from bearing_sim.watchers.stored_state.state import StoredState
+from bearing_sim.watchers.stored_state.totals import KAPPA_BOUNDS, LOAD_BOUNDS, SLIP_BOUNDS, Totals
 
 MOST_DAYS = 20_000
 """Days that a history keeps, some 55 years; the oldest are dropped."""
@@ -172,7 +172,7 @@ def move_days(path: Path, days: Mapping[str, Totals], number: int) -> bool:
         It cannot be written.
     """
     rows = [{"day": day, **row_of(totals)} for day, totals in days.items()]
-    command = [sys.executable, "-m", "bearing_sim.stored_state.history", os.fspath(path), str(number)]
+    command = [sys.executable, "-m", "bearing_sim.watchers.stored_state.history", os.fspath(path), str(number)]
     try:
         done = subprocess.run(command, input=json.dumps(rows), capture_output=True, text=True, timeout=_WITHIN, check=False)
     except subprocess.TimeoutExpired:

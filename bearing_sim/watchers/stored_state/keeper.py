@@ -15,12 +15,12 @@ import numpy as np
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES, joined
 from bearing_sim.scene.scene import Scene
-from bearing_sim.stored_state.counting import LifeCounter
-from bearing_sim.stored_state.covered import Covered
-from bearing_sim.stored_state.history import history_paths, move_days
-from bearing_sim.stored_state.state import StoredState, Thermal, calibration_of, day_of, new_state, time_text
-from bearing_sim.stored_state.state_file import News, StateError, StateFile, serialised
-from bearing_sim.stored_state.totals import criteria
+from bearing_sim.watchers.stored_state.counting import LifeCounter
+from bearing_sim.watchers.stored_state.covered import Covered
+from bearing_sim.watchers.stored_state.history import history_paths, move_days
+from bearing_sim.watchers.stored_state.state import StoredState, Thermal, calibration_of, day_of, new_state, time_text
+from bearing_sim.watchers.stored_state.state_file import News, StateError, StateFile, serialised
+from bearing_sim.watchers.stored_state.totals import criteria
 
 RECORD = "bearing_sim_state"
 """Name of a recording's metadata record with the state that it began with: state, as in a state file, and counts."""

@@ -11,9 +11,9 @@ import numpy as np
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import joined
 from bearing_sim.model.turning import turns
-from bearing_sim.monitoring.film_ratio import ThinnestFilm
-from bearing_sim.monitoring.residual import TemperatureResiduals
 from bearing_sim.scene.scene import Hold, Scene, Thresholds
+from bearing_sim.watchers.monitoring.film_ratio import ThinnestFilm
+from bearing_sim.watchers.monitoring.residual import TemperatureResiduals
 
 _HOUR = 3600.0  # [s]
 _FILM_EVERY = 0.1  # [s] least time between two films: they cost more than all other checks, and follow the slow oil temperature

@@ -15,7 +15,7 @@ from bearing_sim.model.validity import BY_NAME, Conditions, Law, towards_ends
 from bearing_sim.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from bearing_sim.estimation.correction import Correction
+    from bearing_sim.watchers.estimation.correction import Correction
 
 
 class TwoStates:
@@ -29,7 +29,7 @@ class TwoStates:
     def __init__(self, correction: "Correction"):
         from scipy.spatial import cKDTree
 
-        from bearing_sim.estimation.response import CONDITIONS
+        from bearing_sim.watchers.estimation.response import CONDITIONS
 
         self._correction, self._tree = correction, cKDTree(correction.places(correction.conditions))
         self._slips = np.full((len(correction.conditions), 2), math.nan)
@@ -41,7 +41,7 @@ class TwoStates:
 
         Parameters
         ----------
-        conditions : columns `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
+        conditions : columns `bearing_sim.watchers.estimation.response.CONDITIONS`, shape (n, 4).
 
         Returns
         -------
@@ -64,7 +64,7 @@ def laws_of_table(scene: Scene, temperatures: tuple[float, float] | None = None)
     if not states.applies(scene):
         return ()
     # here, because nobody else needs corrections and the part of SciPy that they are read with
-    from bearing_sim.estimation.correction import correction_domain, correction_path, read_correction
+    from bearing_sim.watchers.estimation.correction import correction_domain, correction_path, read_correction
 
     ends = ends._replace(value=partial(towards_ends, span=span_of(scene, temperatures)))
     correction = read_correction(correction_path(scene, correction_domain(scene, temperatures)))

@@ -10,7 +10,7 @@ leaves a mistake behind.
 (Kennedy and O'Hagan, J. R. Stat. Soc. B 63, 2001, 425).  So a long measurement at one point is no proof of the fields: only what changes from
 point to point tells them apart.  The response errs besides, by a fraction of the departure that it predicts (`ResponseModel.error_scales`).
 
-**Draws.** The posterior is represented by m equally probable draws of the fields' scores (`bearing_sim.estimation.response`).  Whenever the
+**Draws.** The posterior is represented by m equally probable draws of the fields' scores (`bearing_sim.watchers.estimation.response`).  Whenever the
 rows have changed enough they take steps of Markov chains whose stationary distribution is the posterior: differences of other draws
 (differential evolution; ter Braak, Stat. Comput. 16, 2006, 239) and autoregressive steps that keep the prior (Cotter, Roberts, Stuart and White,
 Stat. Sci. 28, 2013, 424); after a surprise, through tempered posteriors.  A field that is not calibrated keeps its prior draws, and the others
@@ -26,8 +26,8 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtri
 
-from bearing_sim.estimation.response import ANSWERS, SLIP_SCALE, ResponseModel, restored, slip_scale
 from bearing_sim.scene.scene import Scene
+from bearing_sim.watchers.estimation.response import ANSWERS, SLIP_SCALE, ResponseModel, restored, slip_scale
 
 SLIP, INNER, OUTER, CLEARANCE = MEASURED = ("cage_slip", "inner_ring_temperature", "outer_ring_temperature", "running_clearance")
 """What may be measured, by the names of the answers of a response."""
@@ -62,7 +62,7 @@ class Row:
     Attributes
     ----------
     quantity : of `MEASURED`.
-    conditions : the operating point, as `bearing_sim.estimation.response.CONDITIONS`.
+    conditions : the operating point, as `bearing_sim.watchers.estimation.response.CONDITIONS`.
     own : the level's prediction there.
     departure, variance : measured minus own: mean, and variance of what is not known about it.
     prior : variance of the departure by the ranges of the fields alone.

@@ -7,9 +7,9 @@ difference to level ``steady`` is a spline over the operating points, as smooth 
 
     s(S') = s(S) + c_S,    P'_n = P_n exp(c_n),    W'_k = W_k + c_k W_shaft,    tau' = tau exp(c_tau),    a'_m = a_m + c_m a,
 
-S slip, s the scale of `bearing_sim.estimation.response.slip_scale`, P_n the equivalent loads of both rings, whole and by laminae, and the factor
-that oil gives to life, W_k powers by cause, W_shaft that of the shaft, tau the cage's lag, a_m its accelerations, a their root mean square.  No c
-exceeds what was found at any of the points.
+S slip, s the scale of `bearing_sim.watchers.estimation.response.slip_scale`, P_n the equivalent loads of both rings, whole and by laminae, and the
+factor that oil gives to life, W_k powers by cause, W_shaft that of the shaft, tau the cage's lag, a_m its accelerations, a their root mean square.
+No c exceeds what was found at any of the points.
 Such corrections of a fast model by a few runs of an accurate one are known as multi-fidelity models (M. C. Kennedy and A. O'Hagan, Biometrika 87
 (2000) 1).
 
@@ -26,8 +26,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.estimation.response import CONDITIONS, Domain, coordinates, domain_of, embedded, restored_slip, slip_scale
-from bearing_sim.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
 from bearing_sim.files.kept import Damaged, packed, read_kept, unpacked, write_kept
 from bearing_sim.files.limits import RESPONSE_FILE
 from bearing_sim.levels.steady.operating_point import ACCELERATIONS, ANSWER
@@ -36,6 +34,8 @@ from bearing_sim.model.validity import BY_NAME
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.heat import NoHeat
 from bearing_sim.scene.scene import Scene
+from bearing_sim.watchers.estimation.response import CONDITIONS, Domain, coordinates, domain_of, embedded, restored_slip, slip_scale
+from bearing_sim.watchers.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
 
 LIFE_EXPONENT = 4.0
 """A life falls with this power of the equivalent loads: 4.5 times 8/9 (`bearing_sim.physics.rating_life.rating_life_revolutions`)."""
@@ -59,9 +59,9 @@ class Correction(NamedTuple):
     Attributes
     ----------
     domain : operating points that it is for; slower and lighter ones are corrected as the slowest and lightest.
-    conditions : operating points that were measured, columns `bearing_sim.estimation.response.CONDITIONS`, shape (k, 4).
+    conditions : operating points that were measured, columns `bearing_sim.watchers.estimation.response.CONDITIONS`, shape (k, 4).
     metrics : by which coordinates are multiplied before distances count, for slip and powers, and for loads; shape (2, c, c).
-    weights : of `bearing_sim.estimation.splines.spline_functions`, columns `ANSWER`, shape (k + c + 1, len(ANSWER)).
+    weights : of `bearing_sim.watchers.estimation.splines.spline_functions`, columns `ANSWER`, shape (k + c + 1, len(ANSWER)).
     changes : what was found at the points, columns `ANSWER` on the scales of the module, shape (k, len(ANSWER)).
     errors : at each point where it is left out: of slip [1] and of life, relative; shape (k, 2).
     two_states : conditions at which level ``planar`` has two states, and the slip of each, from ideal rolling first; shape (m, 6).
@@ -99,7 +99,7 @@ class Correction(NamedTuple):
 
         Parameters
         ----------
-        conditions : columns `bearing_sim.estimation.response.CONDITIONS`, further ones count for nothing, shape (n, 4 or more).
+        conditions : columns `bearing_sim.watchers.estimation.response.CONDITIONS`, further ones count for nothing, shape (n, 4 or more).
         answers : columns `bearing_sim.levels.steady.operating_point.ANSWER`, shape (n, len(ANSWER)).
 
         Returns
@@ -119,7 +119,7 @@ class Correction(NamedTuple):
 
         Parameters
         ----------
-        conditions : columns `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
+        conditions : columns `bearing_sim.watchers.estimation.response.CONDITIONS`, shape (n, 4).
         """
         return self._there(np.asarray(conditions, float)) @ self.metrics[0]
 
@@ -170,7 +170,7 @@ def fit_correction(domain: Domain, conditions: np.ndarray, answers: np.ndarray, 
     Parameters
     ----------
     domain : of the scene.
-    conditions : columns `bearing_sim.estimation.response.CONDITIONS`, shape (k, 4).
+    conditions : columns `bearing_sim.watchers.estimation.response.CONDITIONS`, shape (k, 4).
     answers, others : of level ``steady``, and of ``planar`` from ideal rolling; columns `ANSWER`, shape (k, len(ANSWER)); points where one of them
         has no answer are left out.
     seconds : that the points took.

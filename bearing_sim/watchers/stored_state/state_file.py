@@ -19,7 +19,7 @@ from bearing_sim.files.limits import STATE_FILE, FileError, LimitError
 from bearing_sim.files.outputs import replaced, synchronise
 from bearing_sim.files.reading import NO_FILE, read_bytes, why_not_readable
 from bearing_sim.messages.events import Level
-from bearing_sim.stored_state.state import VERSION, StoredState, migrated, time_text
+from bearing_sim.watchers.stored_state.state import VERSION, StoredState, migrated, time_text
 
 _LONGEST_SERIAL = 100
 

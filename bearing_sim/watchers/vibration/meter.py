@@ -19,9 +19,9 @@ import numpy as np
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.priority import with_low_priority
 from bearing_sim.scene.scene import Scene
-from bearing_sim.vibration.analysis import Geometry
-from bearing_sim.vibration.reading import Block
-from bearing_sim.vibration.worker import Outcome, Window
+from bearing_sim.watchers.vibration.analysis import Geometry
+from bearing_sim.watchers.vibration.reading import Block
+from bearing_sim.watchers.vibration.worker import Outcome, Window
 
 TOPIC = "vibration"
 _NICENESS = 10
@@ -209,7 +209,7 @@ class CageSpeedMeter:
 
 
 class _Process:
-    """The process of `bearing_sim.vibration.worker`, started with the first window, and again after it has ended."""
+    """The process of `bearing_sim.watchers.vibration.worker`, started with the first window, and again after it has ended."""
 
     def __init__(self):
         self._process: subprocess.Popen | None = None
@@ -220,7 +220,7 @@ class _Process:
         if self._has_ended:
             raise EOFError("the run has ended")
         if self._process is None or self._process.poll() is not None:
-            command = with_low_priority([sys.executable, "-m", "bearing_sim.vibration.worker"], _NICENESS)
+            command = with_low_priority([sys.executable, "-m", "bearing_sim.watchers.vibration.worker"], _NICENESS)
             environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
             self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
         pickle.dump(tuple(window), self._process.stdin)

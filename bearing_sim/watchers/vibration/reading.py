@@ -20,7 +20,7 @@ from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
-from bearing_sim.extras import what_is_missing
+from bearing_sim.files.extras import what_is_missing
 from bearing_sim.files.labview_text import plain_lines
 from bearing_sim.files.limits import TABLE_LINE, VIBRATION_FILE, VIBRATION_PARTS, VIBRATION_SAMPLES, VIBRATION_TEXT, FileError, LimitError, printable
 from bearing_sim.files.reading import encoding_by_mark, open_regular
@@ -28,7 +28,7 @@ from bearing_sim.files.tally import Tally
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.scene.quantity import to_si
-from bearing_sim.vibration.signal import FEWEST_SAMPLES, Vibration, VibrationError
+from bearing_sim.watchers.vibration.signal import FEWEST_SAMPLES, Vibration, VibrationError
 
 FORMATS = {
     **dict.fromkeys((".csv", ".txt", ".tsv", ".dat", ".lvm"), "text"),

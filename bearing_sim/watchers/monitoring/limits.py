@@ -14,8 +14,8 @@ import numpy as np
 from bearing_sim.messages.events import Event, Level, validity_event
 from bearing_sim.model.params import pack
 from bearing_sim.model.validity import Conditions, Exceedance, Law, in_order, sample_laws, scene_exceedances, worst
-from bearing_sim.monitoring.monitor import Alarm
 from bearing_sim.scene.scene import Hold, Scene, Thresholds
+from bearing_sim.watchers.monitoring.monitor import Alarm
 
 _EVERY = 0.1  # [s] least time between two samples that are judged: one costs about 0.2 ms
 # A warning is raised at once, because an overload of an instant is enough to dent a raceway, and cleared late, so that it does not flicker.

@@ -2,14 +2,15 @@
 """Calibration while a model runs: measured cage speeds, ring temperatures and clearances teach what is uncertain about its scene.
 
 Measurements are averaged over short intervals in which conditions hold (`_Batch`), and compared with what the level itself computed, moved by
-the response of the uncertain fields (`bearing_sim.estimation.response`); `bearing_sim.estimation.posterior` learns from the difference.
+the response of the uncertain fields (`bearing_sim.watchers.estimation.response`); `bearing_sim.watchers.estimation.posterior` learns from the
+difference.
 
 **Changes.** A slow change is what the posterior expects: fields wander.  A sudden one it takes for wild measurements at first.  The calibrated
 residual, measured minus predicted slip before the measurement is learned from, goes through the change detector of
-`bearing_sim.monitoring.residual`; while that suspects a change, measurements are kept aside.  They are learned from later if nothing comes of
-it.  Once it is sure, there are two posteriors: the one from before, to which the residual refers, so that the alarm holds for as long as the
-change does; and another, which allows for a change of any field since then and makes the predictions.  `bearing_sim.estimation.causes` says what
-may have changed.  If the residual returns, the posterior from before is back in force; `Estimator.accept` makes the other one the new normal.
+`bearing_sim.watchers.monitoring.residual`; while that suspects a change, measurements are kept aside.  They are learned from later if nothing comes
+of it.  Once it is sure, there are two posteriors: the one from before, to which the residual refers, so that the alarm holds for as long as the
+change does; and another, which allows for a change of any field since then and makes the predictions.  `bearing_sim.watchers.estimation.causes` says
+what may have changed.  If the residual returns, the posterior from before is back in force; `Estimator.accept` makes the other one the new normal.
 """
 
 import math
@@ -20,13 +21,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.estimation.causes import Cause, Evidence, causes_of, not_modelled
-from bearing_sim.estimation.posterior import CLEARANCE, DRAWS, INNER, OUTER, SLIP, Posterior, prior_scores
-from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.monitoring.residual import CALIBRATED_SLIP, Course, ResidualMonitor
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities
+from bearing_sim.watchers.estimation.causes import Cause, Evidence, causes_of, not_modelled
+from bearing_sim.watchers.estimation.posterior import CLEARANCE, DRAWS, INNER, OUTER, SLIP, Posterior, prior_scores
+from bearing_sim.watchers.estimation.response import ResponseModel
+from bearing_sim.watchers.monitoring.residual import CALIBRATED_SLIP, Course, ResidualMonitor
 
 _OBSERVED = ("shaft_speed", "load_y", "load_z", "oil_temperature", "ideal_cage_speed", "cage_slip", "running_clearance")
 _SPEED_CHANGE, _LOAD_CHANGE = 0.02, 0.25  # relative; larger ones within a batch or shortly before it make it unsettled, as in `calibrate`
@@ -173,7 +174,7 @@ class Estimator:
     Parameters
     ----------
     scene : of the run; its block ``estimation`` says what is calibrated, and how well the model and the sensors are known.
-    response : of the scene (`bearing_sim.estimation.response.kept_response`).
+    response : of the scene (`bearing_sim.watchers.estimation.response.kept_response`).
     known : dotted paths of fields that are inputs of this run, such as ``lubricant.temperature`` where an oil temperature comes in.
 
     Attributes
@@ -523,7 +524,7 @@ def explained(causes: Sequence[Cause], missing: Mapping[str, str]) -> str:
     Parameters
     ----------
     causes : the likeliest first.
-    missing : see `bearing_sim.estimation.causes.not_modelled`.
+    missing : see `bearing_sim.watchers.estimation.causes.not_modelled`.
     """
     first, *others = causes
     rivals = [each for each in others if each.probability > first.probability / 3.0]

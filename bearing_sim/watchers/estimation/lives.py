@@ -3,8 +3,8 @@
 
 A cage that lags presses its rollers outwards by less, so that slip changes lives, upwards or downwards, and by so little at some operating points
 that no fit to settled points shows it.  a_ISO has bends at viscosity ratios of 0.1, 0.4, 1 and 4, and ends at 0.1 and 50, which no polynomial
-follows.  Both are cheap to compute: here is what they do to lives, and the response of a bearing (`bearing_sim.estimation.response`) is fitted to
-what is left.
+follows.  Both are cheap to compute: here is what they do to lives, and the response of a bearing (`bearing_sim.watchers.estimation.response`) is
+fitted to what is left.
 """
 
 import math
@@ -73,7 +73,7 @@ class SlipAndOil:
 
         Parameters
         ----------
-        conditions : operating points, columns as `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
+        conditions : operating points, columns as `bearing_sim.watchers.estimation.response.CONDITIONS`, shape (n, 4).
         slips : shape (n, m).
 
         Returns

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 from types import FrameType
 
-from bearing_sim.extras import what_is_missing
+from bearing_sim.files.extras import what_is_missing
 
 _INTERRUPTED = 128 + signal.SIGINT
 

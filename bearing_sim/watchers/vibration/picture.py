@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from bearing_sim.vibration.analysis import PARTS, Analysis, Geometry
-from bearing_sim.vibration.signal import Band, Spectrum, Vibration
+from bearing_sim.watchers.vibration.analysis import PARTS, Analysis, Geometry
+from bearing_sim.watchers.vibration.signal import Band, Spectrum, Vibration
 
 _PER_TURN = 128
 _NEAR = 0.02  # of an order, within which the peak of a line is looked for

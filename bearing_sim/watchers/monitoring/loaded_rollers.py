@@ -5,7 +5,7 @@ import numpy as np
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.turning import turns
-from bearing_sim.monitoring.watchers import Watcher
+from bearing_sim.watchers.monitoring.watchers import Watcher
 
 
 class LoadedRollers(Watcher):

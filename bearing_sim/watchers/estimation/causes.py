@@ -17,10 +17,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import logsumexp, ndtri
 
-from bearing_sim.estimation.posterior import SLIP, Posterior
-from bearing_sim.estimation.response import ANSWERS, ResponseModel, restored, transformed
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities, value_at
+from bearing_sim.watchers.estimation.posterior import SLIP, Posterior
+from bearing_sim.watchers.estimation.response import ANSWERS, ResponseModel, restored, transformed
 
 OIL_QUANTITY, OIL, TRACTION, CLEARANCE = "oil quantity", "viscosity or temperature of the oil", "traction of the oil", "clearance"
 COOLING, CAGE, LOAD, SENSOR, NONE = "cooling", "cage and its guide", "load", "cage speed sensor", "none of the modelled causes"
@@ -55,7 +55,7 @@ class Evidence(NamedTuple):
 
     Attributes
     ----------
-    conditions : `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
+    conditions : `bearing_sim.watchers.estimation.response.CONDITIONS`, shape (n, 4).
     own : slip by the level, shape (n,).
     residual : measured minus own slip, shape (n,).
     variance : of the noise of the latter, shape (n,).

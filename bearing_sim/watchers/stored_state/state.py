@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.files.kept import Damaged
-from bearing_sim.recording.provenance import package_version
+from bearing_sim.files.provenance import package_version
 from bearing_sim.scene.scene import OPERATING_POINT, Scene
 from bearing_sim.scene.uncertainty import value_at
-from bearing_sim.stored_state.covered import Covered
-from bearing_sim.stored_state.totals import Criteria, Totals, totals_of
+from bearing_sim.watchers.stored_state.covered import Covered
+from bearing_sim.watchers.stored_state.totals import Criteria, Totals, totals_of
 
 VERSION = 2
 """Of the contents of a state file; `migrated` brings older ones to it."""
@@ -85,8 +85,8 @@ class StoredState:
     is_turning : whether the shaft turned at the end.
     calibration : the scene's values of fields that a calibration fits.
     thermal : of the thermal network; None without one.
-    learned : statistics of residuals by what is compared (see `bearing_sim.monitoring.residual.ResidualMonitor.learned`), and what measurements
-        have taught about uncertain fields, as ``estimation`` (see `bearing_sim.estimation.live.LiveEstimation.learned`).
+    learned : statistics of residuals by what is compared (see `bearing_sim.watchers.monitoring.residual.ResidualMonitor.learned`), and what
+        measurements have taught about uncertain fields, as ``estimation`` (see `bearing_sim.watchers.estimation.live.LiveEstimation.learned`).
     estimates : the calibrated fields as they were, at most one entry an hour.
     writes : how often it was written.
     created_ns, written_ns : when it was begun, and written last [ns since the epoch].
@@ -115,7 +115,7 @@ class StoredState:
 
         Parameters
         ----------
-        block : samples in order, shape (n,); their damage is the bearing's (see `bearing_sim.stored_state.counting.LifeCounter`).
+        block : samples in order, shape (n,); their damage is the bearing's (see `bearing_sim.watchers.stored_state.counting.LifeCounter`).
         times_ns : of the samples [ns since the epoch], shape (n,), int64.
         seconds : simulated time that each stands for, which ends at it [s], shape (n,).
         by : what they are classed by.

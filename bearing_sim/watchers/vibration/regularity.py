@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.vibration.order_tracking import Shaft
-from bearing_sim.vibration.signal import Band, Spectrum
+from bearing_sim.watchers.vibration.order_tracking import Shaft
+from bearing_sim.watchers.vibration.signal import Band, Spectrum
 
 EXACT = 0.0003
 """Standard deviation of the instants of impacts over their period up to which a train is called exactly periodic (assumption: teeth are met within

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import ndtri
 
-from bearing_sim.estimation.lives import SlipAndOil
-from bearing_sim.estimation.response import (
+from bearing_sim.scene.scene import Scene
+from bearing_sim.watchers.estimation.lives import SlipAndOil
+from bearing_sim.watchers.estimation.response import (
     ANSWERS,
     PROBABILITIES,
     Domain,
@@ -18,7 +19,6 @@ from bearing_sim.estimation.response import (
     restored,
     transformed,
 )
-from bearing_sim.scene.scene import Scene
 
 QUANTITIES = ("cage_slip", "rating_life", "running_clearance", "remaining_life")
 """What has a band; units [1, h, m, h]."""
@@ -175,7 +175,7 @@ def cells(conditions: np.ndarray, domain: Domain) -> np.ndarray:
 
     Parameters
     ----------
-    conditions : columns `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
+    conditions : columns `bearing_sim.watchers.estimation.response.CONDITIONS`, shape (n, 4).
     domain : of the response.
 
     Returns

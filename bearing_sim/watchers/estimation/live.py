@@ -11,17 +11,17 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
-from bearing_sim.estimation.bands import PROBABILITIES, QUANTITIES, BandEstimator, quantiles
-from bearing_sim.estimation.estimator import Estimator
-from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.messages.bands import BANDS, EDGES, ESTIMATES, Bands
 from bearing_sim.messages.events import Event
 from bearing_sim.model.turning import turns
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.scene.uncertainty import quantities, ranges_of, without_dimensions
+from bearing_sim.watchers.estimation.bands import PROBABILITIES, QUANTITIES, BandEstimator, quantiles
+from bearing_sim.watchers.estimation.estimator import Estimator
+from bearing_sim.watchers.estimation.response import ResponseModel
 
 UNITS = ("", "h", "m", "h")
-"""Of `bearing_sim.estimation.bands.QUANTITIES`."""
+"""Of `bearing_sim.watchers.estimation.bands.QUANTITIES`."""
 _SLIP = QUANTITIES.index("cage_slip")
 _OIL = "lubricant.temperature"  # the field that an input replaces
 _SHOWN_UNITS = {"": "fraction"}  # in diagnostics
@@ -80,7 +80,7 @@ class LiveEstimation:
 
     @property
     def learned(self) -> dict[str, object]:
-        """What measurements have taught, as JSON has it (see `bearing_sim.estimation.estimator.Estimator.learned`)."""
+        """What measurements have taught, as JSON has it (see `bearing_sim.watchers.estimation.estimator.Estimator.learned`)."""
         return {} if self._estimator is None else self._estimator.learned
 
     def restore(self, learned: Mapping[str, object], seconds: float = 0.0) -> None:
@@ -187,12 +187,12 @@ class LiveEstimation:
         return {one.field: (one.value, one.low, one.high) for one in self._estimator.estimates() if one.field in self._scene.estimation.calibrated}
 
     def events(self, now: float) -> list[Event]:
-        """Return the events that hold, stamped ``now`` [s] (see `bearing_sim.estimation.estimator.Estimator.events`)."""
+        """Return the events that hold, stamped ``now`` [s] (see `bearing_sim.watchers.estimation.estimator.Estimator.events`)."""
         return [] if self._estimator is None else self._estimator.events(now)
 
     @property
     def newest(self) -> dict[str, tuple[float, float]]:
-        """The newest band of each of `bearing_sim.estimation.bands.QUANTITIES`, 5 and 95 % quantile; empty before the first."""
+        """The newest band of each of `bearing_sim.watchers.estimation.bands.QUANTITIES`, 5 and 95 % quantile; empty before the first."""
         if self._newest is None:
             return {}
         return {name: (float(low), float(high)) for name, (_, low, high) in zip(QUANTITIES, self._newest.numbers[-1])}

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from bearing_sim.stored_state.covered import Covered
+from bearing_sim.watchers.stored_state.covered import Covered
 
 
 class LifeCounter:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.scene.display import number
-from bearing_sim.vibration.comb import (
+from bearing_sim.watchers.vibration.comb import (
     Fit,
     Prepared,
     Range,
@@ -30,10 +30,10 @@ from bearing_sim.vibration.comb import (
     spectra,
     train_below,
 )
-from bearing_sim.vibration.order_tracking import Shaft, constant_shaft, find_shaft, recorded_shaft, shaft_signal_range, wide_range
-from bearing_sim.vibration.phase import Rate, Track, follow, mean_rate, smoothed
-from bearing_sim.vibration.regularity import UNKNOWN, Regularity, regularity
-from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, candidate_bands, narrow_bands, repetition
+from bearing_sim.watchers.vibration.order_tracking import Shaft, constant_shaft, find_shaft, recorded_shaft, shaft_signal_range, wide_range
+from bearing_sim.watchers.vibration.phase import Rate, Track, follow, mean_rate, smoothed
+from bearing_sim.watchers.vibration.regularity import UNKNOWN, Regularity, regularity
+from bearing_sim.watchers.vibration.signal import Band, Spectrum, Vibration, VibrationError, candidate_bands, narrow_bands, repetition
 
 CERTAIN = math.log(1e4)
 """[nat] by which noise must be excluded: a false alarm in 10,000 records."""

@@ -1,0 +1,59 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What the package weighs: tokens by room.  A change raises a budget by what it brings, which the changelog names, and by nothing else.
+
+Tokens are names, operators, numbers and strings, so that neither longer lines nor fewer blank ones change them.
+"""
+
+import io
+import tokenize
+from collections import Counter
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[1] / "bearing_sim"
+TOKENS = {tokenize.NAME, tokenize.OP, tokenize.NUMBER, tokenize.STRING}
+BUDGETS = {
+    "__init__": 82,
+    "simulation": 5_204,
+    "files": 7_333,
+    "messages": 13_529,
+    "numerics": 13_827,
+    "sweep": 22_950,
+    "model": 23_113,
+    "physics": 27_406,
+    "ros": 31_154,
+    "recording": 31_390,
+    "inputs": 32_064,
+    "runtime": 32_771,
+    "view": 33_884,
+    "cli": 46_817,
+    "scene": 50_549,
+    "watchers": 73_727,
+    "studies": 77_736,
+    "levels": 88_510,
+}
+SLACK = 0.03  # a budget that is larger than the room by more is lowered
+
+
+def tokens(text):
+    """Return the number of tokens of a source."""
+    return sum(each.type in TOKENS for each in tokenize.generate_tokens(io.StringIO(text).readline))
+
+
+def weights():
+    """Return the tokens by room."""
+    found = Counter()
+    for path in PACKAGE.rglob("*.py"):
+        found[path.relative_to(PACKAGE).parts[0].removesuffix(".py")] += tokens(path.read_text())
+    return found
+
+
+def test_no_room_weighs_more_than_its_budget_and_no_budget_is_left_behind():
+    found = weights()
+    assert found.keys() == BUDGETS.keys()
+    heavy = {room: f"{found[room]} of {budget}" for room, budget in BUDGETS.items() if found[room] > budget}
+    loose = {room: f"{found[room]} of {budget}" for room, budget in BUDGETS.items() if found[room] < (1.0 - SLACK) * budget - 20}
+    assert not heavy and not loose
+
+
+def test_a_token_is_a_word_and_no_blank_comment_or_line():
+    assert tokens("a = 'b c'  # d\n\n\n") == 3 == tokens("a='b c'\n")
