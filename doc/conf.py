@@ -36,10 +36,11 @@ default_role = "py:obj"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 
+html_title = "bearing_sim"
 html_theme = "pydata_sphinx_theme" if complete else "alabaster"
 if complete:
     html_theme_options = {
-        "header_links_before_dropdown": 6,
+        "header_links_before_dropdown": 5,
         "navbar_end": ["theme-switcher"],
         "show_toc_level": 2,
         "footer_start": ["copyright"],

@@ -50,6 +50,18 @@ def test_the_generated_reference_has_an_entry_for_what_the_code_declares(built):
         assert [name for name in names if name not in re.sub(r"<[^>]+>", "", text)] == [], page
 
 
+def test_pages_need_no_network_and_every_equation_is_mathml(built):
+    pytest.importorskip("math_core", reason="equations become MathML by math-core (pip install 'bearing_sim[doc]')")
+    _, html = built
+    pages = {path: path.read_text() for path in html.rglob("*.html")}
+    styles = {path: path.read_text() for path in html.rglob("*.css")}
+    loaded = r"<(?:script|link|img|iframe)[^>]+(?:src|href)=\"(?:https?:)?//(?![^\"]*\bcanonical)[^\"]*\"|url\([\"']?(?:https?:)?//|@import[^;]*//"
+    assert [str(path) for path, text in (pages | styles).items() if re.search(loaded, text)] == []
+    assert sum(text.count("<math") for text in pages.values()) > 2000
+    raw = re.compile(r"\\(?:frac|begin|cdot|left|right|mathrm|qquad|dot|sum)\b")
+    assert [path.name for path, text in pages.items() if raw.search(re.sub(r"<(pre|script|code)\b.*?</\1>", "", text, flags=re.DOTALL))] == []
+
+
 def test_the_configuration_can_be_executed_from_another_folder_as_rosdoc2_does(tmp_path):
     (tmp_path / "conf.py").write_text(f'exec(open("{DOC / "conf.py"}").read())\nhtml_theme = "sphinx_rtd_theme"\n')
     settings = runpy.run_path(str(tmp_path / "conf.py"))

@@ -373,7 +373,7 @@ EVENTS = {
 """Severity and meaning of each kind of event; `events` compares the kinds with the code."""
 _STATES = {"run.unconfigured", "run.inactive", "run.finalized"}  # kinds that the node makes of the names of its states
 _KIND = re.compile(rf"({'|'.join(sorted({kind.partition('.')[0] for kind in EVENTS}))})\.(?!mcap|rrd|name$|cage$)[a-z_]+")
-_ROOMS_WITH_EVENTS = ("inputs", "model", "monitoring", "estimation", "recording", "ros", "runtime", "stored_state", "vibration", "view")
+_ROOMS_WITH_EVENTS = ("inputs", "model", "watchers", "recording", "ros", "runtime", "view")
 
 
 def events() -> str:
