@@ -21,7 +21,7 @@ from bearing_sim.model.sample import COLUMN, NODE_OBSERVABLES, RING_TEMPERATURES
 from bearing_sim.model.temperatures import given_temperatures, lubricate_scene
 from bearing_sim.numerics.compilation import compiled_for
 from bearing_sim.numerics.time_stepping import COUNT, NEEDS_POINT, NOT_EVALUATED, OK, REASONS, new_counts, new_memory
-from bearing_sim.numerics.time_stepping import STEP_BUDGET as STEP_BUDGET  # a status of `IntegrationError`
+from bearing_sim.numerics.time_stepping import STEP_BUDGET as STEP_BUDGET  # noqa: F401, a status of `IntegrationError`
 from bearing_sim.scene.fidelity import NUMBERS
 from bearing_sim.scene.quantity import Quantity, to_si
 from bearing_sim.scene.scene import OPERATING_POINT, Integration, Operating, Scene

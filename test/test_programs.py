@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from bearing_sim import programs
+from bearing_sim.files import programs
 
 ROOT = Path(__file__).resolve().parent.parent
 SLOW = """

@@ -14,6 +14,7 @@ from bearing_sim.cli.reporting import (
     print_table,
     quantity_of,
     tell_use,
+    write_csv,
 )
 from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.loader import load_bearing, load_scene
@@ -108,6 +109,8 @@ def vibration(
     rows = [_row(part) for part in found.parts]
     if table is not None and not rows:
         raise UsageError(f"{table}: nothing to write: {found.reason}")
+    if table is not None:
+        write_csv(table, rows)
 
     def draw(draft):
         from bearing_sim.watchers.vibration.picture import draw

@@ -76,7 +76,6 @@ def view(
     time; topics that cannot be shown are listed. --web needs neither a display nor the internet, and nobody can connect from another
     machine, except by a tunnel (ssh -L 9090:127.0.0.1:9090).
     """
-
     if web_port is not None and not is_web:
         raise UsageError("--web-port goes with --web")
     if is_web and screenshot is not None:

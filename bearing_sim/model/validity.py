@@ -255,7 +255,7 @@ class Conditions:
 
     @property
     def speed_factor(self) -> np.ndarray:
-        """n d_m [rpm mm]."""
+        """Speed factor n d_m [rpm mm]."""
         return speed_factor(self.scene.bearing, self.samples["shaft_speed"])
 
     @property

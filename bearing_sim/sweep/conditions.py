@@ -208,7 +208,8 @@ def read_spectrum(path: Path) -> Spectrum:
         for (name, unit), cell in zip(columns, row):
             found = _NUMBER.fullmatch(cell.strip())
             try:
-                text = f"{layout.marks.plain(found[1])}{found[2]}" if found else cell.strip()
+                behind = found[2] if found and found[2].strip() != unit else ""  # a unit may stand behind every number of its column, too
+                text = f"{layout.marks.plain(found[1])}{behind}" if found else cell.strip()
             except ValueError:
                 text = cell.strip()
             if text or name in _REQUIRED:
