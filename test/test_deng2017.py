@@ -265,7 +265,7 @@ def test_the_page_shows_marks_and_scripts_as_they_are_written(folder, about, tmp
 
 
 def test_a_folder_without_a_study_is_refused(tmp_path):
-    with pytest.raises(OSError):
+    with pytest.raises(NoResults, match="no such file"):
         study_page(tmp_path)
     (tmp_path / "study.json").write_text("{")
     with pytest.raises(NoResults, match="not readable as JSON"):

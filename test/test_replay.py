@@ -369,7 +369,7 @@ def test_run_that_is_told_to_stop_leaves_a_finished_file(tmp_path, number):
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     active, deadline = tmp_path / "out.mcap.active", time.monotonic() + 60
-    while not (active.exists() and active.stat().st_size > 20_000) and time.monotonic() < deadline:
+    while not (active.exists() and active.stat().st_size > 60_000) and time.monotonic() < deadline:
         time.sleep(0.05)
     child.send_signal(number)
     stdout, stderr = child.communicate(timeout=30)
