@@ -23,12 +23,12 @@ BUDGETS = {
     "ros": 31_154,
     "recording": 31_390,
     "inputs": 32_064,
-    "runtime": 32_771,
+    "runtime": 32_787,
     "view": 33_884,
-    "cli": 46_831,
+    "cli": 46_840,
     "scene": 50_549,
-    "watchers": 73_727,
-    "studies": 77_736,
+    "watchers": 73_771,
+    "studies": 77_838,
     "levels": 88_510,
 }
 SLACK = 0.03  # a budget that is larger than the room by more is lowered

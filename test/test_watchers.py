@@ -3,14 +3,20 @@
 
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
+from sim_time_bench import course, write
+from sim_time_bench import replayed as replay_of
+from test_live import Bench
 from test_replay import run, steady_log
+from test_sim_time import FakeReset, Run
 
 from bearing_sim import SceneError, load_scene
 from bearing_sim.messages.diagnostics import subject_of
 from bearing_sim.messages.events import Event, Level, Measurement, Report
+from bearing_sim.messages.topics import MEASURED_CHANNELS
 from bearing_sim.model.sample import new_block
 from bearing_sim.scene import watchers as registry
 from bearing_sim.watchers.monitoring.loaded_rollers import LoadedRollers
@@ -24,7 +30,7 @@ class Seen(Watcher):
 
     def __init__(self, scene):
         super().__init__(scene)
-        self.times, self.heard, self.ended = [], [], False
+        self.times, self.heard, self.ended, self.acts = [], [], False, []
         Seen.newest = self
 
     def hear(self, channel, time, value, standard_error):
@@ -34,6 +40,7 @@ class Seen(Watcher):
         if block["time"][-1] >= self.fails_at:
             raise ZeroDivisionError("on purpose")
         self.times += block["time"].tolist()
+        self.acts += block["time"].tolist()
         return [Event(float(block["time"][-1]), Level.OK, "watcher.seen.kept", "", "kept")] if len(self.times) == 1 else ()
 
     def events(self, now):
@@ -41,6 +48,9 @@ class Seen(Watcher):
 
     def values(self, now):
         return {"samples": len(self.times)}
+
+    def restart(self, why):
+        self.acts.append("restart")
 
     def close(self):
         self.ended = True
@@ -67,12 +77,73 @@ def test_a_watcher_sees_every_sample_of_a_replay_once_in_order_and_what_it_says_
     assert [time for _, time in watcher.heard] == [one.time for one in sink.of(Measurement)]
 
 
+def test_a_watcher_sees_single_samples_also_where_a_replay_computes_many_at_once(tmp_path, monkeypatch):
+    monkeypatch.setitem(registry.WATCHERS, "seen", f"{__name__}:Seen")
+    scene = load_scene("deng2017_table1", ["watchers=[seen]", "level=steady"])
+    sink = replay_of(write(tmp_path / "course.mcap", course(3.0)), scene, rate=500.0)
+    assert len(Seen.newest.times) > 1000 and len(sink.samples) - 1 == len(Seen.newest.times) == len(set(Seen.newest.times))
+    begun = [event.time for event in sink.events if event.kind == "watcher.seen"]
+    assert begun == [min(time for time in Seen.newest.times if time > 2.0)]
+
+
 def test_a_watcher_that_fails_is_named_and_the_run_continues(seen, tmp_path, monkeypatch):
     monkeypatch.setattr(Seen, "fails_at", 1.0)
     result, sink = replayed(seen, steady_log(tmp_path / "log.mcap", duration=4.0))
     failed = [event for event in sink.of(Event) if event.kind == "watcher.seen" and event.level == Level.ERROR]
     assert len(failed) == 1 and "ZeroDivisionError: on purpose" in failed[0].reason and result.samples == sum(map(len, sink.blocks))
     assert max(Seen.newest.times) < 1.0
+
+
+class Broken(Watcher):
+    """Cannot be made."""
+
+    def __init__(self, scene):
+        raise LookupError("on purpose")
+
+
+def test_a_watcher_that_cannot_be_made_is_named_and_the_others_watch(monkeypatch):
+    monkeypatch.setitem(registry.WATCHERS, "broken", f"{__name__}:Broken")
+    monkeypatch.setitem(registry.WATCHERS, "absent", "bearing_sim.no_such_module:Absent")
+    scene = load_scene("deng2017_table1", ["watchers=[broken, absent, loaded_rollers]"])
+    watchers = Watchers(scene)
+    assert [(event.kind, event.level) for event in watchers.events(0.0)] == [("watcher.broken", Level.ERROR), ("watcher.absent", Level.ERROR)]
+    watchers.see(new_block(1, scene.bearing.roller.count))
+    assert watchers.values(0.0)["loaded_rollers: rollers loaded"] == 0
+
+
+def test_a_live_run_shows_a_watcher_what_is_before_a_reset_before_it_lets_it_forget(seen):
+    bench = Bench(scene=["watchers=[seen]"])
+    try:
+        bench.run(0.3)
+        before = max(Seen.newest.times)
+        time.sleep(0.1)  # what is computed now is seen together with what follows the reset
+        assert bench.live.reset()
+        time.sleep(0.1)
+        bench.run(0.1)
+        acts = Seen.newest.acts
+        place = acts.index("restart")
+        assert before < max(acts[:place]) < min(acts[place + 1 :]) and sorted(Seen.newest.times) == Seen.newest.times
+        assert "watcher.seen" not in bench.codes()
+        assert bench.live.condition(bench.now_ns).values["seen: samples"] == len(Seen.newest.times)
+        bench.live.offer("cage_speed_measured", (38.0,), None, bench.now_ns)
+        assert [channel for channel, _ in Seen.newest.heard] == ["cage_speed_measured"]
+    finally:
+        assert bench.live.close()
+    assert Seen.newest.ended
+
+
+def test_simulated_time_shows_a_watcher_the_samples_and_measurements_of_the_replay_of_the_same_course(seen, tmp_path):
+    messages = course(1.0, cage=True)
+    replay_of(write(tmp_path / "course.mcap", messages), seen, model=FakeReset)
+    offline = Seen.newest
+    one = Run(scene=seen)
+    one.player.play(messages, [0.02 * k for k in range(60)])
+    one.finish()
+    assert one.model.close()
+    online = Seen.newest
+    count = min(len(offline.times), len(online.times))
+    assert count > 30 and offline.times[:count] == online.times[:count] and offline.ended and online.ended
+    assert {channel for channel, _ in online.heard} == {channel for channel, _ in offline.heard} == set(MEASURED_CHANNELS)
 
 
 def test_without_watchers_named_nothing_is_imported_for_them():

@@ -719,6 +719,7 @@ class LiveModel(Model):
         for item in items:
             if isinstance(item, Event):
                 self.monitor.take_all(blocks[judged:])
+                self._watch(blocks[judged:], now)
                 judged = len(blocks)
                 self._note_solver_event(item, now)
             else:
@@ -727,7 +728,7 @@ class LiveModel(Model):
         self._follow_setting()
         if blocks[judged:]:
             self.limits.take(blocks[-1])
-        self._watch(blocks, now)
+        self._watch(blocks[judged:], now)
         if blocks and self._estimation is not None:
             self._estimate(joined(blocks), now)
         if blocks and self.keeper is not None:

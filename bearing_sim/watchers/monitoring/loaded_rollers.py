@@ -11,8 +11,6 @@ from bearing_sim.watchers.monitoring.watchers import Watcher
 class LoadedRollers(Watcher):
     """Counts the rollers under load; an event while the shaft turns and no roller has an inner load."""
 
-    name = "loaded_rollers"
-
     def __init__(self, scene):
         super().__init__(scene)
         self.restart("")

@@ -23,8 +23,6 @@ class Watcher:
     scene : of the run.
     """
 
-    name = ""  # begins its values in diagnostics; its events are of the kind ``watcher.<name>``
-
     def __init__(self, scene: Scene):
         self.scene = scene
 
@@ -63,16 +61,22 @@ class Watchers:
         self._failed: list[Event] = []
         for name in scene.watchers:
             module, _, kind = place_of(name).partition(":")
-            self._watchers[name] = getattr(importlib.import_module(module), kind)(scene)
+            try:
+                self._watchers[name] = getattr(importlib.import_module(module), kind)(scene)
+            except Exception as error:  # of code that is not the run's, as all below
+                self._fail(name, 0.0, error)
+
+    def _fail(self, name: str, now: float, error: Exception) -> None:
+        self._watchers.pop(name, None)
+        reason = f"failed: {type(error).__name__}: {error}"
+        self._failed.append(Event(now, Level.ERROR, f"watcher.{name}", name, reason, "it sees nothing more; the run continues"))
 
     def _each(self, now: float, act: str, *arguments) -> Iterator[tuple[str, object]]:
         for name, watcher in list(self._watchers.items()):
             try:
                 found = getattr(watcher, act)(*arguments)
-            except Exception as error:  # of code that is not the run's
-                del self._watchers[name]
-                reason = f"failed: {type(error).__name__}: {error}"
-                self._failed.append(Event(now, Level.ERROR, f"watcher.{name}", name, reason, "it sees nothing more; the run continues"))
+            except Exception as error:
+                self._fail(name, now, error)
             else:
                 yield name, found
 
