@@ -28,6 +28,7 @@ from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.physics.traction import traction
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import scene_inputs
+from bearing_sim.studies import extreme_run
 from bearing_sim.studies.extreme_run import FAILED, FINISHED, REFUSED, STEP_LIMITED, TURNS, Case, at_stock, course_segments, energy_gap, run_at_stock
 from bearing_sim.studies.extremes import variants
 from bearing_sim.sweep.settling import cage_turn
@@ -180,6 +181,13 @@ def test_at_stock_settings_a_scene_turns_its_cage_50_times_or_settles_and_keeps_
     assert abs(outcome.books) < 0.003 + 3 * outcome.books_error
 
 
+def test_settings_of_the_integration_count_unless_a_case_is_run_at_stock():
+    tight = case("integration.step_budget=20")
+    assert extreme_run.run_case(tight).status == STEP_LIMITED and run_at_stock(tight).status == FINISHED
+    assert run_at_stock(tight).case == tight and "case" not in extreme_run.outcome_fields(tight)
+    assert [each for each in variants("nu215_rig", ["integration.step_budget=20"], 1, 0)[0].overrides if each.startswith("integration.")]
+
+
 @pytest.mark.parametrize("course", ["start", "stop", "reversal", "load_step"])
 def test_a_course_at_stock_settings_lasts_for_50_turns_of_an_ideal_cage(course):
     outcome = run_at_stock(case(level="slip", course=course))
@@ -232,7 +240,7 @@ def test_the_night_gives_one_table_and_resumes(tmp_path, monkeypatch):
     assert report["rows"][1]["books"]["number"] == 1 and report["rows"][3]["books"]["largest"] < 0.005
     rows = list(csv.DictReader((tmp_path / "night.csv").open()))
     assert len(rows) == 6 and {row["program"] for row in rows} == {report["program"]} and {row["seed"] for row in rows} == {"0"}
-    monkeypatch.setattr("bearing_sim.studies.extreme_run.run_at_stock", lambda case: 1 / 0)  # nothing runs again
+    monkeypatch.setattr("bearing_sim.studies.extreme_run.run_case", lambda case: 1 / 0)  # nothing runs again
     again = CliRunner().invoke(validation, arguments)
     assert again.exit_code == 0 and "slip, corners: 1 refused: bearing.roller.count" in again.output
 

@@ -226,3 +226,9 @@ def test_a_design_without_its_further_tables_is_refused_by_the_name_of_the_missi
     (tmp_path / "design.parquet").write_bytes((folder / "design.parquet").read_bytes())
     result = CliRunner().invoke(main, ["report", str(tmp_path / "design.parquet")])
     assert result.exit_code == 2 and "design_borders.parquet" in result.output
+
+
+def test_a_page_of_validation_names_what_makes_it_now(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(main, ["report", "validation"])
+    assert result.exit_code == 2 and "python test/validation report" in result.output

@@ -120,8 +120,6 @@ log_options = together(
         metavar="S",
     ),
 )
-
-
 """The options that say where a log holds what: topics, units, constants, stamps and gaps (see `channel_sources`)."""
 
 

@@ -28,6 +28,8 @@ def report(source, out):
     from bearing_sim.studies.report_page import page_of
 
     result = Path(source)
+    if source == "validation" and not result.exists():
+        raise UsageError("report validation is no longer part of the program; from a checkout of the repository: python test/validation report")
     out = out or default_output(result / "report.html" if result.is_dir() else result.with_suffix(".html"))
     page = page_of(result, tell_use)
     out.write_text(page)

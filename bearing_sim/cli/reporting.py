@@ -242,7 +242,7 @@ def announce_compilation(scene=None, with_states: bool = False) -> None:
     from bearing_sim.runtime.precompilation import announcement, builds, compile_for
 
     if scene is not None:
-        compile_for(scene, lambda line: note(line), with_states)
+        compile_for(scene, note, with_states)
     elif not any(CACHE_FOLDER.rglob("*.code")):
         note(f"{announcement(builds(('steady', 'slip', 'planar')))}, each when it is first needed")
 

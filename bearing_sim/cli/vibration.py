@@ -118,7 +118,7 @@ def vibration(
         draw(draft, record, geometry, found)
 
     report = {"file": data.name, **_report(found, record, geometry), "parts": rows}
-    return Result(report, lambda: _print(data.name, record, geometry, found), draw, rows)
+    return Result(report, lambda: _print(data.name, record, geometry, found), draw)
 
 
 def _positive(option: str, text: str, unit: str) -> float:

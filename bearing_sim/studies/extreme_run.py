@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""One scene at the extremes at stock settings: tolerances, steps and method of a scene that says nothing about them.
+"""One scene at the extremes: what comes of it, and whether its books of energy close.
 
 The case runs for at least 50 turns of its cage, or until it has settled.  Its inputs change once over what are 50 turns of an ideal cage;
 under the last ones it goes on until it settles or its cage has turned often enough, however long a cage that hardly turns takes for it.  Only the
@@ -81,7 +81,7 @@ class Segment(NamedTuple):
 
 
 class StockOutcome(NamedTuple):
-    """Outcome of one case at stock settings."""
+    """Outcome of one case."""
 
     case: Case
     status: str  # one of `OUTCOMES`
@@ -113,17 +113,22 @@ def at_stock(case: Case) -> Case:
     return case._replace(overrides=tuple(each for each in case.overrides if not each.startswith("integration.")))
 
 
-def stock_result(case: Case) -> dict:
-    """Return the fields of the outcome of one case at stock settings, without the case."""
-    fields = run_at_stock(case)._asdict()
+def outcome_fields(case: Case) -> dict:
+    """Return the fields of the outcome of one case, without the case."""
+    fields = run_case(case)._asdict()
     del fields["case"]
     return fields
 
 
 def run_at_stock(case: Case) -> StockOutcome:
-    """Run one case at stock settings; any error becomes an outcome."""
+    """Run one case at stock settings, see `run_case`."""
+    return run_case(at_stock(case))._replace(case=case)
+
+
+def run_case(case: Case) -> StockOutcome:
+    """Run one case; any error becomes an outcome."""
     try:
-        scene = load_scene(case.scene, at_stock(case).overrides)
+        scene = load_scene(case.scene, case.overrides)
         inputs = scene_inputs(scene)
         segments = [] if case.course == "steady" else list(course_segments(case.course, _seconds(scene, case.course), inputs))
         simulation = Simulation(scene, segments[0].inputs if segments else inputs)

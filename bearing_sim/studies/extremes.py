@@ -7,14 +7,13 @@ Each variant is a list of overrides of the scene, so that ``bearing-sim run SCEN
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 
 from scipy.stats import qmc
 
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Scene
-from bearing_sim.studies.extreme_run import COURSES, FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Case, StockOutcome, stock_result
+from bearing_sim.studies.extreme_run import COURSES, FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Case, StockOutcome, outcome_fields
 from bearing_sim.sweep.pictures import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
@@ -28,9 +27,24 @@ _MISALIGNMENT = 5e-3  # rad
 _UNITS = {"operating.shaft_speed": " rad/s"}  # which a scene wants in words
 
 
-def _scaled(value: float, span: tuple[float, float], u: float) -> float:
-    """Return a value times a factor that is uniform in its logarithm."""
-    return value * span[0] * (span[1] / span[0]) ** u
+def linear(low: float, high: float) -> Callable[[float], float]:
+    """Return the law that spreads values evenly; as all laws, of a number from 0 to 1."""
+    return lambda u: low + (high - low) * u
+
+
+def logarithmic(low: float, high: float) -> Callable[[float], float]:
+    """Return the law that spreads the logarithms of values evenly."""
+    return lambda u: low * (high / low) ** u
+
+
+def choice(*options) -> Callable:
+    """Return the law that takes each of some options equally often."""
+    return lambda u: options[min(int(u * len(options)), len(options) - 1)]
+
+
+def or_zero(fraction: float, law: Callable[[float], float]) -> Callable[[float], float]:
+    """Return a law that is exactly 0 for a fraction of all samples."""
+    return lambda u: 0.0 if u < fraction else law((u - fraction) / (1.0 - fraction))
 
 
 def _dimensions(scene: Scene) -> Mapping[str, Callable[[float], float | str]]:
@@ -38,11 +52,11 @@ def _dimensions(scene: Scene) -> Mapping[str, Callable[[float], float | str]]:
     bearing, operating = scene.bearing, scene.operating
     cage = bearing.cage
     laws = {
-        "course": lambda u: COURSES[min(int(u * len(COURSES)), len(COURSES) - 1)],
+        "course": choice(*COURSES),
         "operating.shaft_speed": lambda u: 0.0 if abs(2.0 * u - 1.0) < _AT_REST else _FASTEST * (2.0 * u - 1.0) * abs(operating.shaft_speed),
-        "operating.radial_load": lambda u: 0.0 if u < _WITHOUT_LOAD else _HEAVIEST * u**3 * operating.radial_load,
-        "operating.load_angle": lambda u: 2.0 * math.pi * u,
-        "lubricant.temperature": lambda u: _COLDEST + (_WARMEST - _COLDEST) * u,
+        "operating.radial_load": or_zero(_WITHOUT_LOAD, lambda u: _HEAVIEST * u**3 * operating.radial_load),
+        "operating.load_angle": linear(0.0, 2.0 * math.pi),
+        "lubricant.temperature": linear(_COLDEST, _WARMEST),
         "bearing.outer_raceway.low_radius": lambda u: (
             bearing.outer_raceway.low_radius + (_TIGHTER * (1.0 - 2.0 * u) if u < 0.5 else _LOOSER * (2.0 * u - 1.0) ** 3)
         ),
@@ -51,7 +65,8 @@ def _dimensions(scene: Scene) -> Mapping[str, Callable[[float], float | str]]:
     for name in ("mass", "pocket_clearance", "guide_clearance"):
         value = getattr(cage, name, None)
         if value:
-            laws[f"bearing.cage.{name}"] = partial(_scaled, value, _MASSES if name == "mass" else _PLAYS)
+            low, high = _MASSES if name == "mass" else _PLAYS
+            laws[f"bearing.cage.{name}"] = logarithmic(low * value, high * value)
     return laws
 
 
@@ -71,7 +86,7 @@ def variants(name: str, overrides: Sequence[str], samples: int, seed: int) -> li
         The scene itself is invalid.
     """
     scene = load_scene(name, overrides)
-    laws = {field: law for field, law in _dimensions(scene).items() if field == "course" or _takes(name, overrides, field, law(0.5))}
+    laws = {field: law for field, law in _dimensions(scene).items() if field == "course" or takes(name, [*overrides, _override(field, law(0.5))])}
     cases = []
     for number, row in enumerate(qmc.LatinHypercube(len(laws), seed=seed).random(samples)):
         point = {field: law(float(u)) for (field, law), u in zip(laws.items(), row)}
@@ -84,10 +99,10 @@ def _override(field: str, value: float) -> str:
     return f"{field}={value!r}{_UNITS.get(field, '')}"
 
 
-def _takes(name: str, overrides: Sequence[str], field: str, value: float) -> bool:
-    """Return whether a scene accepts another value of a field at its level."""
+def takes(name: str, overrides: Sequence[str]) -> bool:
+    """Return whether a scene accepts overrides."""
     try:
-        load_scene(name, [*overrides, _override(field, value)])
+        load_scene(name, overrides)
     except SceneError:
         return False
     return True
@@ -113,7 +128,7 @@ def run_extremes(
     """
     cases = variants(name, overrides, samples, seed)
     with Journal(journal) if journal else Journal() as kept:
-        results = run_tasks([task(case.level, stock_result, case) for case in cases], kept, workers, progress=progress)
+        results = run_tasks([task(case.level, outcome_fields, case) for case in cases], kept, workers, progress=progress)
     return [StockOutcome(**{"case": case} | result) for case, result in zip(cases, results)]
 
 
@@ -136,12 +151,13 @@ def table_rows(outcomes: Sequence[StockOutcome]) -> list[dict]:
 
 
 # Okabe and Ito's colours, safe for colour-blind readers; markers repeat the information.
-_LOOKS = {
+LOOKS = {
     FINISHED: {"color": "#0072B2", "marker": "o", "s": 9, "alpha": 0.6, "linewidths": 0},
     STEP_LIMITED: {"color": "#E69F00", "marker": "s", "s": 14, "alpha": 0.85, "linewidths": 0},
     REFUSED: {"color": "#7a7a7a", "marker": "x", "s": 16, "alpha": 0.9, "linewidths": 0.9},
     FAILED: {"color": "#D55E00", "marker": "*", "s": 130, "edgecolors": "black", "linewidths": 0.6, "zorder": 5},
 }
+"""Look of the points of each outcome."""
 _VIEWS = (  # field, factor, label
     (("operating.shaft_speed", 30.0 / math.pi, "shaft speed [rpm]"), ("operating.radial_load", 1e-3, "radial load [kN]")),
     (("lubricant.temperature", 1.0, "oil temperature [K]"), ("bearing.outer_raceway.low_radius", 1e3, "radius of the outer raceway [mm]")),
@@ -152,7 +168,7 @@ def draw(path: Path, title: str, outcomes: Sequence[StockOutcome]) -> None:
     """Draw the outcomes over speed and load, and over oil temperature and play; the suffix of ``path`` gives the format."""
     figure = new_figure(11, 4.6)
     for axes, (x, y) in zip(figure.subplots(1, len(_VIEWS)), _VIEWS):
-        for status, look in _LOOKS.items():
+        for status, look in LOOKS.items():
             points = [each.case.point for each in outcomes if each.status == status and x[0] in each.case.point and y[0] in each.case.point]
             axes.scatter(
                 [x[1] * p[x[0]] for p in points], [y[1] * p[y[0]] for p in points], label=f"{len(points)} {status.replace('_', '-')}", **look

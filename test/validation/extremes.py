@@ -8,7 +8,8 @@ from pathlib import Path
 
 from bearing_sim.files.cores import cores
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.studies.extreme_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, StockOutcome, at_stock, stock_result
+from bearing_sim.studies.extreme_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, StockOutcome, at_stock, outcome_fields
+from bearing_sim.studies.extremes import LOOKS
 from bearing_sim.sweep.pictures import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 from validation.extremes_cases import corner_cases, sampled_cases
@@ -57,7 +58,7 @@ def run_extremes(
     long_outcomes = [long_outcome(*run, result) for run, result in zip(long_runs, results[len(cases) :])]
     limited = [at_stock(outcome.case) for outcome in outcomes if outcome.status == STEP_LIMITED]
     announce(f"{len(limited)} step-limited scenes again, at stock settings")
-    again = run_tasks([task(case.level, stock_result, case) for case in limited], Journal(), workers)
+    again = run_tasks([task(case.level, outcome_fields, case) for case in limited], Journal(), workers)
     stock_outcomes = [StockOutcome(**{"case": case} | result) for case, result in zip(limited, again)]
     return _report(levels, samples, seed, outcomes, stock_outcomes, long_outcomes), outcomes
 
@@ -138,13 +139,6 @@ def kinds_of_reason(reason: str) -> list[str]:
     return list(dict.fromkeys(named or [part.split(":")[0] for part in reason.split(", ")]))
 
 
-# Okabe and Ito's colours, safe for colour-blind readers; markers repeat the information.
-_LOOKS = {
-    FINISHED: {"color": "#0072B2", "marker": "o", "s": 9, "alpha": 0.6, "linewidths": 0},
-    STEP_LIMITED: {"color": "#E69F00", "marker": "s", "s": 14, "alpha": 0.85, "linewidths": 0},
-    REFUSED: {"color": "#7a7a7a", "marker": "x", "s": 16, "alpha": 0.9, "linewidths": 0.9},
-    FAILED: {"color": "#D55E00", "marker": "*", "s": 130, "edgecolors": "black", "linewidths": 0.6, "zorder": 5},
-}
 # x, factor, label, scale; y, factor, label, scale
 _VIEWS = (
     (("shaft_speed_rpm", 1e-3, "shaft speed [1000 rpm]", "linear"), ("radial_load", 1e-3, "radial load [kN]", "symlog")),
@@ -173,7 +167,7 @@ def draw(path: Path, outcomes: Sequence[Outcome]) -> None:
 
 
 def _counts(outcomes: Sequence[Outcome]) -> str:
-    return ", ".join(f"{sum(outcome.status == status for outcome in outcomes)} {_shown(status)}" for status in _LOOKS)
+    return ", ".join(f"{sum(outcome.status == status for outcome in outcomes)} {_shown(status)}" for status in LOOKS)
 
 
 def _shown(status: str) -> str:
@@ -181,7 +175,7 @@ def _shown(status: str) -> str:
 
 
 def _draw_view(axes, outcomes, x, y) -> None:
-    for status, look in _LOOKS.items():
+    for status, look in LOOKS.items():
         points = [outcome.case.point for outcome in outcomes if outcome.status == status]
         axes.scatter([x[1] * point[x[0]] for point in points], [y[1] * point[y[0]] for point in points], label=_shown(status), **look)
     for name, (field, _, label, scale) in (("x", x), ("y", y)):

@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping
 from scipy.stats import qmc
 
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.studies.extreme_run import COURSES, Case
+from bearing_sim.studies.extremes import choice, linear, logarithmic, or_zero, takes
 
 _TRACTIONS = ("oil_4109", "constant", "kragelskii", "eyring")
 _CROWNS = ("none", "iso_log", "{law: straight_arc, straight_length: 4 mm, crown_radius: 1 m}")
@@ -20,23 +20,6 @@ _DIAMETER, _INNER_RADIUS, _CAGE_BORE, _GUIDE_RADIUS = 7e-3, 27.875e-3, 29.6e-3, 
 _LARGEST_PLAY = 1.3  # times the clearance that leaves no bar between pockets
 _WIDEST_POCKET = 5e-3  # m of pocket clearance, the most that a scene takes; a corner asks for it
 _ROLLERS_THAT_FIT = 24  # with bars of the cage between them; for more rollers the bearing grows
-
-
-def _linear(low, high):
-    return lambda u: low + (high - low) * u
-
-
-def _logarithmic(low, high):
-    return lambda u: low * (high / low) ** u
-
-
-def _choice(*options):
-    return lambda u: options[min(int(u * len(options)), len(options) - 1)]
-
-
-def _or_zero(fraction, law):
-    """Return a law that is exactly 0 for a fraction of all samples."""
-    return lambda u: 0.0 if u < fraction else law((u - fraction) / (1.0 - fraction))
 
 
 def _speed(u):
@@ -52,32 +35,32 @@ def _clearance(u):
 
 DIMENSIONS: Mapping[str, Callable] = {
     "shaft_speed_rpm": _speed,
-    "radial_load": _or_zero(0.05, lambda u: 5e4 * u**3),
-    "load_angle": _linear(0.0, 2.0 * math.pi),
-    "course": _choice(*COURSES),
+    "radial_load": or_zero(0.05, lambda u: 5e4 * u**3),
+    "load_angle": linear(0.0, 2.0 * math.pi),
+    "course": choice(*COURSES),
     "clearance": _clearance,
-    "d_value": _or_zero(0.15, lambda u: 0.5e-3 * u * u),
+    "d_value": or_zero(0.15, lambda u: 0.5e-3 * u * u),
     "rollers": lambda u: 3 + min(int(58 * u), 57),
     "pocket_clearance": lambda u: u,  # scaled below, because its range depends on the number of rollers
-    "guide_clearance": _logarithmic(2.5e-6, 5e-3),
-    "cage_mass": _logarithmic(2e-3, 2.0),
-    "supported_mass": _or_zero(0.1, _logarithmic(1e-2, 100.0)),
-    "viscosity": _logarithmic(1e-4, 1.0),
-    "temperature": _linear(233.15, 523.15),
-    "mixture_fraction": _or_zero(0.1, lambda u: u * u),
-    "traction": _choice(*_TRACTIONS),
-    "rolling_resistance": _choice("none", "none", "hydrodynamic"),
-    "dimensions_at": _choice("running", "running", "cold"),
-    "contour_slope": _choice("true", "true", "false"),
-    "land_squeeze": _choice("true", "true", "false"),
-    "pocket_friction": _or_zero(0.2, _linear(0.0, 0.3)),
-    "fixed": _choice(False, False, False, True),
-    "tolerances": _logarithmic(1e-8, 1.0),  # times the default ones
-    "step": _logarithmic(1e-7, 1e-3),
+    "guide_clearance": logarithmic(2.5e-6, 5e-3),
+    "cage_mass": logarithmic(2e-3, 2.0),
+    "supported_mass": or_zero(0.1, logarithmic(1e-2, 100.0)),
+    "viscosity": logarithmic(1e-4, 1.0),
+    "temperature": linear(233.15, 523.15),
+    "mixture_fraction": or_zero(0.1, lambda u: u * u),
+    "traction": choice(*_TRACTIONS),
+    "rolling_resistance": choice("none", "none", "hydrodynamic"),
+    "dimensions_at": choice("running", "running", "cold"),
+    "contour_slope": choice("true", "true", "false"),
+    "land_squeeze": choice("true", "true", "false"),
+    "pocket_friction": or_zero(0.2, linear(0.0, 0.3)),
+    "fixed": choice(False, False, False, True),
+    "tolerances": logarithmic(1e-8, 1.0),  # times the default ones
+    "step": logarithmic(1e-7, 1e-3),
     "slices": lambda u: 0 if u < 0.5 else 1 + min(int(200 * (2 * u - 1) ** 2), 199),  # 0: the quadrature
-    "crown": _choice(*_CROWNS),
-    "misalignment": _or_zero(0.4, lambda u: 5e-3 * u * u),
-    "gyroscopic": _choice("true", "true", "false"),
+    "crown": choice(*_CROWNS),
+    "misalignment": or_zero(0.4, lambda u: 5e-3 * u * u),
+    "gyroscopic": choice("true", "true", "false"),
 }
 # Fields that some levels refuse, according to the checks of the scene.
 _BY_LEVEL = {
@@ -95,13 +78,13 @@ def sampled_cases(level: str, samples: int, seed: int) -> list[Case]:
     samples : number of scenes.
     seed : the same seed gives the same scenes.
     """
-    ignored = frozenset(name for name, (field, value) in _BY_LEVEL.items() if not takes(level, field.format(value)))
+    ignored = frozenset(name for name, (field, value) in _BY_LEVEL.items() if not takes(BEARING, [f"level={level}", field.format(value)]))
     cases = []
     for number, row in enumerate(qmc.LatinHypercube(len(DIMENSIONS), seed=seed).random(samples)):
         point = {name: law(float(u)) for (name, law), u in zip(DIMENSIONS.items(), row)}
         for name in ignored:
             del point[name]
-        point["pocket_clearance"] = _logarithmic(1e-6, min(_LARGEST_PLAY * _room(point["rollers"]), _WIDEST_POCKET))(point["pocket_clearance"])
+        point["pocket_clearance"] = logarithmic(1e-6, min(_LARGEST_PLAY * _room(point["rollers"]), _WIDEST_POCKET))(point["pocket_clearance"])
         point["fixed"] = point["fixed"] and LEVELS[level].takes_steps
         cases.append(Case(f"sample {number}", level, tuple(overrides_of(level, point)), point["course"], point))
     return cases
@@ -279,7 +262,7 @@ _SLICED = {
 def corner_cases(level: str) -> list[Case]:
     """Return all corners of one level: scenes, the tightest and loosest tolerances, and long and short steps."""
     corners = dict(CORNERS)
-    if takes(level, "operating.misalignment=1e-3"):
+    if takes(BEARING, [f"level={level}", "operating.misalignment=1e-3"]):
         corners |= _SLICED
     corners |= {f"tolerances x {t:g}": (tolerance_overrides(t), "steady") for t in (1.0, 1e-3, 1e-8)}
     corners["reversal at 100,000 rpm"] = [f"{_SPEED}=100000 rpm"], "reversal"
@@ -291,12 +274,3 @@ def corner_cases(level: str) -> list[Case]:
 
 BEARING = "deng2017_table1"
 """Name of its scene."""
-
-
-def takes(level: str, override: str) -> bool:
-    """Return whether its scene at a level accepts an override."""
-    try:
-        load_scene(BEARING, [f"level={level}", override])
-    except SceneError:
-        return False
-    return True

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.studies.extreme_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Case, StockOutcome, at_stock, stock_result
+from bearing_sim.studies.extreme_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Case, StockOutcome, at_stock, outcome_fields
 from bearing_sim.sweep.tasks import Journal, program_hash, run_tasks, task
 from validation.extremes import counted, long_outcome
 from validation.extremes_cases import corner_cases, sampled_cases
@@ -117,7 +117,7 @@ def run_nightly(
     for level in levels:
         stock = [at_stock(case) for case in sampled[level] + at_corners[level]]
         places[level] = len(tasks)
-        tasks += [task(level, stock_result, case) for case in stock]
+        tasks += [task(level, outcome_fields, case) for case in stock]
         tasks += [task(case.level, case_result, case) for case in at_corners[level]]
         tasks += [task(level, long_run_result, level, *run) for run in lasting[level]]
     with Journal(journal) as kept:
