@@ -19,7 +19,9 @@ from bearing_sim.messages.events import Event, Level, Measurement, Report
 from bearing_sim.messages.topics import MEASURED_CHANNELS
 from bearing_sim.model.sample import new_block
 from bearing_sim.scene import watchers as registry
+from bearing_sim.simulation import Inputs
 from bearing_sim.watchers.monitoring.loaded_rollers import LoadedRollers
+from bearing_sim.watchers.monitoring.monitor import Monitor
 from bearing_sim.watchers.monitoring.watchers import Watcher, Watchers
 
 
@@ -77,10 +79,24 @@ def test_a_watcher_sees_every_sample_of_a_replay_once_in_order_and_what_it_says_
     assert [time for _, time in watcher.heard] == [one.time for one in sink.of(Measurement)]
 
 
-def test_a_watcher_sees_single_samples_also_where_a_replay_computes_many_at_once(tmp_path, monkeypatch):
+class Profiling(FakeReset):
+    """Advances over many instants at once, as level steady with a table."""
+
+    takes_profiles = True
+
+    def advance_profile(self, stretches, inputs):
+        return np.concatenate([self.advance(stretch, Inputs(*row)) for stretch, row in zip(stretches, inputs)])
+
+
+def test_a_watcher_sees_single_samples_also_where_a_replay_computes_and_judges_many_at_once(tmp_path, monkeypatch):
     monkeypatch.setitem(registry.WATCHERS, "seen", f"{__name__}:Seen")
-    scene = load_scene("deng2017_table1", ["watchers=[seen]", "level=steady"])
-    sink = replay_of(write(tmp_path / "course.mcap", course(3.0)), scene, rate=500.0)
+    quiet = [f"thresholds.{name}=0" for name in ("life_warning", "remaining_life_warning", "lambda_warning")]
+    judged_at_once = []
+    monkeypatch.setattr(Monitor, "take_calm", lambda self, block: judged_at_once.append(len(block)))
+    for watched in (False, True):
+        scene = load_scene("deng2017_table1", [*quiet, *(["watchers=[seen]"] if watched else [])])
+        sink = replay_of(write(tmp_path / f"{watched}.mcap", course(3.0)), scene, rate=500.0, model=Profiling)
+        assert watched or max(judged_at_once) > 20
     assert len(Seen.newest.times) > 1000 and len(sink.samples) - 1 == len(Seen.newest.times) == len(set(Seen.newest.times))
     begun = [event.time for event in sink.events if event.kind == "watcher.seen"]
     assert begun == [min(time for time in Seen.newest.times if time > 2.0)]
