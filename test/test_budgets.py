@@ -15,7 +15,7 @@ BUDGETS = {
     "__init__": 82,
     "simulation": 5_204,
     "files": 7_333,
-    "messages": 13_529,
+    "messages": 13_534,
     "numerics": 13_827,
     "sweep": 22_971,
     "model": 23_113,

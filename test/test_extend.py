@@ -45,7 +45,7 @@ def test_a_watcher_is_one_file_and_one_line(changed):
         "watchers.see(block); print(json.dumps([watchers.values(0.0), [event.kind for event in watchers.events(0.0)]]))"
     )
     # 0.05 times 500 N times 1000 rad/s times 27.875 mm, of a roller that stands
-    assert found[0] == {"hottest_roller: hottest roller": 3, "hottest_roller: sliding power [W]": pytest.approx(696.875)}
+    assert found[0] == {"watcher hottest_roller: hottest roller": 3, "watcher hottest_roller: sliding power [W]": pytest.approx(696.875)}
     assert found[1] == ["watcher.hottest_roller"]
 
 

@@ -14,7 +14,7 @@ from test_replay import run, steady_log
 from test_sim_time import FakeReset, Run
 
 from bearing_sim import SceneError, load_scene
-from bearing_sim.messages.diagnostics import subject_of
+from bearing_sim.messages.diagnostics import report, subject_of
 from bearing_sim.messages.events import Event, Level, Measurement, Report
 from bearing_sim.messages.topics import MEASURED_CHANNELS
 from bearing_sim.model.sample import new_block
@@ -75,7 +75,7 @@ def test_a_watcher_sees_every_sample_of_a_replay_once_in_order_and_what_it_says_
     assert watcher.times == [float(sample["time"]) for block in sink.blocks for sample in block] and watcher.ended
     kinds = [event.kind for event in sink.of(Event)]
     assert kinds.count("watcher.seen") == 1 and "watcher.seen.kept" in kinds
-    assert sink.of(Report)[-1].values["seen: samples"] > 0
+    assert sink.of(Report)[-1].values["watcher seen: samples"] > 0
     assert [time for _, time in watcher.heard] == [one.time for one in sink.of(Measurement)]
 
 
@@ -124,7 +124,7 @@ def test_a_watcher_that_cannot_be_made_is_named_and_the_others_watch(monkeypatch
     watchers = Watchers(scene)
     assert [(event.kind, event.level) for event in watchers.events(0.0)] == [("watcher.broken", Level.ERROR), ("watcher.absent", Level.ERROR)]
     watchers.see(new_block(1, scene.bearing.roller.count))
-    assert watchers.values(0.0)["loaded_rollers: rollers loaded"] == 0
+    assert watchers.values(0.0)["watcher loaded_rollers: rollers loaded"] == 0
 
 
 def test_a_live_run_shows_a_watcher_what_is_before_a_reset_before_it_lets_it_forget(seen):
@@ -140,7 +140,7 @@ def test_a_live_run_shows_a_watcher_what_is_before_a_reset_before_it_lets_it_for
         place = acts.index("restart")
         assert before < max(acts[:place]) < min(acts[place + 1 :]) and sorted(Seen.newest.times) == Seen.newest.times
         assert "watcher.seen" not in bench.codes()
-        assert bench.live.condition(bench.now_ns).values["seen: samples"] == len(Seen.newest.times)
+        assert bench.live.condition(bench.now_ns).values["watcher seen: samples"] == len(Seen.newest.times)
         bench.live.offer("cage_speed_measured", (38.0,), None, bench.now_ns)
         assert [channel for channel, _ in Seen.newest.heard] == ["cage_speed_measured"]
     finally:
@@ -193,14 +193,18 @@ def test_loaded_rollers_warns_while_the_shaft_turns_and_no_roller_is_loaded():
     assert not watcher.events(0.0)
 
 
-def test_an_event_of_a_watcher_belongs_to_the_status_of_watchers():
-    assert subject_of(Event(0.0, Level.WARN, "watcher.loaded_rollers", "", "x")) == "watchers"
+def test_events_and_values_of_a_watcher_belong_to_the_status_of_watchers():
+    event = Event(0.0, Level.WARN, "watcher.loaded_rollers", "", "x")
+    assert subject_of(event) == "watchers"
+    statuses = report(0, [event], {"watcher loaded_rollers: rollers loaded": 3})["status"]
+    (status,) = [each for each in statuses if each["name"].endswith(": watchers")]
+    assert {"key": "watcher loaded_rollers: rollers loaded", "value": "3"} in status["values"]
 
 
 def test_all_watchers_of_a_scene_are_asked():
     scene = load_scene("deng2017_table1", ["watchers=[loaded_rollers]"])
     watchers, block = Watchers(scene), new_block(1, scene.bearing.roller.count)
     watchers.see(block)
-    assert watchers.values(0.0) == {"loaded_rollers: rollers loaded": 0, "loaded_rollers: fewest rollers loaded": 0}
+    assert watchers.values(0.0) == {"watcher loaded_rollers: rollers loaded": 0, "watcher loaded_rollers: fewest rollers loaded": 0}
     watchers.restart("reset")
     assert watchers.values(0.0) == {}

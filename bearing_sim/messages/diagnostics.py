@@ -81,7 +81,7 @@ SUBJECTS = (
     Subject("residual", "measured against predicted slip and temperatures", ("residual.",), ("residual ",)),
     Subject("vibration", "the cage speed out of blocks of the topic `vibration`", ("vibration.",), ("vibration: ",)),
     Subject("estimate", "bands of the results, and the fields that measurements calibrate", ("estimate.", "calibration."), ("estimate: ",)),
-    Subject("watchers", "what the optional watchers say that the scene names", ("watcher.",)),
+    Subject("watchers", "what the optional watchers say that the scene names", ("watcher.",), ("watcher ",)),
     Subject("validity", "whether the laws are used within their ranges", ("validity.",)),
     Subject("scene", "whether the scene is plausible", ("scene.",)),
     Subject("recording", "recordings", ("recording.", "sink."), ("record: ",)),

@@ -95,8 +95,8 @@ class Watchers:
         return [*self._failed, *said]
 
     def values(self, now: float) -> dict[str, object]:
-        """Return the numbers of all, each key begun by the watcher's name."""
-        return {f"{name}: {key}": value for name, values in self._each(now, "values", now) for key, value in values.items()}
+        """Return the numbers of all, each key begun by ``watcher`` and the name, so that the status of watchers shows them."""
+        return {f"watcher {name}: {key}": value for name, values in self._each(now, "values", now) for key, value in values.items()}
 
     def restart(self, why: str) -> None:
         """Let all begin again."""
