@@ -27,7 +27,7 @@ BUDGETS = {
     "view": 33_884,
     "cli": 46_840,
     "scene": 50_549,
-    "watchers": 73_771,
+    "watchers": 73_784,
     "studies": 77_838,
     "levels": 88_510,
 }

@@ -575,6 +575,14 @@ def test_the_command_gives_ratio_error_parts_and_a_picture(outer, tmp_path):
     assert text.exit_code == 0 and "cage over shaft" in text.output and re.search(r"slip\s*│ [78]\.", text.output), text.output
 
 
+def test_a_sampling_rate_that_no_converter_has_is_refused(tmp_path):
+    path = tmp_path / "r.csv"
+    path.write_text("time,a\n" + "".join(f"{k}e-300,{(-1) ** k}\n" for k in range(3000)))
+    for arguments in ((), ("--rate", "1e300 Hz")):
+        refused = called(path, "--channel", "a", "--rollers", 13, "--speed", "1500rpm", *arguments)
+        assert refused.exit_code == 2 and "expected at most 1e+07 Hz" in refused.stderr
+
+
 def test_a_record_that_is_too_long_to_be_analysed_at_once_can_be_cut(tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, "vibration_analysed=1999")
     arguments = (_write(tmp_path / "r.npz"), "--channel", "acceleration", "--rollers", 13, "--speed", "1500rpm")

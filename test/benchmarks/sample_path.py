@@ -2,16 +2,14 @@
 """The way of one sample, counted: ``python test/benchmarks/sample_path.py`` from the root of the tree to count.
 
 A node runs in this process with a recording and a subscriber.  Again and again, the bytes of a shaft speed message go into the subscription's
-callback, the solver computes a tick, the sample is published, and a review passes it on to the recorder's process, which writes it.
-Counted are calls of functions of this package, by thread and process, comprehensions left out; each function that works on batches counts
-once.  What reviews do besides (monitors, health, diagnostics) and the recording of the input message are no part of the way.  Copies are the
-buffers beyond the first that hold the whole sample's numbers in the node's process, between the solver and the recorder's pipe.
+callback, the solver computes a tick, the sample is published, and a review passes it on to the recorder's thread, which writes it.
+Counted are calls of functions of this package, by thread, comprehensions left out; each function that works on batches counts once.  What
+reviews do besides (monitors, health, diagnostics) and the recording of the input message are no part of the way.  Copies are the buffers
+beyond the first that hold the whole sample's numbers.
 """
 
 import argparse
-import json
 import os
-import signal
 import sys
 import tempfile
 import threading
@@ -24,24 +22,14 @@ sys.path.insert(0, str(ROOT))
 PACKAGE = str(ROOT / "bearing_sim") + os.sep
 SAMPLES = 100
 RATE = 0.05  # of real time, so that every sample goes its way alone
-CARRIERS = ("runtime/", "ros/", "recording/", "sinks/")  # between the solver and the recorder's pipe
+CARRIERS = ("runtime/", "ros/", "recording/")  # from the solver to the file
 EXCLUDED_FILES = ("watchers/monitoring/", "runtime/monitor.py", "runtime/alarm.py", "runtime/cusum.py", "runtime/residual.py", "runtime/health.py")
 EXCLUDED_CALLS = {  # of reviews and of the input's own recording, under the names of all versions
     *("_report", "condition", "_events", "news", "look", "update_subscribed", "_state_event", "_begin_late", "_start_late", "_join_governor"),
     *("_open_those_warm", "_open_warm_bearings", "_report_is_due", "follows_clock", "tell_news", "report_news", "_flow", "check"),
-    *("write_inputs", "to_recorders", "_as_received", "write_event", "write_diagnostics"),
+    *("write_inputs", "write_event", "write_diagnostics"),
     *("<genexpr>", "<listcomp>", "<dictcomp>"),
 }
-HELPER = """
-import os
-if os.environ.get("SAMPLE_PATH_COUNTS"):
-    import importlib.util, sys
-    spec = importlib.util.spec_from_file_location("sample_path_counter", os.environ["SAMPLE_PATH_SCRIPT"])
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    module.count_in_recorder()
-"""
-
 counting = False
 counts: Counter[tuple[str, str]] = Counter()  # (thread, function)
 buffers: set[int] = set()
@@ -65,7 +53,8 @@ def profile(frame, event, argument):
     if getattr(_state, "excluded", None) is not None:
         return
     inner = name[len(PACKAGE) :]
-    if inner.startswith(EXCLUDED_FILES) or frame.f_code.co_name in EXCLUDED_CALLS:
+    is_of_another_record = type(frame.f_locals.get("record")).__name__ in ("ReceivedInputs", "Event", "Report")
+    if inner.startswith(EXCLUDED_FILES) or frame.f_code.co_name in EXCLUDED_CALLS or is_of_another_record:
         _state.excluded = frame
         return
     if counting:
@@ -88,25 +77,6 @@ def see(value) -> None:
                 buffers.add(array.__array_interface__["data"][0])
 
 
-def count_in_recorder() -> None:
-    """Count in the recorder's process; SIGUSR1 starts counting, SIGUSR2 writes what was counted."""
-
-    def begin(*_):
-        global counting
-        counting = True
-
-    def write(*_):
-        global counting
-        counting = False
-        text = json.dumps([["recorder process: " + thread, function, count] for (thread, function), count in counts.items()])
-        Path(os.environ["SAMPLE_PATH_COUNTS"]).write_text(text)
-
-    signal.signal(signal.SIGUSR1, begin)
-    signal.signal(signal.SIGUSR2, write)
-    threading.setprofile(profile)
-    sys.setprofile(profile)
-
-
 def main() -> None:
     """Count and print."""
     global counting, needle
@@ -114,7 +84,6 @@ def main() -> None:
     parser.add_argument("--functions", action="store_true", help="list every function with its calls per sample")
     options = parser.parse_args()
     folder = Path(tempfile.mkdtemp())
-    (folder / "sitecustomize.py").write_text(HELPER)
     os.environ |= {
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "ROS_DOMAIN_ID": os.environ.get("ROS_DOMAIN_ID", str(50 + os.getpid() % 50)),
@@ -130,8 +99,6 @@ def main() -> None:
     rclpy.init(args=["node", "--ros-args", *(word for text in parameters for word in ("-p", text))])
     from bearing_sim.ros.node import BearingNode
 
-    os.environ |= {"SAMPLE_PATH_COUNTS": str(folder / "counts.json"), "SAMPLE_PATH_SCRIPT": str(Path(__file__).resolve())}
-    sys.path.insert(0, str(folder))  # the recorder's process gets this path
     threading.setprofile(profile)
     node = BearingNode(Future())
     for timer in list(node.timers):
@@ -173,19 +140,13 @@ def main() -> None:
 
     for _ in range(50):
         turn()
-    recorder = node.recorder.pid
     counting = True
-    os.kill(recorder, signal.SIGUSR1)
     sys.setprofile(profile)
     for _ in range(SAMPLES):
         turn()
     sys.setprofile(None)
     time.sleep(0.5)
     counting = False
-    os.kill(recorder, signal.SIGUSR2)
-    time.sleep(0.5)
-    for thread, function, count in json.loads((folder / "counts.json").read_text()):
-        counts[thread, function] += count
     copies = []
     for _ in range(10):  # a sample is followed by its shaft speed, which no other one has
         buffers.clear()

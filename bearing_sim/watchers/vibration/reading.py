@@ -55,6 +55,7 @@ _MOST_TOLD = 3
 _DEEPEST = 8  # levels of structures in a MAT or HDF5 file
 _MOST_CHANNELS = 2000
 _UNEVEN = 0.01  # of the spacing of times
+_HIGHEST_RATE = 1e7  # Hz, the most that a scene takes, see `bearing_sim.scene.vibration`
 _ROUNDINGS = 1.5  # between times and those of an even rate, if they are only rounded
 _COMMENTS = ("#", "%", "//")
 _PIECE = 1 << 20  # [byte] that is unpacked at once
@@ -155,6 +156,10 @@ def read_vibration(
             raise VibrationError(f"{path}: {speed_channel} has {len(speeds)} values and {name} {len(samples)}; expected as many of each")
         speeds = speeds * _factor(speed_unit)
     rate, note = (rate, "") if rate is not None else _rate(path, found, time_channel, len(samples))
+    if rate > _HIGHEST_RATE:
+        raise VibrationError(
+            f"{path}: a sampling rate of {rate:.4g} Hz; expected at most {_HIGHEST_RATE:g} Hz: check --rate, or the unit of the times"
+        )
     unit = _UNIT.search(name)
     return Vibration(samples, rate, unit[1] if unit else "", found.start, f"{path.name}, {printable(name)}{note}", speeds, found.tally)
 
