@@ -40,6 +40,7 @@ _HTML, _MARKDOWN = (".html", ".htm"), ".md"
 
 @click.command("report", cls=Command)
 @click.option("-o", "--out", type=OutputFile(), metavar="PATH", help="The page, .html or .md [default: validation.html].")
+@click.option("--figures", type=OutputFile(), metavar="PATH", help="All figures as CSV.")
 @click.option("--only", "names", multiple=True, metavar="CHECK", help="Run only this check; can be repeated.")
 @click.option(
     "--tests", type=click.Path(path_type=Path), metavar="FILE.xml", help="What pytest wrote with --junitxml, of the claims of the test suite."
@@ -51,7 +52,7 @@ _HTML, _MARKDOWN = (".html", ".htm"), ".md"
     help="Where the recorded vibration of Li and others (2013) lies, which is not redistributable.",
 )
 @click.option("--quick", is_flag=True, help="Leave out the checks that take minutes; the page says so.")
-def report(out, names, tests, recordings, quick):
+def report(out, figures, names, tests, recordings, quick):
     """Run every check of the model against something independent of it, and make a page of figures, tolerances and verdicts."""
     if out is not None and out.path.suffix.lower() not in (*_HTML, _MARKDOWN):
         raise UsageError(f"-o {out}: expected a name that ends in .html or .md")
@@ -62,7 +63,7 @@ def report(out, names, tests, recordings, quick):
     from bearing_sim.watchers.vibration.signal import VibrationError
     from validation.check import run
     from validation.checks import all_checks
-    from validation.page import counted, html_page, markdown_page
+    from validation.page import counted, figures_text, html_page, markdown_page
     from validation.suite import SuiteError, suite_results
 
     with as_usage_error(SuiteError, FileError, VibrationError):
@@ -78,6 +79,8 @@ def report(out, names, tests, recordings, quick):
     page = (markdown_page if out.path.suffix.lower() == _MARKDOWN else html_page)(results, command_line())
     with as_ending():
         out.write_text(page)
+        if figures is not None:
+            figures.write_text(figures_text(results))
     for each in results:
         if each.verdict != "holds":
             click.echo(f"{each.verdict}: {each.quantity}: {each.found}")

@@ -1,6 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The page of all checks, as HTML or as Markdown: what is not validated first, then each figure with tolerance, verdict, command and date."""
+"""The page of all checks: as HTML with each figure, or as Markdown with counts and what does not hold, beside a table of all figures in CSV."""
 
+import csv
+import io
 from collections import Counter
 from collections.abc import Sequence
 from html import escape
@@ -21,11 +23,17 @@ NOT_VALIDATED = (
     "bearings."
 )
 _CLASSES = {HOLDS: "holds", IN_PART: "part", FAILS: "fails", NOT_RUN: "soft"}
+_MISSED_HEADINGS = ("what", "compared with", "expected", "found", "deviation", "verdict", "command")
 _HEADINGS = ("what", "compared with", "expected", "found", "deviation", "tolerance", "verdict", "command", "date")
 _MEANING = (
     "Every figure was computed by the command in its line on the day in its line. A tolerance is the most by which a figure may deviate. Where a "
     f"verdict is '{IN_PART}' or '{FAILS}', the line says by how much the model is off."
 )
+_FIGURES = (
+    "[All figures](../test/validation/figures.csv) stand in a table beside their commands: what is compared, with what, both numbers, their "
+    "deviation, the tolerance, the command that computes the figure and the day on which it did. This page counts them and names what does not hold."
+)
+_SOURCES_SHOWN = 3
 _NOT_RUN_HERE = (
     "Open recordings of bearings that would show the slip of a cage, with speeds and mostly loads beside the vibration. None of them was run here. "
     "The commands are written for the forms of files that public readers of these data rely on."
@@ -59,14 +67,44 @@ def html_page(results: Sequence[Result], made_by: str) -> str:
 
 
 def markdown_page(results: Sequence[Result], made_by: str) -> str:
-    """Return the page as Markdown, for the documents; parameters as of `html_page`."""
-    parts = [f"# {TITLE}", f"**{NOT_VALIDATED}**", _MEANING, f"```text\n{made_by}\n```", f"{counted(results)}."]
-    for group in _groups(results):
-        rows = [[*each[2:9], f"`{each.command}`", each.date] for each in results if each.group == group]
-        parts += [f"## {group}", _markdown_table(_HEADINGS, rows)]
+    """Return the page as Markdown, for the documents: figures by group, and those that do not hold; parameters as of `html_page`."""
+    missed = [each for each in results if each.verdict != HOLDS]
+    off = [[*each[2:7], each.verdict, f"`{each.command}`"] for each in missed]
+    parts = [f"# {TITLE}", f"**{NOT_VALIDATED}**", _FIGURES, f"```text\n{made_by}\n```", f"{counted(results)}."]
+    parts += [_markdown_table(("compared with what", "figures", "hold", "in part", "do not", "sources, among others"), _group_rows(results))]
+    parts += [
+        "## What does not hold, or in part",
+        _markdown_table(("what", "compared with", "expected", "found", "deviation", "verdict", "command"), off),
+    ]
     parts += ["## Open data that would validate slip", _NOT_RUN_HERE, _markdown_table(_DATA_HEADINGS, _data_rows(code="`"))]
     parts += ["## Details", "\n".join(f"- [{name.replace('_', ' ')}](validation/{name}.md): {text}" for name, text in _DETAILS)]
     return "\n\n".join(parts) + "\n"
+
+
+def _group_rows(results: Sequence[Result]) -> list[list[str]]:
+    rows = []
+    for group in _groups(results):
+        ours = [each for each in results if each.group == group]
+        counts = Counter(each.verdict for each in ours)
+        sources = Counter(each.source for each in ours).most_common(_SOURCES_SHOWN)
+        numbers = [str(counts[verdict] or "-") for verdict in (HOLDS, IN_PART, FAILS)]
+        rows.append([group, str(len(ours)), *numbers, "; ".join(source for source, _ in sources)])
+    return rows
+
+
+def figures_text(results: Sequence[Result]) -> str:
+    """Return all figures as CSV with the columns of `Result`."""
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerows([Result._fields, *results])
+    return text.getvalue()
+
+
+def read_figures(text: str) -> list[Result]:
+    """Return the figures of `figures_text`."""
+    rows = csv.reader(io.StringIO(text))
+    assert tuple(next(rows)) == Result._fields
+    return [Result(*row) for row in rows]
 
 
 def _groups(results: Sequence[Result]) -> list[str]:
