@@ -319,7 +319,7 @@ def write_bag_view(path: str | Path, name: str, found: BagSeries) -> None:
         paths = plots.setdefault(title, [])
         if entity in paths:  # a second topic of the same role
             entity = _entity(line)
-        style = LINES[entity][:2] if entity in LINES else (line, _AROUND[len(paths) % len(_AROUND)])
+        style = (LINES[entity].name, LINES[entity].colour) if entity in LINES else (line, _AROUND[len(paths) % len(_AROUND)])
         _write_line(recording, entity, style, times, plottable(values))
         paths.append(entity)
     for event in found.events:

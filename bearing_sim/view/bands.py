@@ -15,7 +15,7 @@ from bearing_sim.messages.bands import Bands
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities
 from bearing_sim.view import colours
-from bearing_sim.view.plots import ENDLESS, TIMELINE, Lines, Overview, log10_hours
+from bearing_sim.view.plots import ENDLESS, SERIES, TIMELINE, Lines, Overview, Series
 
 _ROWS = 500  # that are sent together
 _USUAL = 0.97  # of the time the edges of a band lie on the axis: while a shaft starts or stops, slip may be anything
@@ -40,19 +40,14 @@ class BandPlot(NamedTuple):
     shown: Callable[[np.ndarray], np.ndarray]
 
 
-def _hours(life: np.ndarray) -> np.ndarray:
-    """Return log10 of lives; those that are endless lie at the upper end of what is plotted."""
-    return log10_hours(np.where(life > ENDLESS, ENDLESS, life))
+def _band_plot(row: Series) -> BandPlot:
+    """Return how the band of a row of ``series.csv`` is drawn; lives that are endless lie at the upper end of what is plotted."""
+    line = row.path.replace("band", "log10_hours") if row.observable == "remaining_life" else ""  # which no sample holds
+    return BandPlot(row.path, line, row.name, row.colour, lambda numbers: row.values(np.where(numbers > ENDLESS, ENDLESS, numbers)))
 
 
-_PLOTS = {
-    "cage_slip": BandPlot("/slip/band", "", "cage slip, 5 to 95 %", colours.BLUE, lambda slip: 100.0 * slip),
-    "rating_life": BandPlot("/life/band", "", "life, 5 to 95 %", colours.GREEN, _hours),
-    "running_clearance": BandPlot("/clearance/band", "", "running clearance, 5 to 95 %", colours.WHITE, lambda clearance: 1e6 * clearance),
-    "remaining_life": BandPlot("/remaining_life/band", "/remaining_life/log10_hours", "remaining life", colours.PURPLE, _hours),
-}
+_PLOTS = {row.observable: _band_plot(row) for row in SERIES.values() if row.kind == "band"}
 _FIELD_COLOURS = (colours.BLUE, colours.ORANGE, colours.GREEN, colours.YELLOW, colours.PURPLE, colours.VERMILION)
-REMAINING_LIFE = _PLOTS["remaining_life"]
 
 
 def field_plots(scene: Scene) -> dict[str, BandPlot]:
