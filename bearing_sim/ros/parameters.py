@@ -417,22 +417,18 @@ class ParameterServer:
 
         Such as ``ros2 param set ... publish_rate 20``, ``... frame_position "[0, 0, 1]"``, ``... thresholds.slip_from_speed "200 rpm"``.
         """
-        return list(map(self._as_float, parameters))
+        return list(map(self._as_declared, parameters))
 
-    def _as_float(self, parameter: Parameter) -> Parameter:
+    def _as_declared(self, parameter: Parameter) -> Parameter:
         row = self._known.get(parameter.name)
-        if row is None:
+        if row is None or parameter.type_ is Parameter.Type.NOT_SET:
             return parameter
-        if parameter.type_ is Parameter.Type.INTEGER and isinstance(row.default, float):
-            return Parameter(parameter.name, value=float(parameter.value))
-        if parameter.type_ is Parameter.Type.INTEGER_ARRAY and isinstance(row.default, list) and isinstance(row.default[0], float):
-            return Parameter(parameter.name, value=[float(number) for number in parameter.value])
-        if parameter.type_ is Parameter.Type.STRING and row.quantity is not None:
-            try:
-                return Parameter(parameter.name, value=checked(row, parameter.name, parameter.value))
-            except ValueError as error:
-                self._node.get_logger().warning(str(error))  # rclpy answers no more than that the type is wrong
-        return parameter
+        try:
+            return Parameter(parameter.name, value=checked(row, parameter.name, parameter.value))
+        except ValueError as error:  # which `_validate` reports, unless rclpy itself has answered no more than that the type is wrong
+            if row.quantity is not None and parameter.type_ is Parameter.Type.STRING:
+                self._node.get_logger().warning(str(error))
+            return parameter
 
     def _validate(self, parameters: list[Parameter]) -> SetParametersResult:
         if self._is_own_change:

@@ -16,6 +16,7 @@ from bearing_sim.view import colours, section
 from bearing_sim.view.plots import LINES, Series, below, features
 from bearing_sim.view.section import MILLIMETRE, picture, places, polar
 
+_STEPS = 64  # of the colours in a legend
 SECTION_ROOT = "/section"
 LOAD_ARROW_FACTOR = 2.0  # the radial load's arrow is longer than the contacts' by this, within what the bore has room for
 FIRST_POCKET_SCALE = 20.0  # N; grows by itself when exceeded
@@ -39,6 +40,12 @@ class _Drawing:
 
     def _still(self, path: str, kind: type[rr.AsComponents], **fields) -> None:
         self._recording.log(f"{self._root}/{path}".rstrip("/"), kind.from_fields(**fields), static=True)
+
+    def _draw_scale(self, ends: tuple[float, float], level: float, radius: float, palette: np.ndarray) -> None:
+        """Draw a strip of colours across the picture between two places, at a level that counts downwards."""
+        edges = np.linspace(*ends, len(palette) + 1)
+        strips = np.stack((places(edges[:-1], level), places(edges[1:], level)), axis=1)
+        self._log("legend/map", rr.LineStrips2D, strips=strips, radii=radius, colors=palette)
 
     def _write(self, path: str, positions, texts: Sequence[str], static: bool = False) -> None:
         """Write texts just below picture points."""
@@ -188,10 +195,8 @@ class SectionDrawing(_Drawing):
 
     def _draw_legend(self) -> None:
         self._legend_scale = self.load_scale
-        unit, steps = self._bore, 64
-        edges, level = np.linspace(-0.45 * unit, 0.45 * unit, steps + 1), -0.36 * unit
-        strips = np.stack((picture(edges[:-1], level), picture(edges[1:], level)), axis=1)
-        self._log("legend/map", rr.LineStrips2D, strips=strips, radii=0.03 * unit, colors=colours.load_palette(steps))
+        unit, level = self._bore, -0.36 * self._bore
+        self._draw_scale((-0.45 * unit, 0.45 * unit), -level, 0.03 * unit, colours.load_palette(_STEPS))
         self._write("legend/title", [picture(0.0, level - 0.05 * unit)], [f"roller load 0 to {force(self.load_scale)}"])
 
 
@@ -580,13 +585,10 @@ class HeatDrawing(_Drawing):
         low = 5.0 * math.floor(low / 5.0)
         high = max(5.0 * math.ceil(high / 5.0), low + _NARROWEST)
         self._scale = (low, high)
-        steps, level = 64, 0.78 * self._edge
-        across = np.linspace(1.3 * self._edge, 2.9 * self._edge, steps + 1)
-        strips = np.stack((places(across[:-1], level), places(across[1:], level)), axis=1)
-        self._log("legend/map", rr.LineStrips2D, strips=strips, radii=0.05 * self._edge, colors=colours.heat_palette(steps))
+        level, ends = 0.78 * self._edge, (1.3 * self._edge, 2.9 * self._edge)
+        self._draw_scale(ends, level, 0.05 * self._edge, colours.heat_palette(_STEPS))
         ticks = np.linspace(low, high, 3)
-        across = np.linspace(across[0], across[-1], len(ticks))
-        self._write("legend/ticks", places(across, level + 0.06 * self._edge), [_celsius(tick, 0) for tick in ticks])
+        self._write("legend/ticks", places(np.linspace(*ends, len(ticks)), level + 0.06 * self._edge), [_celsius(tick, 0) for tick in ticks])
 
 
 def heat_bounds(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -235,6 +235,10 @@ def bucket_for(interval: float, duration: float | None) -> float | None:
     return max(duration / _BUCKETS, _LEAST_ROWS * interval)
 
 
+def _all_of(lines: Lines) -> Thinned:
+    return Thinned(lines, Lines(lines.times[:0], {}))
+
+
 class Overview:
     """Thins out the series of one run.
 
@@ -260,7 +264,7 @@ class Overview:
         """Take in rows that follow those before; return what is decided by now, once it is enough to be worth sending."""
         if self._whole > 0:
             self._whole -= len(lines.times)
-            return Thinned(lines, Lines(lines.times[:0], {}))
+            return _all_of(lines)
         self._waiting.append(lines)
         newest, oldest = float(lines.times[-1]), float(self._waiting[0].times[0])
         limit = np.floor((newest - AROUND) / self._bucket) * self._bucket
@@ -287,7 +291,7 @@ class Overview:
         kept = self._around_events(decided.times)
         full, thin = _cut(decided, kept), _cut(decided, ~kept)
         if not len(thin.times):
-            return Thinned(full, Lines(thin.times, {}))
+            return _all_of(full)
         numbers = np.floor(thin.times / self._bucket)
         starts = np.flatnonzero(np.diff(numbers, prepend=np.nan) != 0)
         middles = (numbers[starts] + 0.5) * self._bucket
@@ -516,7 +520,7 @@ class RunSeries:
 
     def _send(self, lines: Lines, overview: Overview | None) -> None:
         """Send series, or in a long run what is left of them by now."""
-        self._send_thinned(Thinned(lines, Lines(lines.times[:0], {})) if overview is None else overview.add(lines))
+        self._send_thinned(_all_of(lines) if overview is None else overview.add(lines))
 
     def _send_thinned(self, thinned: Thinned | None) -> None:
         if thinned is None:
@@ -618,11 +622,12 @@ class RunSeries:
             ("cage slip", f"**{quantity_text('cage_slip', slip)}**" if math.isfinite(slip) else "none (at rest)"),
             (f"life, {counted[1]}", f"**{_life_text(sample[counted[0]])}**"),
             ("largest roller load", quantity_text("inner_load_maximum", inner)),
-            ("shaft speed", quantity_text("shaft_speed", float(sample["shaft_speed"]))),
+            _readout("shaft_speed", sample),
             ("radial load", quantity_text("radial_load", load)),
-            ("oil temperature", quantity_text("oil_temperature", float(sample["oil_temperature"]))),
+            _readout("oil_temperature", sample),
             ("cage", section.regime(slip, limits.slip_warning, limits.slip_error)),
-            *((shown(name).name, quantity_text(name, float(sample[name]))) for name in ("cage_speed", "running_clearance")),
+            _readout("cage_speed", sample),
+            _readout("running_clearance", sample),
             *self._further_readout(sample),
             ("life used", f"{number(1e6 * float(sample['damage']), 3)} ppm"),
             ("load, outer raceway", quantity_text("outer_load_maximum", outer)),
@@ -655,6 +660,11 @@ class RunSeries:
         self._recording.log("/sink/dropped", rr.Scalars(float(dropped)))
         text = f"the view has dropped {dropped} blocks so far because it is slower than the simulation; the simulation itself is not affected"
         self._recording.log("/log", rr.TextLog(text, level=rr.TextLogLevel.WARN))
+
+
+def _readout(name: str, sample: np.void) -> tuple[str, str]:
+    """Return name and value of an observable in words."""
+    return shown(name).name, quantity_text(name, float(sample[name]))
 
 
 def _level_state(level: str, wanted: str) -> str:
