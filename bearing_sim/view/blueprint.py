@@ -149,7 +149,8 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
         eye_controls=eye,
         line_grid=False,
     )
-    orbit = [_orbit(scene)] if scene.cage_whirls else []
+    edge = ORBIT_EDGE * scene.bearing.cage.play * 1e6
+    orbit = [_flat("/cage_orbit", "Cage orbit", ((-edge, edge), (-edge, edge)))] if scene.cage_whirls else []
     above = across if scene.bodies_tilt else rrb.Tabs(across, solid, active_tab=0)
     chart = rrb.Tabs(*([solid] if scene.bodies_tilt else []), *heat, *maps, power, clearance, *orbit, active_tab=0)
     return rrb.Vertical(above, chart, row_shares=[0.6, 0.4])
@@ -159,11 +160,6 @@ def _flat(root: str, title: str, bounds) -> rrb.Spatial2DView:
     """Return the view of a flat drawing within its horizontal and vertical range."""
     across, down = bounds
     return rrb.Spatial2DView(origin=root, name=title, visual_bounds=rrb.VisualBounds2D(x_range=across, y_range=down), background=BACKGROUND)
-
-
-def _orbit(scene: Scene) -> rrb.Spatial2DView:
-    edge = ORBIT_EDGE * scene.bearing.cage.play * 1e6
-    return _flat("/cage_orbit", "Cage orbit", ((-edge, edge), (-edge, edge)))
 
 
 def _middle(scene: Scene, axes: _Axes, measured: Collection[str]) -> rrb.Vertical:

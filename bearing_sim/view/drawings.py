@@ -118,8 +118,7 @@ class SectionDrawing(_Drawing):
     def draw(self, sample: np.void) -> None:
         """Draw the moving parts of one sample at the recording's current time."""
         largest = max(_largest(sample["inner_load"]), _largest(sample["outer_load"]))
-        if largest > 1.05 * self.load_scale:
-            self.load_scale = section.round_up(largest)
+        self.load_scale = _grown(self.load_scale, largest)
         if self.load_scale != self._legend_scale:
             self._draw_legend()
         self._draw_inner_ring(sample)
@@ -158,8 +157,7 @@ class SectionDrawing(_Drawing):
 
     def _draw_pocket_forces(self, sample, centres: np.ndarray) -> None:
         largest = _largest(np.abs(sample["pocket_force"]))
-        if largest > 1.05 * self._pocket_scale:
-            self._pocket_scale = section.round_up(largest)
+        self._pocket_scale = _grown(self._pocket_scale, largest)
         if self._pocket_scale != self._pocket_legend_scale:
             self._draw_pocket_legend()
         vectors = section.pocket_arrows(sample, self._pocket_length / self._pocket_scale)
@@ -205,6 +203,11 @@ def _bar_colours(count: int) -> np.ndarray:
     bars = np.full((count, 4), colours.BRONZE, np.uint8)
     bars[0] = colours.ORANGE
     return bars
+
+
+def _grown(scale: float, largest: float) -> float:
+    """Return the full scale of a load, larger where the largest one exceeds it."""
+    return section.round_up(largest) if largest > 1.05 * scale else scale
 
 
 def _largest(loads: np.ndarray) -> float:

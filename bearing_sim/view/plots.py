@@ -358,12 +358,16 @@ LOG_LEVELS = {Level.OK: rr.TextLogLevel.INFO, Level.WARN: rr.TextLogLevel.WARN, 
 
 
 def send_columns(recording: rr.RecordingStream, lines: Lines, named: Callable[[str], str] = str) -> None:
-    """Send series, each in one piece, under the entity paths that ``named`` makes of theirs."""
+    """Send series, each in one piece, under the entity paths that ``named`` makes of theirs; those of bands have both edges."""
     if not len(lines.times):
         return
     index = [rr.TimeColumn(TIMELINE, duration=lines.times)]
     for path, values in lines.values.items():
-        recording.send_columns(named(path), indexes=index, columns=rr.Scalars.columns(scalars=values.astype(np.float32)))
+        if path.endswith("/band"):
+            columns = rr.Measurements.columns(values=values.mean(axis=1), variances=(0.5 * (values[:, 1] - values[:, 0])) ** 2)
+        else:
+            columns = rr.Scalars.columns(scalars=values.astype(np.float32))
+        recording.send_columns(named(path), indexes=index, columns=columns)
 
 
 def send_thinned(recording: rr.RecordingStream, thinned: Thinned) -> None:
