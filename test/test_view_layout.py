@@ -190,8 +190,8 @@ class KeptBars(BarDrawing):
         self.add({name: np.full(4, value) for name, value in values.items()})
         self.draw()
 
-    def _log(self, path, kind, **fields):
-        self.logged[path] = kind.from_fields(**fields)
+    def _log(self, part, static=False, **fields):
+        self.logged[part] = rr.LineStrips2D.from_fields(**fields)
 
     def _write(self, path, positions, texts, static=False):
         self.logged[path] = texts

@@ -13,7 +13,7 @@ import rerun as rr
 from bearing_sim.scene.display import force, quantity_text, shown
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import colours, section
-from bearing_sim.view.plots import LINES, Series, below, features
+from bearing_sim.view.plots import LINES, Series, below, features, table
 from bearing_sim.view.section import MILLIMETRE, picture, places, polar
 
 _STEPS = 64  # of the colours in a legend
@@ -23,8 +23,18 @@ FIRST_POCKET_SCALE = 20.0  # N; grows by itself when exceeded
 _CONTOUR_TURN = np.linspace(0.0, 2 * math.pi, section.CONTOUR_POINTS)
 
 
+def _style(row: dict[str, str]) -> dict[str, object]:
+    given = {"colors": getattr(colours, row["colour"], None)} | {
+        name: float(row[column]) if row[column] else None for name, column in (("radii", "radius"), ("draw_order", "order"))
+    }
+    return {name: value for name, value in given.items() if value is not None}
+
+
+_PARTS = {(row["drawing"], row["part"]): (getattr(rr, row["archetype"]), _style(row)) for row in table("drawings")}
+
+
 class _Drawing:
-    """What is drawn below one entity path.
+    """What is drawn below one entity path, of the parts that ``drawings.csv`` has for ``_name``.
 
     Parameters
     ----------
@@ -32,20 +42,32 @@ class _Drawing:
     root : the entity path.
     """
 
+    _name: str
+
     def __init__(self, recording: rr.RecordingStream, root: str):
         self._recording, self._root = recording, root
+        self._styled: set[str] = set()  # the parts whose style is logged
 
-    def _log(self, path: str, kind: type[rr.AsComponents], **fields) -> None:
-        self._recording.log(f"{self._root}/{path}", kind.from_fields(**fields))
+    def _log(self, part: str, static: bool = False, **fields) -> None:
+        """Log fields of a part; the first time its style, too, which it keeps."""
+        path, (kind, style) = f"{self._root}/{part}".rstrip("/"), _PARTS[self._name, part]
+        if style and part not in self._styled:
+            self._recording.log(path, kind.from_fields(**style), static=True)
+        self._styled.add(part)
+        self._recording.log(path, kind.from_fields(**fields), static=static)
 
-    def _still(self, path: str, kind: type[rr.AsComponents], **fields) -> None:
-        self._recording.log(f"{self._root}/{path}".rstrip("/"), kind.from_fields(**fields), static=True)
+    def _still(self, part: str, **fields) -> None:
+        self._log(part, static=True, **fields)
+
+    def _place(self, part: str, centres, turns: np.ndarray | None) -> None:
+        """Log where the instances of a solid part are, and how they are turned."""
+        self._recording.log(f"{self._root}/{part}", rr.InstancePoses3D(translations=centres, quaternions=turns))
 
     def _draw_scale(self, ends: tuple[float, float], level: float, radius: float, palette: np.ndarray) -> None:
         """Draw a strip of colours across the picture between two places, at a level that counts downwards."""
         edges = np.linspace(*ends, len(palette) + 1)
         strips = np.stack((places(edges[:-1], level), places(edges[1:], level)), axis=1)
-        self._log("legend/map", rr.LineStrips2D, strips=strips, radii=radius, colors=palette)
+        self._log("legend/map", strips=strips, radii=radius, colors=palette)
 
     def _write(self, path: str, positions, texts: Sequence[str], static: bool = False) -> None:
         """Write texts just below picture points."""
@@ -61,6 +83,8 @@ class SectionDrawing(_Drawing):
     scene : the scene that holds the bearing.
     load_scale : load [N] at the upper end of the colour map and of the arrows; grows by itself when exceeded.
     """
+
+    _name = "section"
 
     def __init__(self, recording: rr.RecordingStream, scene: Scene, load_scale: float):
         super().__init__(recording, SECTION_ROOT)
@@ -80,15 +104,13 @@ class SectionDrawing(_Drawing):
         contour = section.drawn_contour(bearing, self.factor, _CONTOUR_TURN)
         body = np.stack((polar(contour, _CONTOUR_TURN), polar(outside, _CONTOUR_TURN)), axis=1)
         half_width = 1.1 * math.pi * outside / len(_CONTOUR_TURN)  # a bit more than half the distance: the strips close up
-        self._still("outer_ring/body", rr.LineStrips2D, strips=body, radii=half_width, colors=colours.DARK_STEEL, draw_order=-5.0)
-        self._still("outer_ring/surface", rr.LineStrips2D, strips=[polar(outside, _CONTOUR_TURN)], radii=0.1, colors=colours.STEEL, draw_order=-4.0)
-        self._still(
-            "outer_ring/raceway", rr.LineStrips2D, strips=[polar(contour, _CONTOUR_TURN)], radii=0.22, colors=colours.VERMILION, draw_order=8.0
-        )
+        self._still("outer_ring/body", strips=body, radii=half_width)
+        self._still("outer_ring/surface", strips=[polar(outside, _CONTOUR_TURN)])
+        self._still("outer_ring/raceway", strips=[polar(contour, _CONTOUR_TURN)])
         round_radius = section.ideal_outer_radius(bearing) / MILLIMETRE
-        self._still("outer_ring/round_reference", rr.LineStrips2D, strips=_dashes(round_radius, 120), radii=0.06, colors=colours.GREY, draw_order=7.0)
+        self._still("outer_ring/round_reference", strips=_dashes(round_radius, 120))
         if self._guide is not None and self._guiding_ring == "outer_ring":
-            self._still("outer_ring/guide_land", rr.LineStrips2D, strips=_dashes(self._guide, 240), radii=0.08, colors=colours.GREEN, draw_order=-2.0)
+            self._still("outer_ring/guide_land", strips=_dashes(self._guide, 240))
         self._draw_axes()
         self._style_moving_parts()
 
@@ -98,22 +120,12 @@ class SectionDrawing(_Drawing):
         raceway = bearing.inner_raceway.radius / MILLIMETRE
         width = 0.35 * bearing.roller.diameter / MILLIMETRE
         ring = {"half_sizes": [[raceway - width / 2] * 2, [raceway - 0.1] * 2], "line_radii": [width / 2, 0.2]}
-        self._still("inner_ring/body", rr.Ellipses2D, **ring, colors=[colours.DARK_STEEL, colours.BLUE], draw_order=0.0)
-        self._still("inner_ring/shaft_mark", rr.LineStrips2D, radii=0.45, colors=colours.BLUE, draw_order=2.0)
-        cage = bearing.cage
-        rims = [cage.bore / MILLIMETRE, cage.outside / MILLIMETRE]
-        sizes = [[rim, rim] for rim in rims]
-        self._still("cage/rims", rr.Ellipses2D, half_sizes=sizes, line_radii=0.12, colors=colours.DARK_BRONZE, draw_order=-1.0)
-        if self._guiding_ring == "inner_ring":
-            self._still("inner_ring/guide_land", rr.LineStrips2D, radii=0.08, colors=colours.GREEN, draw_order=1.0)
+        self._still("inner_ring/body", **ring, colors=[colours.DARK_STEEL, colours.BLUE])
+        rims = np.array([bearing.cage.bore, bearing.cage.outside]) / MILLIMETRE
+        self._still("cage/rims", half_sizes=places(rims, rims), line_radii=0.12)
         bars = _bar_colours(bearing.roller.count)
-        self._still("cage/bars", rr.LineStrips2D, radii=section.cage_bar_stroke(bearing), colors=bars, draw_order=3.0)
-        self._still("rollers", rr.Points2D, radii=bearing.roller.diameter / 2 / MILLIMETRE, draw_order=5.0)
-        self._still("spin_marks", rr.LineStrips2D, radii=0.22, colors=colours.WHITE, draw_order=6.0)
-        self._still("forces/inner", rr.Arrows2D, radii=0.22, draw_order=9.0)
-        self._still("forces/outer", rr.Arrows2D, radii=0.22, colors=colours.VERMILION, draw_order=9.0)
-        self._still("forces/pocket", rr.Arrows2D, radii=0.22, colors=colours.PURPLE, draw_order=9.5)
-        self._still("forces/radial_load", rr.Arrows2D, radii=0.5, colors=colours.YELLOW, draw_order=10.0)
+        self._still("cage/bars", radii=section.cage_bar_stroke(bearing), colors=bars)
+        self._still("rollers", radii=bearing.roller.diameter / 2 / MILLIMETRE)
 
     def draw(self, sample: np.void) -> None:
         """Draw the moving parts of one sample at the recording's current time."""
@@ -123,35 +135,35 @@ class SectionDrawing(_Drawing):
             self._draw_legend()
         self._draw_inner_ring(sample)
         cage = section.cage_displacement(self._cage_factor, sample)
-        self._log("cage/rims", rr.Ellipses2D, centers=np.tile(picture(*cage), (2, 1)))
+        self._log("cage/rims", centers=np.tile(picture(*cage), (2, 1)))
         bars = section.cage_bars(self._bearing, sample["cage_angle"], cage)
-        self._log("cage/bars", rr.LineStrips2D, strips=bars)
+        self._log("cage/bars", strips=bars)
         fill = colours.load_colours(sample["inner_load"], self.load_scale)
         centres = section.roller_centres(self._bearing, self.factor, sample)
-        self._log("rollers", rr.Points2D, positions=centres, colors=fill)
-        self._log("spin_marks", rr.LineStrips2D, strips=section.spin_marks(self._bearing, centres, sample))
+        self._log("rollers", positions=centres, colors=fill)
+        self._log("spin_marks", strips=section.spin_marks(self._bearing, centres, sample))
         self._draw_forces(sample, fill)
         self._draw_pocket_forces(sample, centres)
 
     def _draw_inner_ring(self, sample) -> None:
         centre = section.ring_displacement(self.factor, sample)
         raceway = self._bearing.inner_raceway.radius / MILLIMETRE
-        self._log("inner_ring/body", rr.Ellipses2D, centers=np.tile(picture(*centre), (2, 1)))
+        self._log("inner_ring/body", centers=np.tile(picture(*centre), (2, 1)))
         mark = polar(raceway * np.array([0.84, 1.0]), sample["shaft_angle"], centre)
-        self._log("inner_ring/shaft_mark", rr.LineStrips2D, strips=mark[None])
+        self._log("inner_ring/shaft_mark", strips=mark[None])
         if self._guiding_ring == "inner_ring":
             land = _dashes(self._guide, 240, section.land_displacement(self._bearing, self._cage_factor, sample))
-            self._log("inner_ring/guide_land", rr.LineStrips2D, strips=land)
+            self._log("inner_ring/guide_land", strips=land)
 
     def _draw_forces(self, sample, fill: np.ndarray) -> None:
         per_newton = self._arrow / self.load_scale
         origins_i, vectors_i, origins_e, vectors_e = section.load_arrows(self._bearing, self.factor, sample, per_newton)
-        self._log("forces/inner", rr.Arrows2D, origins=origins_i, vectors=vectors_i, colors=fill)
-        self._log("forces/outer", rr.Arrows2D, origins=origins_e, vectors=vectors_e)
+        self._log("forces/inner", origins=origins_i, vectors=vectors_i, colors=fill)
+        self._log("forces/outer", origins=origins_e, vectors=vectors_e)
         load = math.hypot(sample["load_y"], sample["load_z"])
         length = min(max(LOAD_ARROW_FACTOR * load * per_newton, 0.12 * self._bore), 0.42 * self._bore) if load > 0 else 0.0
         vector = polar(length, math.atan2(sample["load_z"], sample["load_y"]))
-        self._log("forces/radial_load", rr.Arrows2D, origins=np.zeros((1, 2)), vectors=vector[None])
+        self._log("forces/radial_load", origins=np.zeros((1, 2)), vectors=vector[None])
         beside = picture(0.25 * self._bore, (0.25 if sample["load_z"] <= 0 else -0.05) * self._bore)  # where the arrow is not
         self._write("forces/radial_load_text", [beside], [f"radial load {quantity_text('radial_load', load)}"])
 
@@ -161,13 +173,13 @@ class SectionDrawing(_Drawing):
         if self._pocket_scale != self._pocket_legend_scale:
             self._draw_pocket_legend()
         vectors = section.pocket_arrows(sample, self._pocket_length / self._pocket_scale)
-        self._log("forces/pocket", rr.Arrows2D, origins=centres, vectors=vectors)
+        self._log("forces/pocket", origins=centres, vectors=vectors)
 
     def _draw_pocket_legend(self) -> None:
         self._pocket_legend_scale = self._pocket_scale
         level, start = -0.77 * self._bore, -0.55 * self._bore
         arrow = picture(self._pocket_length, 0.0)
-        self._log("legend/pocket", rr.Arrows2D, origins=[picture(start, level)], vectors=[arrow], radii=0.22, colors=colours.PURPLE)
+        self._log("legend/pocket", origins=[picture(start, level)], vectors=[arrow])
         self._write("legend/pocket_text", [picture(0.15 * self._bore, level + 0.11 * self._bore)], [f"pocket force {force(self._pocket_scale)}"])
 
     @property
@@ -178,7 +190,7 @@ class SectionDrawing(_Drawing):
     def _draw_axes(self) -> None:
         unit = self._bore
         origin, vectors = picture(-0.6 * unit, 0.42 * unit), [picture(0.2 * unit, 0.0), picture(0.0, 0.2 * unit)]
-        self._still("axes/arrows", rr.Arrows2D, origins=[origin, origin], vectors=vectors, radii=0.2, colors=colours.WHITE)
+        self._still("axes/arrows", origins=[origin, origin], vectors=vectors)
         self._write("axes/names", [picture(-0.28 * unit, 0.52 * unit), picture(-0.6 * unit, 0.84 * unit)], ["Y", "Z"], static=True)
 
     @property
@@ -242,6 +254,8 @@ class SolidDrawing(_Drawing):
     scene : the scene that holds the bearing.
     """
 
+    _name = "solid"
+
     def __init__(self, recording: rr.RecordingStream, scene: Scene):
         super().__init__(recording, SOLID_ROOT)
         self._bearing = scene.bearing
@@ -254,57 +268,53 @@ class SolidDrawing(_Drawing):
     def draw_still_parts(self) -> None:
         """Draw the outer raceway, and what the moving parts keep."""
         bearing, half = self._bearing, self._half_length
-        self._still("", rr.Transform3D, mat3x3=_TO_BEARING_FRAME)
+        self._still("", mat3x3=_TO_BEARING_FRAME)
         contour = section.drawn_contour(bearing, self._factor, _TURN)
         ends = [_ring(contour, _TURN, end) for end in (-1.2 * half, 1.2 * half)]
-        self._still("outer_ring/raceway", rr.LineStrips3D, strips=ends, radii=0.25, colors=colours.VERMILION)
+        self._still("outer_ring/raceway", strips=ends)
         generators = np.stack((ends[0][::5], ends[1][::5]), axis=1)
-        self._still("outer_ring/generators", rr.LineStrips3D, strips=generators, radii=0.06, colors=colours.STEEL)
+        self._still("outer_ring/generators", strips=generators)
         roller, count = bearing.roller, bearing.roller.count
         self._still(
             "rollers",
-            rr.Cylinders3D,
             lengths=np.full(count, 2 * half),
             radii=np.full(count, roller.diameter / 2 / MILLIMETRE),
             fill_mode=rr.components.FillMode.Solid,
         )
         ring = bearing.inner_raceway.radius / MILLIMETRE
-        self._still("inner_ring/body", rr.Mesh3D, **_band(0.6 * ring, ring, 1.2 * half), albedo_factor=colours.STEEL)
-        self._still("inner_ring/shaft_mark", rr.LineStrips3D, radii=0.5, colors=colours.BLUE)
+        self._still("inner_ring/body", **_band(0.6 * ring, ring, 1.2 * half), albedo_factor=colours.STEEL)
         if self._tilts:
             self._write_factors()
-        self._still("cage/bars", rr.LineStrips3D, radii=0.6 * section.cage_bar_stroke(bearing), colors=_bar_colours(count))
+        self._still("cage/bars", radii=0.6 * section.cage_bar_stroke(bearing), colors=_bar_colours(count))
 
     def _write_factors(self) -> None:
         """Write under the bearing by what tilts and skews are drawn; the tab's title has no room for it."""
         text = f"tilt of ring and rollers x{self._tilt_factor}, skew x{self._skew_factor}, tilt of cage x{self._cage_factor}"
         below = [[0.0, -1.35 * self._bearing.outer_raceway.low_radius / MILLIMETRE, 0.0]]
         # an arrow of no length: a point of no size would leave a dot
-        self._still(
-            "factors", rr.Arrows3D, origins=below, vectors=[[0.0, 0.0, 0.0]], radii=0.0, colors=colours.WHITE, labels=[text], show_labels=True
-        )
+        self._still("factors", origins=below, vectors=[[0.0, 0.0, 0.0]], labels=[text], show_labels=True)
 
     def draw(self, sample: np.void, load_scale: float) -> None:
         """Draw the moving parts of one sample, loads coloured up to ``load_scale`` [N]."""
         bearing, half = self._bearing, self._half_length
         radius = (bearing.pitch_radius + self._factor * (sample["roller_radius"] - bearing.pitch_radius)) / MILLIMETRE
-        self._log("rollers", rr.InstancePoses3D, translations=_ring(radius, sample["roller_angle"], 0.0), quaternions=self._roller_turns(sample))
-        self._log("rollers", rr.Cylinders3D, colors=colours.load_colours(sample["inner_load"], load_scale))
+        self._place("rollers", _ring(radius, sample["roller_angle"], 0.0), self._roller_turns(sample))
+        self._log("rollers", colors=colours.load_colours(sample["inner_load"], load_scale))
         y, z = section.ring_displacement(self._factor, sample)
         ring_tilt, cage_tilt = self._tilt_factor * _lean(sample, "ring"), self._cage_factor * _lean(sample, "cage")
         turns = section.leaning(*ring_tilt)[None] if self._tilts else None
-        self._log("inner_ring/body", rr.InstancePoses3D, translations=[[y, z, 0.0]], quaternions=turns)
+        self._place("inner_ring/body", [[y, z, 0.0]], turns)
         mark = _ring(bearing.inner_raceway.radius / MILLIMETRE * np.array([0.6, 1.0]), sample["shaft_angle"], 1.22 * half)
         mark[:, 2] -= mark[:, :2] @ ring_tilt
         mark += [y + 1.22 * half * ring_tilt[0], z + 1.22 * half * ring_tilt[1], 0.0]
-        self._log("inner_ring/shaft_mark", rr.LineStrips3D, strips=mark[None])
+        self._log("inner_ring/shaft_mark", strips=mark[None])
         middle = (bearing.cage.bore + bearing.cage.outside) / 2 / MILLIMETRE
         azimuth = sample["cage_angle"] + (np.arange(bearing.roller.count) - 0.5) * 2 * math.pi / bearing.roller.count
         cage = [*section.cage_displacement(self._cage_factor, sample), 0.0]
         leant = np.array([*cage_tilt, 0.0])
         bars = np.stack([_ring(middle, azimuth, end) + cage + end * leant for end in (-1.1 * half, 1.1 * half)], axis=1)
         bars[..., 2] -= bars @ leant
-        self._log("cage/bars", rr.LineStrips3D, strips=bars)
+        self._log("cage/bars", strips=bars)
 
     def _roller_turns(self, sample) -> np.ndarray | None:
         if not self._tilts:
@@ -394,6 +404,8 @@ class CageDrawing(_Drawing):
     scene : the scene that holds the cage.
     """
 
+    _name = "orbit"
+
     def __init__(self, recording: rr.RecordingStream, scene: Scene):
         super().__init__(recording, ORBIT_ROOT)
         self._guidance = scene.bearing.cage.guidance
@@ -404,13 +416,13 @@ class CageDrawing(_Drawing):
     def draw_still_parts(self) -> None:
         """Draw the clearance, the axes, and what the moving parts keep."""
         reach = self._clearance
-        self._still("clearance", rr.LineStrips2D, strips=[polar(reach, _TURN)], radii=0.008 * reach, colors=colours.GREEN, draw_order=-1.0)
+        self._still("clearance", strips=[polar(reach, _TURN)], radii=0.008 * reach)
         cross = [picture(np.array([-reach, reach]), 0.0), picture(0.0, np.array([-reach, reach]))]
-        self._still("axes", rr.LineStrips2D, strips=cross, radii=0.004 * reach, colors=colours.STEEL, draw_order=-5.0)
+        self._still("axes", strips=cross, radii=0.004 * reach)
         self._write("names", [picture(1.16 * reach, 0.09 * reach), picture(0.0, 1.26 * reach)], ["Y", "Z"], static=True)
-        self._still("path/dots", rr.Points2D, radii=0.026 * reach, draw_order=2.0)
-        self._still("path/line", rr.LineStrips2D, radii=0.008 * reach, draw_order=1.0)
-        self._still("centre", rr.Points2D, radii=0.05 * reach, colors=colours.ORANGE, draw_order=5.0)
+        self._still("path/dots", radii=0.026 * reach)
+        self._still("path/line", radii=0.008 * reach)
+        self._still("centre", radii=0.05 * reach)
 
     def add(self, block: np.ndarray) -> None:
         """Add samples to the path, whether they are drawn or not."""
@@ -424,13 +436,13 @@ class CageDrawing(_Drawing):
         dense = self._path.is_dense()
         if dense or self._line_drawn:
             strips = np.stack((points[:-1], points[1:]), axis=1) if dense else np.empty((0, 2, 2))
-            self._log("path/line", rr.LineStrips2D, strips=strips, colors=fade[1:] if dense else fade[:0])
+            self._log("path/line", strips=strips, colors=fade[1:] if dense else fade[:0])
         if not dense or not self._line_drawn:
-            self._log("path/dots", rr.Points2D, positions=points[:0] if dense else points, colors=fade[:0] if dense else fade)
+            self._log("path/dots", positions=points[:0] if dense else points, colors=fade[:0] if dense else fade)
         self._line_drawn = dense
         y, z = (float(position) / _MICROMETRE for position in eccentricity(self._guidance, sample))
         known = math.isfinite(y) and math.isfinite(z)
-        self._log("centre", rr.Points2D, positions=[picture(y, z)] if known else np.empty((0, 2)))
+        self._log("centre", positions=[picture(y, z)] if known else np.empty((0, 2)))
         text = f"e/c = {sample['land_eccentricity']:.3f}, c = {self._clearance:g} µm" if known else "not recorded"
         self._write("text", [picture(0.0, -1.1 * self._clearance)], [text])
 
@@ -465,6 +477,8 @@ class BarDrawing(_Drawing):
     signed : whether values are as often negative as positive: there is room for bars to the left, too.
     """
 
+    _name = "bars"
+
     def __init__(self, recording: rr.RecordingStream, root: str, bars: Sequence[Series], digits: int = 0, signed: bool = False):
         super().__init__(recording, root)
         self._bars, self._digits, self._signed = bars, digits, signed
@@ -476,10 +490,10 @@ class BarDrawing(_Drawing):
         """Write the names, and what the bars keep."""
         left = -0.28 * _WIDTH - (_WIDTH if self._signed else 0.0)
         self._write("names", places(left, self._levels - 0.42 * _PITCH), [bar.name for bar in self._bars], static=True)
-        self._still("bars", rr.LineStrips2D, colors=[bar.colour for bar in self._bars])
+        self._still("bars", colors=[bar.colour for bar in self._bars])
         if self._signed:
             zero = [[0.0, -0.7 * _PITCH], [0.0, (len(self._bars) - 0.3) * _PITCH]]
-            self._still("zero", rr.LineStrips2D, strips=[zero], radii=0.15, colors=colours.STEEL, draw_order=-1.0)
+            self._still("zero", strips=[zero])
 
     def add(self, block: np.ndarray) -> None:
         """Add the samples of a block, whether they are drawn or not."""
@@ -497,7 +511,7 @@ class BarDrawing(_Drawing):
         radii = np.minimum(0.3 * _PITCH, 0.45 * np.abs(ends))  # the ends of lines are round and stand out by this
         left, right = np.minimum(ends, 0.0) + radii, np.maximum(ends, 0.0) - radii
         bars = np.stack((places(left, self._levels), places(right, self._levels)), axis=1)
-        self._log("bars", rr.LineStrips2D, strips=bars, radii=radii)
+        self._log("bars", strips=bars, radii=radii)
         rounded = np.round(values, self._digits) + 0.0  # no minus before a zero
         units = [shown(bar.observable).unit for bar in self._bars]
         texts = [f"{value:,.{self._digits}f} {unit}" if np.isfinite(value) else "unknown" for value, unit in zip(rounded, units)]
@@ -540,6 +554,8 @@ class HeatDrawing(_Drawing):
     scene : the scene that holds the bearing.
     """
 
+    _name = "temperatures"
+
     def __init__(self, recording: rr.RecordingStream, scene: Scene):
         super().__init__(recording, HEAT_ROOT)
         self._bearing, self._radii = scene.bearing, section.heat_radii(scene.bearing)
@@ -551,22 +567,22 @@ class HeatDrawing(_Drawing):
         """Draw what the moving parts keep: bodies to scale, except for the housing."""
         spans = np.array([self._radii[name] for name in self._round])
         middle, half = spans.mean(axis=1), 0.5 * np.diff(spans, axis=1)[:, 0]
-        self._still("bodies", rr.Ellipses2D, half_sizes=places(middle, middle), line_radii=half, draw_order=0.0)
+        self._still("bodies", half_sizes=places(middle, middle), line_radii=half)
         edges = spans[:, 1]
-        self._still("edges", rr.Ellipses2D, half_sizes=places(edges, edges), line_radii=0.004 * self._edge, colors=colours.STEEL)
+        self._still("edges", half_sizes=places(edges, edges), line_radii=0.004 * self._edge)
         circle, radius = self._radii["rollers"]
         azimuth = 2 * math.pi * np.arange(self._bearing.roller.count) / self._bearing.roller.count
-        self._still("rollers", rr.Points2D, positions=polar(circle, azimuth), radii=radius, draw_order=5.0)
+        self._still("rollers", positions=polar(circle, azimuth), radii=radius)
 
     def draw(self, sample: np.void) -> None:
         """Draw the temperatures of one sample at the recording's current time."""
         celsius = {name: float(row.values(sample[row.observable])) for name, row in BODIES.items()}
         self._widen([value for value in celsius.values() if math.isfinite(value)])
         colour = {name: colours.heat_colours(np.array([value]), self._drawn_scale)[0] for name, value in celsius.items()}
-        self._log("bodies", rr.Ellipses2D, colors=np.array([colour[name] for name in self._round]))
-        self._log("rollers", rr.Points2D, colors=colour["rollers"][None])
+        self._log("bodies", colors=np.array([colour[name] for name in self._round]))
+        self._log("rollers", colors=colour["rollers"][None])
         rows = -0.78 * self._edge + 0.24 * self._edge * np.arange(len(BODIES))
-        self._log("keys", rr.Points2D, positions=places(1.35 * self._edge, rows), radii=0.08 * self._edge, colors=[*colour.values()])
+        self._log("keys", positions=places(1.35 * self._edge, rows), radii=0.08 * self._edge, colors=[*colour.values()])
         texts = [f"{row.name} {_celsius(celsius[name])}{self._measured(sample, row)}" for name, row in BODIES.items()]
         self._write("texts", places(2.25 * self._edge, rows - 0.09 * self._edge), texts)
 
