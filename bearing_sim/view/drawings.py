@@ -51,9 +51,12 @@ class _Drawing:
     def _log(self, part: str, static: bool = False, **fields) -> None:
         """Log fields of a part; the first time its style, too, which it keeps."""
         path, (kind, style) = f"{self._root}/{part}".rstrip("/"), _PARTS[self._name, part]
-        if style and part not in self._styled:
-            self._recording.log(path, kind.from_fields(**style), static=True)
-        self._styled.add(part)
+        if part not in self._styled:
+            self._styled.add(part)
+            if static:
+                fields = style | fields
+            elif style:
+                self._recording.log(path, kind.from_fields(**style), static=True)
         self._recording.log(path, kind.from_fields(**fields), static=static)
 
     def _still(self, part: str, **fields) -> None:
