@@ -46,9 +46,11 @@ setup(
             "scene/scenes/*.bands.npz",
             "scene/scenes/*.yaml",
             "physics/limits.toml",
+            "ros/*.toml",
             "ros/dds/*.xml",
             "ros/profiles/*.yaml",
             "studies/*.csv",
+            "view/*.csv",
         ],
     },
     data_files=[

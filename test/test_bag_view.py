@@ -22,8 +22,7 @@ from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.writer import McapFile, McapSink
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.view.bag import BagSeries, Line, read_bag_series, write_bag_view
-from bearing_sim.view.clouds import CloudCourse
+from bearing_sim.view.bag import BagSeries, CloudCourse, Line, read_bag_series, write_bag_view
 from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN
 from bearing_sim.view.worker import RerunFile
 

@@ -71,8 +71,8 @@ def test_an_observable_is_in_samples_topics_and_plots(changed, level):
     found = python(
         "import json; from bearing_sim import load_scene, Simulation; from bearing_sim.messages.topics import ARRAYS\n"
         "from bearing_sim.view.plots import series\n"
-        f"block = Simulation(load_scene('deng2017_table1', ['level={level}'])).advance(0.002, samples=5)\n"
+        f"scene = load_scene('deng2017_table1', ['level={level}']); block = Simulation(scene).advance(0.002, samples=5)\n"
         "print(json.dumps([block['rollers_loaded'].tolist(), (block['inner_load'] > 0).sum(axis=1).tolist(), "
-        "'rollers_loaded' in ARRAYS['operating_point'].fields, series(block)['/loads/rollers'].tolist()]))"
+        "'rollers_loaded' in ARRAYS['operating_point'].fields, series(scene, block)['/loads/rollers'].tolist()]))"
     )
     assert found[0] == found[1] == found[3] and found[2] and max(found[0]) > 0

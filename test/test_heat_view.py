@@ -22,7 +22,7 @@ pytestmark = pytest.mark.usefixtures("strict_rerun")
 def warm_block(celsius=None):
     block = synthetic_block(WARM, 1e-3 * np.arange(1, 30))
     for body, value in (CELSIUS | (celsius or {})).items():
-        block[BODIES[body][1]] = value + 273.15
+        block[BODIES[body].observable] = value + 273.15
     block["inner_ring_temperature_measured"], block["outer_ring_temperature_measured"] = 95.5 + 273.15, np.nan
     return block
 

@@ -108,7 +108,7 @@ def test_near_rest_there_is_no_slip_and_the_largest_load_is_that_since_the_sampl
     block = synthetic_block(SCENE, TIMES, speeds=(10.0, 4000.0))
     block["inner_load_maximum"], block["outer_load_maximum"] = 5000.0, np.nan  # an earlier version recorded none
     block["cage_slip"][0] = -1e9
-    found = series(block, 20.0)
+    found = series(load_scene("deng2017_table1", ["thresholds.slip_from_speed=20 rad/s"]), block)
     assert math.isnan(found["/slip/cage"][0]) and np.isfinite(found["/slip/cage"][block["shaft_speed"] >= 20.0]).all()
     np.testing.assert_allclose(found["/loads/inner_largest"], 5000.0)
     np.testing.assert_allclose(found["/loads/outer_largest"], block["outer_load"].max(axis=1))

@@ -91,7 +91,7 @@ def lab(colour, sight):
 @pytest.mark.parametrize("sight", SIGHTS)
 def test_lines_of_one_plot_can_be_told_apart_with_any_sight(sight):
     for plot in [plot for scene in SCENES.values() for plot in plots(scene)]:
-        coloured = [(path, lab(LINES[path][1], sight)) for path in plot.contents if path in LINES]
+        coloured = [(path, lab(LINES[path].colour, sight)) for path in plot.contents if path in LINES]
         if plot.name.startswith(("Plot [W]", "Clearance [µm]")):  # so many causes and parts, which the bars beside name
             continue
         for (one, first), (other, second) in itertools.combinations(coloured, 2):
@@ -185,13 +185,16 @@ class KeptBars(BarDrawing):
     """Bars that keep what they log instead of writing it."""
 
     def __init__(self, values):
-        super().__init__(None, "/bars", {name: (name, (0, 0, 0, 255)) for name in values}, "{}", 1.0, "W", signed=True)
+        super().__init__(None, "/bars", [LINES["/power/shaft"]._replace(observable=name) for name in values], signed=True)
         self.logged = {}
         self.add({name: np.full(4, value) for name, value in values.items()})
         self.draw()
 
-    def _log(self, path, archetype):
-        self.logged[path] = archetype
+    def _log(self, part, static=False, **fields):
+        self.logged[part] = rr.LineStrips2D.from_fields(**fields)
+
+    def _write(self, path, positions, texts, static=False):
+        self.logged[path] = texts
 
 
 def test_a_bar_with_its_round_ends_reaches_from_zero_to_its_value_however_short_it_is():

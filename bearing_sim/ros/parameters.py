@@ -8,6 +8,7 @@ import dataclasses
 import json
 import math
 import re
+import tomllib
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,113 +50,14 @@ class Declaration(NamedTuple):
     meaning: str
     low: float = -math.inf
     high: float = math.inf
-    choices: tuple[str, ...] = ()
+    choices: Sequence[str] = ()
     per_bearing: bool = False
     running: bool = False
     quantity: Quantity | None = None
 
 
-DECLARATIONS = (
-    Declaration("autostart", True, "true: the node configures and activates itself; false: it waits for lifecycle requests"),
-    Declaration("bearings", [""], "names of several bearings, each with NAME.scene and its topics below NAME/; empty for one bearing without a name"),
-    Declaration(
-        "processes",
-        0,
-        "processes that share the bearings; 0: one for every ten bearings, at most one per core",
-        0,
-        256,
-    ),
-    Declaration("scene", "deng2017_table1", "name of a bundled scene, or path of a scene file", per_bearing=True),
-    Declaration(
-        "overrides",
-        [""],
-        "scene fields to change, each FIELD=VALUE, such as bearing.outer_raceway.low_radius=34.865mm",
-        per_bearing=True,
-    ),
-    Declaration(
-        "allow_outside",
-        False,
-        "whether a scene file may name files of contour and crown outside of its own folder",
-        per_bearing=True,
-    ),
-    Declaration(
-        "serial",
-        "",
-        "serial number of the bearing: its state (life used, hours, starts, what was learned) is kept in a file over restarts, with use_sim_time "
-        "only if state_file is given; empty: none. A new number takes effect at ~/replace_bearing, or at the next configure",
-        per_bearing=True,
-        running=True,
-    ),
-    Declaration(
-        "state_file",
-        "",
-        "file of the bearing's state; empty: one for its serial number in the user's folder for state, ~/.local/state/bearing_sim on Linux",
-        per_bearing=True,
-    ),
-    Declaration("joint", "shaft", "name of the shaft's joint in shaft_speed messages", per_bearing=True),
-    Declaration("cage_joint", "cage", "name of the cage's joint in cage_speed_measured messages", per_bearing=True),
-    Declaration(
-        "frame_id",
-        "bearing",
-        "the bearing's frame, x along the shaft: of the output topics, and of radial_load messages, which may also have none; empty: a load in "
-        "any frame is accepted as it is, and outputs name the frame bearing",
-        per_bearing=True,
-    ),
-    Declaration(
-        "parent_frame",
-        "",
-        "frame of which the bearing's frame is a child: their transform is published on /tf_static (needs tf2_msgs); empty: none",
-        per_bearing=True,
-    ),
-    Declaration("frame_position", [0.0, 0.0, 0.0], "origin of the bearing's frame in its parent_frame, x, y, z [m]", per_bearing=True),
-    Declaration(
-        "frame_orientation",
-        [0.0, 0.0, 0.0],
-        "orientation of the bearing's frame in its parent_frame: roll, pitch, yaw [rad], or a quaternion x, y, z, w",
-        per_bearing=True,
-    ),
-    Declaration(
-        "input_type", "stamped", "stamped: JointState and WrenchStamped; scalar: Float64 [rad/s] and [N] along +y", choices=("stamped", "scalar")
-    ),
-    Declaration("publish_rate", 50.0, "rate of the output topics [Hz]", 0.1, 200.0, running=True),
-    Declaration("sample_rate", 100.0, "samples recorded per simulated second [Hz]", 1.0, 10_000.0),
-    Declaration(
-        "clock_jump_back",
-        "reset",
-        "with use_sim_time, what happens when /clock jumps back: reset: state and damage start over; error: the last state is held",
-        choices=("reset", "error"),
-    ),
-    Declaration(
-        "clock_tolerance",
-        0.1,  # an assumption: far above what delays of messages make of a clock, far below a loop of a log
-        "with use_sim_time, step back of /clock [s] below which it counts as late messages, not as a jump: nothing happens",
-        0.0,
-        10.0,
-    ),
-    Declaration(
-        "stamp_tolerance",
-        2.0,  # an assumption: clocks that anything keeps together agree better, and no message is under way for that long
-        "without use_sim_time, how far stamps of inputs may be from the node's clock [s] before it warns; inputs act as they arrive all the same",
-        0.0,
-        1e9,
-    ),
-    Declaration(
-        "inputs_expected_within",
-        10.0,  # an assumption: the other nodes of a machine have started by then
-        "time from the start of a run [s] after which the node warns of a shaft_speed or radial_load without a good message",
-        0.0,
-        1e6,
-    ),
-    Declaration("maximum_lag", 0.2, "lag behind real time up to which the model catches up [s]; time beyond it is skipped and reported", 0.02, 10.0),
-    Declaration("governor", True, "whether to use a level of lower fidelity while the machine is too slow for the scene's level", running=True),
-    Declaration("record", "", "MCAP file, or bag folder (no .mcap), to record from the start; empty: only on ~/start_recording", per_bearing=True),
-    Declaration("record_part_size", 0.0, "size at which a recording continues in a new file [MB]; 0: no limit", 0.0, 1e6),
-    Declaration("record_part_duration", 0.0, "duration at which a recording continues in a new file [s]; 0: no limit", 0.0, 1e7),
-    Declaration("record_keep_free", 100.0, "free disk space below which recording stops [MB]", 0.0, 1e7),
-    Declaration("rrd", "", "rerun recording (.rrd) to write from the start; empty: none", per_bearing=True),
-    Declaration("rerun_port", 0, "port on 127.0.0.1 to which a rerun viewer can connect; 0: none", 0, 65535, per_bearing=True),
-    Declaration("rerun_web_port", 0, "port on 127.0.0.1 at which a browser shows the same view; 0: none", 0, 65535, per_bearing=True),
-)
+_ROWS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+DECLARATIONS = tuple(Declaration(name, **row) for name, row in _ROWS.items())
 """The node's own parameters; those of the scene are `SCENE_DECLARATIONS`."""
 
 _PORTS = ("rerun_port", "rerun_web_port")
@@ -515,22 +417,18 @@ class ParameterServer:
 
         Such as ``ros2 param set ... publish_rate 20``, ``... frame_position "[0, 0, 1]"``, ``... thresholds.slip_from_speed "200 rpm"``.
         """
-        return list(map(self._as_float, parameters))
+        return list(map(self._as_declared, parameters))
 
-    def _as_float(self, parameter: Parameter) -> Parameter:
+    def _as_declared(self, parameter: Parameter) -> Parameter:
         row = self._known.get(parameter.name)
-        if row is None:
+        if row is None or parameter.type_ is Parameter.Type.NOT_SET:
             return parameter
-        if parameter.type_ is Parameter.Type.INTEGER and isinstance(row.default, float):
-            return Parameter(parameter.name, value=float(parameter.value))
-        if parameter.type_ is Parameter.Type.INTEGER_ARRAY and isinstance(row.default, list) and isinstance(row.default[0], float):
-            return Parameter(parameter.name, value=[float(number) for number in parameter.value])
-        if parameter.type_ is Parameter.Type.STRING and row.quantity is not None:
-            try:
-                return Parameter(parameter.name, value=checked(row, parameter.name, parameter.value))
-            except ValueError as error:
-                self._node.get_logger().warning(str(error))  # rclpy answers no more than that the type is wrong
-        return parameter
+        try:
+            return Parameter(parameter.name, value=checked(row, parameter.name, parameter.value))
+        except ValueError as error:  # which `_validate` reports, unless rclpy itself has answered no more than that the type is wrong
+            if row.quantity is not None and parameter.type_ is Parameter.Type.STRING:
+                self._node.get_logger().warning(str(error))
+            return parameter
 
     def _validate(self, parameters: list[Parameter]) -> SetParametersResult:
         if self._is_own_change:

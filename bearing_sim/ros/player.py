@@ -4,7 +4,6 @@
 Run it with ``bearing_player LOG.mcap`` or ``python -m bearing_sim.ros.player LOG.mcap``; remappings follow ``--ros-args``.
 """
 
-import importlib.util
 import sys
 import time
 from collections import Counter
@@ -255,13 +254,9 @@ def _fields(due: ScheduledMessage, stamp_ns: int) -> dict:
 @contextmanager
 def progress_of(title: str, total: float) -> Iterator[Callable[[float], None]]:
     """Show progress on stderr, a bar on a terminal, otherwise a line every 10 %; yields the function that takes how much of ``total`` is done."""
-    if sys.stderr.isatty() and importlib.util.find_spec("rich"):
-        from rich.console import Console
-        from rich.progress import Progress
-
-        with Progress(console=Console(stderr=True)) as bar:
-            task = bar.add_task(title, total=total)
-            yield lambda time: bar.update(task, completed=time)
+    if sys.stderr.isatty():
+        with click.progressbar(length=total, label=title, file=sys.stderr) as bar:
+            yield lambda time: bar.update(time - bar.pos)
         return
     due = 0.1
 

@@ -23,14 +23,27 @@ from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import POINT_CLOUD
 from bearing_sim.messages.diagnostics import WHOLE, events_of
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.point_cloud import points_of
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.message_fields import numbers, suggestion
+from bearing_sim.scene.display import RPM, Shown, shown
 from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.view import colours
-from bearing_sim.view.blueprint import log_view, page
-from bearing_sim.view.clouds import CloudCourse, cloud_view, write_clouds
-from bearing_sim.view.plots import LINES, Lines, Overview, bucket_for, describe_range, log_event, plottable, range_path, send_columns, send_thinned
+from bearing_sim.view.blueprint import BACKGROUND, log_view, page
+from bearing_sim.view.plots import (
+    LINES,
+    TIMELINE,
+    Lines,
+    Overview,
+    bucket_for,
+    describe_range,
+    log_event,
+    plottable,
+    range_path,
+    send_columns,
+    send_thinned,
+)
 from bearing_sim.view.run_view import APPLICATION
 from bearing_sim.view.viewer import incomplete, is_complete
 
@@ -42,20 +55,80 @@ _WRENCHES = {"geometry_msgs/msg/Wrench", "geometry_msgs/msg/WrenchStamped"}
 _LOGS = {"diagnostic_msgs/msg/DiagnosticArray", "rcl_interfaces/msg/Log"}
 _PICTURES = {f"sensor_msgs/msg/{kind}" for kind in ("Image", "CompressedImage", "CameraInfo", "PointCloud", "LaserScan")}
 _PICTURES |= {"nav_msgs/msg/OccupancyGrid", "visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray", "tf2_msgs/msg/TFMessage"}
-_USUAL = {"speed": "/shaft_speed", "load": "/radial_load", "temperature": "/oil_temperature"}
-_USUAL |= {"cage_speed": f"/{topics.MEASURED}", "clearance": f"/{topics.MEASURED_CLEARANCE}"}
-_RPM = 30 / math.pi
-_PLOTTED = {  # by role: factor, the value in SI that is zero, and unit of what is drawn
-    "speed": (_RPM, 0.0, "rpm"),
-    "cage_speed": (_RPM, 0.0, "rpm"),
-    "load": (1.0, 0.0, "N"),
-    "temperature": (1.0, topics.ZERO_CELSIUS, "°C"),
-    "clearance": (1e6, 0.0, "µm"),
+
+
+class _Role(NamedTuple):
+    """A quantity that has a place in views of our own runs too: its usual topic, how it is shown, its entity path and the title of its plot."""
+
+    topic: str
+    shown: Shown
+    entity: str
+    title: str
+
+
+_SPEEDS = "Speeds [rpm] (blue: shaft, white: cage, measured)"
+_ROLES = {
+    "speed": _Role("/shaft_speed", shown("shaft_speed"), "/speed/shaft", _SPEEDS),
+    "cage_speed": _Role(f"/{topics.MEASURED}", shown("cage_speed"), "/speed/cage_measured", _SPEEDS),
+    "load": _Role("/radial_load", shown("radial_load"), "/load/radial", "Radial load [N]"),
+    "temperature": _Role("/oil_temperature", shown("oil_temperature"), "/oil/temperature", "Oil [°C]"),
+    "clearance": _Role(f"/{topics.MEASURED_CLEARANCE}", shown("running_clearance"), "/clearance/measured", "Running clearance [µm], measured"),
 }
 _JOINTS = {topics.SHAFT_JOINT: "speed", topics.CAGE_JOINT: "cage_speed", topics.CLEARANCE_JOINT: "clearance"}
+_PLACES = ("x", "y", "z")
+_MOST_CLOUDS = 2000  # of a topic; of more, every second one is kept, then every fourth ...
+_SIZE = -6.0  # radius of a point; negative: in pixels, because a cloud does not say how large its points are
 _MOST_LINES = 64  # of one array
 _MOST_REASONS = 5  # in an error
 _LONGEST_TEXT = 1000  # characters of an event
+
+
+class Cloud(NamedTuple):
+    """The points of one message: places [m], shape (n, 3), and the number that colours each, shape (n,), or None."""
+
+    log_ns: int
+    places: np.ndarray
+    numbers: np.ndarray | None
+
+
+class CloudCourse:
+    """The clouds of one topic, thinned out evenly where there are many.
+
+    Attributes
+    ----------
+    coloured_by : the field that colours the points, the first one after the places; empty if there is none.
+    clouds : in the order in which they were taken.
+    """
+
+    def __init__(self):
+        self.coloured_by = ""
+        self.clouds: list[Cloud] = []
+        self._seen, self._every = 0, 1
+
+    def take(self, message, log_ns: int) -> int:
+        """Take a deserialised sensor_msgs/PointCloud2 with its log time [ns since the epoch]; return how many numbers of it are kept.
+
+        Raises
+        ------
+        ValueError
+            It has no fields ``x``, ``y`` and ``z``, or its data are not as long as it says.
+        """
+        self._seen += 1
+        if (self._seen - 1) % self._every:
+            return 0
+        points = points_of(message)
+        names = points.dtype.names or ()
+        if not set(_PLACES) <= set(names):
+            raise ValueError(f"a point cloud without the fields x, y and z; it has {', '.join(names) or 'none'}")
+        further = [name for name in names if name not in _PLACES]
+        self.coloured_by = further[0] if further else ""
+        places = np.stack([points[name].astype(float).reshape(len(points), -1)[:, 0] for name in _PLACES], axis=1)
+        numbers = points[self.coloured_by].astype(float).reshape(len(points), -1)[:, 0] if further else None
+        finite = np.isfinite(places).all(axis=1)
+        self.clouds.append(Cloud(log_ns, places[finite], None if numbers is None else numbers[finite]))
+        if len(self.clouds) >= _MOST_CLOUDS:
+            self.clouds, self._every = self.clouds[::2], 2 * self._every
+        return 4 * len(places)
 
 
 class BagSeries(NamedTuple):
@@ -113,7 +186,7 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
     """
     path, named = Path(path), named or {}
     by_field = [role for role, line in named.items() if line.fields]
-    roles = {named[role].topic if role in named else usual: role for role, usual in _USUAL.items() if role not in (*by_field, *constants)}
+    roles = {named[role].topic if role in named else usual.topic: role for role, usual in _ROLES.items() if role not in (*by_field, *constants)}
     missing: dict[str, str] = {}
     taken = _Taken(path)
     unread, present, clouds = {}, set(), {}
@@ -158,8 +231,9 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
     absent = [f"no {role.replace('_', ' ')} ({topic})" for topic, role in roles.items() if not any(key[0] == role for key in rows)]
     start_ns, duration = min(times), max(max(times) - min(times), 1) * 1e-9
     for role, value in constants.items():
-        factor, zero, unit = _PLOTTED[role]
-        rows[role, f"{role.replace('_', ' ')} throughout, not measured", unit] = array("q", times), array("d", [factor * (value - zero)] * 2)
+        quantity = _ROLES[role].shown
+        level = quantity.scale * value + quantity.offset
+        rows[role, f"{role.replace('_', ' ')} throughout, not measured", quantity.unit] = array("q", times), array("d", [level] * 2)
     origin = sorted((event._replace(time=(event.time - start_ns) * 1e-9) for event in taken.events), key=lambda event: event.time)
     model = ["slip, loads, life, powers and pictures of the bearing: they need a model (`bearing-sim replay`)"]
     series = {key: _sorted(values, start_ns) for key, values in rows.items()}
@@ -229,11 +303,9 @@ def _role_of_fields(role: str, line: Line, message, missing: dict[str, str]) -> 
     if absent:
         missing[role] = f"no number {absent[0]!r} in {line.topic}{suggestion(message, absent[0])}"
         return
-    value = math.hypot(*(line.scale * there[field] + line.offset for field in line.fields)) if role == "load" else None
-    if value is None:
-        value = line.scale * there[line.fields[0]] + line.offset
-    factor, zero, unit = _PLOTTED[role]
-    yield role, f"{line.topic}.{','.join(line.fields)}", unit, factor * (value - zero)
+    values, quantity = [line.scale * there[field] + line.offset for field in line.fields], _ROLES[role].shown
+    value = math.hypot(*values) if role == "load" else values[0]
+    yield role, f"{line.topic}.{','.join(line.fields)}", quantity.unit, quantity.scale * value + quantity.offset
 
 
 def _require_named(path: Path, present: set[str], named: Mapping[str, Line], missing: Mapping[str, str], found: set[str]) -> None:
@@ -256,7 +328,7 @@ def _numbers_in(ros_type: str, topic: str, role: str, message) -> Iterator[tuple
     if ros_type == "sensor_msgs/msg/JointState":
         for name, velocity in zip(message.name, message.velocity):
             own = role or _JOINTS.get(name, "")
-            yield own, f"{topic} {printable(name)}", "rpm", _RPM * velocity
+            yield own, f"{topic} {printable(name)}", "rpm", RPM * velocity
         if not len(message.velocity):  # then positions are what the message is about, with or without a unit behind the name
             for text, position in zip(message.name, message.position):
                 name, _, unit = printable(text).removesuffix("]").partition(" [")
@@ -270,8 +342,8 @@ def _numbers_in(ros_type: str, topic: str, role: str, message) -> Iterator[tuple
     elif ros_type == "sensor_msgs/msg/Temperature":
         yield role, topic, "°C", message.temperature
     elif ros_type in _NUMBERS:
-        factor, _, unit = _PLOTTED.get(role, (1.0, 0.0, "-"))
-        yield role, topic, unit, factor * float(message.data)
+        quantity = _ROLES[role].shown if role else Shown(topic, "-")
+        yield role, topic, quantity.unit, quantity.scale * float(message.data)
     elif ros_type in _ARRAYS:
         for index, value in enumerate(message.data[:_MOST_LINES]):
             yield role, f"{topic} {index}", "-", value
@@ -295,13 +367,6 @@ def _events_in(ros_type: str, message, time: int) -> Iterator[Event]:
         yield Event(time, level, message.name, "", message.msg)
 
 
-_ROLES = {  # where the same quantity stands in views of our own runs, and the title of its plot
-    "speed": ("/speed/shaft", "Speeds [rpm] (blue: shaft, white: cage, measured)"),
-    "cage_speed": ("/speed/cage_measured", "Speeds [rpm] (blue: shaft, white: cage, measured)"),
-    "load": ("/load/radial", "Radial load [N]"),
-    "temperature": ("/oil/temperature", "Oil [°C]"),
-    "clearance": ("/clearance/measured", "Running clearance [µm], measured"),
-}
 _AROUND = (colours.BLUE, colours.ORANGE, colours.GREEN, colours.YELLOW, colours.VERMILION, colours.PURPLE, colours.WHITE, colours.GREY)
 _MOST_PLOTS = 9
 
@@ -315,19 +380,19 @@ def write_bag_view(path: str | Path, name: str, found: BagSeries) -> None:
     recording.send_recording_start_time_nanos(found.start_ns)
     plots: dict[str, list[str]] = {}
     for (role, line, unit), (times, values) in found.series.items():
-        entity, title = _ROLES[role] if role else (_entity(line), f"{line.split(' ')[0]} [{unit}]")
+        entity, title = _ROLES[role][2:] if role else (_entity(line), f"{line.split(' ')[0]} [{unit}]")
         paths = plots.setdefault(title, [])
         if entity in paths:  # a second topic of the same role
             entity = _entity(line)
-        style = LINES[entity][:2] if entity in LINES else (line, _AROUND[len(paths) % len(_AROUND)])
+        style = (LINES[entity].name, LINES[entity].colour) if entity in LINES else (line, _AROUND[len(paths) % len(_AROUND)])
         _write_line(recording, entity, style, times, plottable(values))
         paths.append(entity)
     for event in found.events:
         log_event(recording, event)
     scenes = []
     for topic, course in found.clouds.items():
-        write_clouds(recording, _entity(topic), course, found.start_ns)
-        scenes.append(cloud_view(topic, _entity(topic), course))
+        _write_clouds(recording, _entity(topic), course, found.start_ns)
+        scenes.append(_cloud_view(topic, _entity(topic), course))
     text = "\n".join([f"## {name}", "", "Not written by bearing_sim. Not shown:", "", *(f"- {line}" for line in found.left_out)])
     recording.log("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN), static=True)
     recording.send_blueprint(_blueprint(plots, scenes))
@@ -338,6 +403,28 @@ def write_bag_view(path: str | Path, name: str, found: BagSeries) -> None:
     recording.disconnect()
     if not is_complete(path):
         raise incomplete(None)
+
+
+def _write_clouds(recording: rr.RecordingStream, entity: str, course: CloudCourse, start_ns: int) -> None:
+    """Write the clouds of a topic under an entity path; the colours reach from 0 to the largest number of the recording."""
+    clouds = sorted(course.clouds, key=lambda cloud: cloud.log_ns)
+    times = [(cloud.log_ns - start_ns) * 1e-9 for cloud in clouds]
+    columns = {"positions": np.concatenate([cloud.places for cloud in clouds]).astype(np.float32)}
+    if course.coloured_by:
+        numbers = np.concatenate([cloud.numbers for cloud in clouds])
+        largest = float(np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0))
+        columns["colors"] = colours.load_colours(np.abs(numbers), largest or 1.0)
+    recording.log(entity, rr.Points3D.from_fields(radii=[_SIZE]), static=True)
+    parts = rr.Points3D.columns(**columns).partition([len(cloud.places) for cloud in clouds])
+    recording.send_columns(entity, indexes=[rr.TimeColumn(TIMELINE, duration=times)], columns=parts)
+
+
+def _cloud_view(topic: str, entity: str, course: CloudCourse) -> rrb.Spatial3DView:
+    """Return the view of a topic's clouds, seen from aside along x."""
+    reach = max((float(np.abs(cloud.places).max(initial=0.0)) for cloud in course.clouds), default=0.0) or 1.0
+    eye = rrb.EyeControls3D(position=(2.6 * reach, 1.3 * reach, 0.9 * reach), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, 1.0))
+    title = f"{topic}, coloured by {course.coloured_by}" if course.coloured_by else topic
+    return rrb.Spatial3DView(origin="/", contents=[entity], name=title, background=BACKGROUND, eye_controls=eye, line_grid=False)
 
 
 def _entity(line: str) -> str:
@@ -361,7 +448,7 @@ def _write_line(recording: rr.RecordingStream, entity: str, style, times: np.nda
 
 def _blueprint(plots: dict[str, list[str]], scenes: list[rrb.Spatial3DView]) -> rrb.Blueprint:
     axis = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
-    known = [title for _, title in _ROLES.values() if title in plots]
+    known = [role.title for role in _ROLES.values() if role.title in plots]
     titles = list(dict.fromkeys([*known, *plots]))
     views = [rrb.TimeSeriesView(origin="/", contents=[*map(range_path, plots[title]), *plots[title]], name=title, axis_x=axis) for title in titles]
     shown, hidden = views[:_MOST_PLOTS], views[_MOST_PLOTS:]

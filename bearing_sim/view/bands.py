@@ -1,8 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Shaded bands over time: results of the model between their 5 and 95 % quantiles, and the fields that measurements calibrate.
 
-The viewer shades a `rerun.Measurements` by one standard deviation to either side.  A band therefore is the middle of its edges, drawn without
-a line, with half their distance as that deviation.
+The viewer shades a `rerun.Measurements` by one standard deviation to either side, so `bearing_sim.view.plots.send_columns` sends the middle of a
+band's edges, drawn without a line, with half their distance as that deviation.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from bearing_sim.messages.bands import Bands
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities
 from bearing_sim.view import colours
-from bearing_sim.view.plots import ENDLESS, TIMELINE, Lines, Overview, log10_hours
+from bearing_sim.view.plots import ENDLESS, SERIES, Lines, Overview, Series, send_columns
 
 _ROWS = 500  # that are sent together
 _USUAL = 0.97  # of the time the edges of a band lie on the axis: while a shaft starts or stops, slip may be anything
@@ -40,19 +40,14 @@ class BandPlot(NamedTuple):
     shown: Callable[[np.ndarray], np.ndarray]
 
 
-def _hours(life: np.ndarray) -> np.ndarray:
-    """Return log10 of lives; those that are endless lie at the upper end of what is plotted."""
-    return log10_hours(np.where(life > ENDLESS, ENDLESS, life))
+def _band_plot(row: Series) -> BandPlot:
+    """Return how the band of a row of ``series.csv`` is drawn; lives that are endless lie at the upper end of what is plotted."""
+    line = row.path.replace("band", "log10_hours") if row.observable == "remaining_life" else ""  # which no sample holds
+    return BandPlot(row.path, line, row.name, row.colour, lambda numbers: row.values(np.where(numbers > ENDLESS, ENDLESS, numbers)))
 
 
-_PLOTS = {
-    "cage_slip": BandPlot("/slip/band", "", "cage slip, 5 to 95 %", colours.BLUE, lambda slip: 100.0 * slip),
-    "rating_life": BandPlot("/life/band", "", "life, 5 to 95 %", colours.GREEN, _hours),
-    "running_clearance": BandPlot("/clearance/band", "", "running clearance, 5 to 95 %", colours.WHITE, lambda clearance: 1e6 * clearance),
-    "remaining_life": BandPlot("/remaining_life/band", "/remaining_life/log10_hours", "remaining life", colours.PURPLE, _hours),
-}
+_PLOTS = {row.observable: _band_plot(row) for row in SERIES.values() if row.kind == "band"}
 _FIELD_COLOURS = (colours.BLUE, colours.ORANGE, colours.GREEN, colours.YELLOW, colours.PURPLE, colours.VERMILION)
-REMAINING_LIFE = _PLOTS["remaining_life"]
 
 
 def field_plots(scene: Scene) -> dict[str, BandPlot]:
@@ -112,12 +107,9 @@ class BandSeries:
     def flush(self) -> None:
         """Send what waits."""
         waiting, self._waiting, self._count = self._waiting, [], 0
-        for topic in dict.fromkeys(bands.topic for bands in waiting):
-            own = [bands for bands in waiting if bands.topic == topic]
-            for names in dict.fromkeys(bands.names for bands in own):
-                alike = [bands for bands in own if bands.names == names]
-                times, numbers = np.concatenate([bands.times for bands in alike]), np.concatenate([bands.numbers for bands in alike])
-                self._take(topic, names, times, numbers)
+        for topic, names in dict.fromkeys((bands.topic, bands.names) for bands in waiting):
+            alike = [bands for bands in waiting if (bands.topic, bands.names) == (topic, names)]
+            self._take(topic, names, np.concatenate([bands.times for bands in alike]), np.concatenate([bands.numbers for bands in alike]))
 
     def finish(self) -> None:
         """Send all that is left."""
@@ -125,7 +117,7 @@ class BandSeries:
         for overview in self._overviews.values():
             thinned = overview.finish()
             if thinned is not None:
-                self._send(thinned.lines)
+                send_columns(self._recording, thinned.lines)
 
     def ranges(self) -> dict[str, tuple[float, float]]:
         """Return between which values the edges of each band nearly always lie, by entity path."""
@@ -150,19 +142,8 @@ class BandSeries:
             self._edges.setdefault(plot.path, []).append(shown[:, 1:].astype(np.float32))
         lines = Lines(times, values)
         if self._bucket is None:
-            self._send(lines)
+            send_columns(self._recording, lines)
             return
         thinned = self._overviews.setdefault(topic, Overview(self._bucket)).add(lines)
         if thinned is not None:
-            self._send(thinned.lines)
-
-    def _send(self, lines: Lines) -> None:
-        if not len(lines.times):
-            return
-        index = [rr.TimeColumn(TIMELINE, duration=lines.times)]
-        for path, values in lines.values.items():
-            if values.ndim == 1:
-                columns = rr.Scalars.columns(scalars=values.astype(np.float32))
-            else:
-                columns = rr.Measurements.columns(values=values.mean(axis=1), variances=(0.5 * (values[:, 1] - values[:, 0])) ** 2)
-            self._recording.send_columns(path, indexes=index, columns=columns)
+            send_columns(self._recording, thinned.lines)

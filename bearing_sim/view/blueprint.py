@@ -8,18 +8,20 @@ from typing import NamedTuple
 import rerun as rr
 import rerun.blueprint as rrb
 
-from bearing_sim.messages.topics import FREQUENCIES, LIFE_SYMBOLS, MEASURED, MEASURED_CLEARANCE, RING_TEMPERATURES
+from bearing_sim.messages.topics import LIFE_SYMBOLS
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import ranges_of, without_dimensions
 from bearing_sim.view import section
-from bearing_sim.view.bands import REMAINING_LIFE, field_plots, field_title
-from bearing_sim.view.drawings import BODIES, CLEARANCES, HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, causes_of, heat_bounds
+from bearing_sim.view.bands import field_plots, field_title
+from bearing_sim.view.drawings import CLEARANCES, HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, causes_of, heat_bounds
 from bearing_sim.view.load_map import map_bounds
-from bearing_sim.view.plots import END, TIMELINE, compared_life, range_path
+from bearing_sim.view.plots import END, SERIES, TIMELINE, compared_life, features, range_path, table
 
 LIVE_WINDOW = 30.0  # [s] of history that a live view shows
 _LINKED_UP_TO = 50.0  # [s]
 BACKGROUND = (13, 14, 17)
+_TABLE = table("plots")
+_PLOTS = {place: [row for row in _TABLE if row["place"] == place] for place in ("slip", "learned", "life", "loads", "courses")}
 
 
 class Extent(NamedTuple):
@@ -85,15 +87,15 @@ class _Axes:
         self._extent = extent
         self.time = _time_axis(live, extent)
 
-    def plot(self, title: str, contents: list[str], from_zero: bool = True, legend: bool = False) -> rrb.TimeSeriesView:
-        """Return a plot of some series; ``from_zero`` keeps zero on the axis.  The title is the legend, which hides no line, unless ``legend``."""
+    def plot(self, title: str, contents: list[str], axis: str = "") -> rrb.TimeSeriesView:
+        """Return a plot of some series, with an axis as in ``plots.csv``.  The title is the legend, which hides no line, unless it is asked for."""
         return rrb.TimeSeriesView(
             origin="/",
             contents=[END, *map(range_path, contents), *contents],
             name=title,
             axis_x=self.time,
-            axis_y=self._value_axis(contents, from_zero),
-            plot_legend=rrb.PlotLegend(visible=legend),
+            axis_y=self._value_axis(contents, axis != "free"),
+            plot_legend=rrb.PlotLegend(visible=axis == "legend"),
         )
 
     def _value_axis(self, contents: list[str], from_zero: bool) -> rrb.ScalarAxis | None:
@@ -147,7 +149,8 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
         eye_controls=eye,
         line_grid=False,
     )
-    orbit = [_orbit(scene)] if scene.cage_whirls else []
+    edge = ORBIT_EDGE * scene.bearing.cage.play * 1e6
+    orbit = [_flat("/cage_orbit", "Cage orbit", ((-edge, edge), (-edge, edge)))] if scene.cage_whirls else []
     above = across if scene.bodies_tilt else rrb.Tabs(across, solid, active_tab=0)
     chart = rrb.Tabs(*([solid] if scene.bodies_tilt else []), *heat, *maps, power, clearance, *orbit, active_tab=0)
     return rrb.Vertical(above, chart, row_shares=[0.6, 0.4])
@@ -159,130 +162,32 @@ def _flat(root: str, title: str, bounds) -> rrb.Spatial2DView:
     return rrb.Spatial2DView(origin=root, name=title, visual_bounds=rrb.VisualBounds2D(x_range=across, y_range=down), background=BACKGROUND)
 
 
-def _orbit(scene: Scene) -> rrb.Spatial2DView:
-    edge = ORBIT_EDGE * scene.bearing.cage.play * 1e6
-    return _flat("/cage_orbit", "Cage orbit", ((-edge, edge), (-edge, edge)))
-
-
 def _middle(scene: Scene, axes: _Axes, measured: Collection[str]) -> rrb.Vertical:
-    has_cage = MEASURED in measured
-    rows = [_slips(scene, axes, has_cage), _lives(scene, axes), _loads(scene, axes), _courses(scene, axes, measured)]
-    title = "Residual slip [points]: measured less predicted (grey: none)"
-    residual = [axes.plot(title, ["/slip/no_residual", "/slip/residual"])] if has_cage else []
-    fields = field_plots(scene)
-    learned = [axes.plot(f"{field_title(path)}, 5 to 95 %", [plot.path, plot.line], from_zero=False) for path, plot in fields.items()]
-    if beside := [*residual, *learned]:
-        rows.insert(1, rrb.Tabs(*beside, active_tab=0))
-    return rrb.Vertical(*rows)
+    present, fields = features(scene, measured), field_plots(scene)
+    stacks = {place: [axes.plot(*_filled(row, scene, present)) for row in rows if _applies(row["needs"], present)] for place, rows in _PLOTS.items()}
+    stacks["learned"] += [axes.plot(f"{field_title(path)}, 5 to 95 %", [plot.path, plot.line], "free") for path, plot in fields.items()]
+    return rrb.Vertical(*(rrb.Tabs(*views, active_tab=0) for views in stacks.values() if views))
 
 
-def _courses(scene: Scene, axes: _Axes, measured: Collection[str]) -> rrb.Tabs:
-    """Return the plots of what acts on the bearing, and of what follows besides slip, life and loads."""
-    warmth = _temperatures(axes) if scene.uses_ring_temperatures else axes.plot("Oil [°C]", ["/oil/temperature"])
-    return rrb.Tabs(
-        _speeds(axes, MEASURED in measured),
-        axes.plot("Radial load [N]", ["/load/radial"]),
-        warmth,
-        _clearance(scene, axes, MEASURED_CLEARANCE in measured),
-        axes.plot("Plot [W]", [f"/power/{cause}" for cause in causes_of(scene)]),
-        axes.plot("Frequencies [Hz]", [f"/frequency/{each.name}" for each in FREQUENCIES], legend=True),
-        *([axes.plot("Oil [°C]", ["/oil/temperature"])] if scene.uses_ring_temperatures else []),
-        *(_tilts(axes) if scene.bodies_tilt else []),
-        active_tab=0,
-    )
+def _applies(needs: str, present: set[str]) -> bool:
+    return (needs.removeprefix("no ") in present) != needs.startswith("no ")
 
 
-def _speeds(axes: _Axes, has_cage: bool) -> rrb.TimeSeriesView:
-    paths = ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]
-    title = "Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)"
-    if has_cage:
-        title, paths = "Speeds [rpm] (blue: shaft, orange: cage, white: measured)", [*paths, "/speed/cage_measured"]
-    return axes.plot(title, paths)
-
-
-def _slips(scene: Scene, axes: _Axes, has_cage: bool) -> rrb.Tabs:
-    whirl = [axes.plot("e/c [-]", ["/cage/eccentricity"])] if scene.cage_whirls else []
-    title, paths = "Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"]
-    if has_cage:
-        title, paths = (
-            "Cage slip [%] (blue: predicted, white: measured)",
-            ["/slip/warning", "/slip/error", "/slip/measured", "/slip/cage"],
-        )
-    if scene.estimation.bands:
-        title, paths = f"{title[:-1]}, shaded: 5 to 95 %)", ["/slip/band", *paths]
-    pocket = axes.plot("Pocket [N]", ["/loads/pocket_warning", "/loads/pocket_error", "/loads/pocket_largest"])
-    return rrb.Tabs(axes.plot(title, paths), pocket, *whirl, active_tab=0)
-
-
-def _rollers(scene: Scene, axes: _Axes) -> list[rrb.TimeSeriesView]:
-    """Return the plots with a line for each roller's slip and spin, coloured around the bearing; level ``steady`` computes neither."""
-    if scene.level == "steady":
-        return []
-    return [
-        axes.plot("Slip of each roller on inner ring [m/s]", ["/rollers/inner_sliding"]),
-        axes.plot("Outer [m/s]", ["/rollers/outer_sliding"]),
-        axes.plot("Spin [rpm]", ["/rollers/spin"]),
-    ]
-
-
-def _loads(scene: Scene, axes: _Axes) -> rrb.Tabs:
-    places = ("inner", "outer", "inner_edge", "outer_edge")
-    pressure = [axes.plot("Pressure [MPa]", [f"/pressure/{place}" for place in places])] if scene.bodies_tilt else []
-    return rrb.Tabs(
-        axes.plot("Largest roller load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
-        *_rollers(scene, axes),
-        axes.plot("Inner [N]", ["/loads/each/inner"]),
-        axes.plot("Outer [N]", ["/loads/each/outer"]),
-        axes.plot("Pockets [N]", ["/loads/each/pocket"]),
-        *pressure,
-        active_tab=0,
-    )
-
-
-def _lives(scene: Scene, axes: _Axes) -> rrb.Tabs:
-    """Return the plot of the life by the scene's method, that of another standard, and the modified one where the scene wants it.
-
-    Where there are bands, the remaining life has a plot, too.
-    """
+def _filled(row: dict[str, str], scene: Scene, present: set[str]) -> tuple[str, list[str], str]:
+    """Return title, series and kind of axis of a plot in ``plots.csv``."""
     basic, modified = scene.life.symbols
-    other = compared_life(scene)
-    shown = [f"green {basic}", f"white {LIFE_SYMBOLS[other]}"]
-    paths = ["/life/warning", "/life/error", f"/life/{other}_log10_hours", "/life/log10_hours"]
-    if not scene.life.is_basic:
-        paths, shown = [*paths, "/life/modified_log10_hours"], [*shown, f"purple {modified}"]
-    used = axes.plot("Life used [ppm]", ["/damage/ppm"])
-    if not scene.estimation.bands:
-        return rrb.Tabs(axes.plot(f"Lives, log10 of hours ({', '.join(shown)})", paths, from_zero=False), used, active_tab=0)
-    shaded = f"shaded: 5 to 95 %){without_dimensions(one.field for one in ranges_of(scene))}"
-    lives = axes.plot(f"Lives, log10 of hours ({', '.join(shown)}, {shaded}", ["/life/band", *paths], from_zero=False)
-    remaining = axes.plot(f"Remaining life, log10 of hours ({shaded}", [REMAINING_LIFE.path, REMAINING_LIFE.line], from_zero=False)
-    return rrb.Tabs(lives, remaining, used, active_tab=0)
-
-
-def _tilts(axes: _Axes) -> list[rrb.TimeSeriesView]:
-    return [
-        axes.plot("Roller tilt [mrad]", ["/tilt/each/tilt"]),
-        axes.plot("Roller skew [mrad]", ["/tilt/each/skew"]),
-        axes.plot("Ring [mrad]: blue y, orange z", ["/tilt/ring_y", "/tilt/ring_z"]),
-        axes.plot("Cage [mrad]", ["/tilt/cage_y", "/tilt/cage_z"]),
-    ]
+    has_bands = "bands" in present
+    title = row["title"].format(
+        basic=basic,
+        compared=LIFE_SYMBOLS[compared_life(scene)],
+        modified=f", purple {modified}" if "modified_life" in present else "",
+        shaded=", shaded: 5 to 95 %" if has_bands else "",
+        dimensions=without_dimensions(one.field for one in ranges_of(scene)) if has_bands else "",
+    )
+    return title, [path for path in row["series"].split() if path not in SERIES or SERIES[path].needs in present], row["axis"]
 
 
 def _right(axes: _Axes) -> rrb.Vertical:
     texts = rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About"), active_tab=0)
     lanes = rrb.StateTimelineView(origin="/", contents=["/regime", "/level"], name="Regime by the slip's thresholds, level", time_view=axes.time)
     return rrb.Vertical(texts, rrb.Tabs(log_view(), lanes, active_tab=0), row_shares=[0.7, 0.3])
-
-
-def _clearance(scene: Scene, axes: _Axes, is_measured: bool) -> rrb.TimeSeriesView:
-    paths = ["/clearance/band"] if scene.estimation.bands else []
-    paths += ["/clearance/warning", "/clearance/error", *(f"/clearance/{part}" for part in reversed(CLEARANCES))]
-    shown = "white running, grey initial, orange fits, blue rotation, purple heat, green contour"
-    if is_measured:
-        paths, shown = [*paths, "/clearance/measured"], f"lime measured, {shown}"
-    return axes.plot(f"Clearance [µm]: {shown}", paths)
-
-
-def _temperatures(axes: _Axes) -> rrb.TimeSeriesView:
-    paths = [f"/temperature/{body}" for body in BODIES] + [f"/temperature/{ring}_measured" for ring in RING_TEMPERATURES]
-    return axes.plot("Temperatures [°C]: blue inner, red outer ring, yellow rollers, white measured", paths, from_zero=False)

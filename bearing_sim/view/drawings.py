@@ -5,24 +5,36 @@ Each drawing logs its still parts once and its moving parts frame by frame; `bea
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import rerun as rr
 
-from bearing_sim.messages.topics import ZERO_CELSIUS
-from bearing_sim.scene.display import force, quantity_text
+from bearing_sim.scene.display import force, quantity_text, shown
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import colours, section
-from bearing_sim.view.section import MILLIMETRE, picture, polar
+from bearing_sim.view.plots import LINES, Series, below, features, table
+from bearing_sim.view.section import MILLIMETRE, picture, places, polar
 
+_STEPS = 64  # of the colours in a legend
 SECTION_ROOT = "/section"
 LOAD_ARROW_FACTOR = 2.0  # the radial load's arrow is longer than the contacts' by this, within what the bore has room for
 FIRST_POCKET_SCALE = 20.0  # N; grows by itself when exceeded
 _CONTOUR_TURN = np.linspace(0.0, 2 * math.pi, section.CONTOUR_POINTS)
 
 
+def _style(row: dict[str, str]) -> dict[str, object]:
+    given = {"colors": getattr(colours, row["colour"], None)} | {
+        name: float(row[column]) if row[column] else None for name, column in (("radii", "radius"), ("draw_order", "order"))
+    }
+    return {name: value for name, value in given.items() if value is not None}
+
+
+_PARTS = {(row["drawing"], row["part"]): (getattr(rr, row["archetype"]), _style(row)) for row in table("drawings")}
+
+
 class _Drawing:
-    """What is drawn below one entity path.
+    """What is drawn below one entity path, of the parts that ``drawings.csv`` has for ``_name``.
 
     Parameters
     ----------
@@ -30,14 +42,39 @@ class _Drawing:
     root : the entity path.
     """
 
+    _name: str
+
     def __init__(self, recording: rr.RecordingStream, root: str):
         self._recording, self._root = recording, root
+        self._styled: set[str] = set()  # the parts whose style is logged
 
-    def _log(self, path: str, what) -> None:
-        self._recording.log(f"{self._root}/{path}", what)
+    def _log(self, part: str, static: bool = False, **fields) -> None:
+        """Log fields of a part; the first time its style, too, which it keeps."""
+        path, (kind, style) = f"{self._root}/{part}".rstrip("/"), _PARTS[self._name, part]
+        if part not in self._styled:
+            self._styled.add(part)
+            if static:
+                fields = style | fields
+            elif style:
+                self._recording.log(path, kind.from_fields(**style), static=True)
+        self._recording.log(path, kind.from_fields(**fields), static=static)
 
-    def _still(self, path: str, what) -> None:
-        self._recording.log(f"{self._root}/{path}".rstrip("/"), what, static=True)
+    def _still(self, part: str, **fields) -> None:
+        self._log(part, static=True, **fields)
+
+    def _place(self, part: str, centres, turns: np.ndarray | None) -> None:
+        """Log where the instances of a solid part are, and how they are turned."""
+        self._recording.log(f"{self._root}/{part}", rr.InstancePoses3D(translations=centres, quaternions=turns))
+
+    def _draw_scale(self, ends: tuple[float, float], level: float, radius: float, palette: np.ndarray) -> None:
+        """Draw a strip of colours across the picture between two places, at a level that counts downwards."""
+        edges = np.linspace(*ends, len(palette) + 1)
+        strips = np.stack((places(edges[:-1], level), places(edges[1:], level)), axis=1)
+        self._log("legend/map", strips=strips, radii=radius, colors=palette)
+
+    def _write(self, path: str, positions, texts: Sequence[str], static: bool = False) -> None:
+        """Write texts just below picture points."""
+        self._recording.log(f"{self._root}/{path}", labels(positions, texts), static=static)
 
 
 class SectionDrawing(_Drawing):
@@ -49,6 +86,8 @@ class SectionDrawing(_Drawing):
     scene : the scene that holds the bearing.
     load_scale : load [N] at the upper end of the colour map and of the arrows; grows by itself when exceeded.
     """
+
+    _name = "section"
 
     def __init__(self, recording: rr.RecordingStream, scene: Scene, load_scale: float):
         super().__init__(recording, SECTION_ROOT)
@@ -68,13 +107,13 @@ class SectionDrawing(_Drawing):
         contour = section.drawn_contour(bearing, self.factor, _CONTOUR_TURN)
         body = np.stack((polar(contour, _CONTOUR_TURN), polar(outside, _CONTOUR_TURN)), axis=1)
         half_width = 1.1 * math.pi * outside / len(_CONTOUR_TURN)  # a bit more than half the distance: the strips close up
-        self._still("outer_ring/body", rr.LineStrips2D(body, radii=half_width, colors=colours.DARK_STEEL, draw_order=-5.0))
-        self._still("outer_ring/surface", rr.LineStrips2D([polar(outside, _CONTOUR_TURN)], radii=0.1, colors=colours.STEEL, draw_order=-4.0))
-        self._still("outer_ring/raceway", rr.LineStrips2D([polar(contour, _CONTOUR_TURN)], radii=0.22, colors=colours.VERMILION, draw_order=8.0))
+        self._still("outer_ring/body", strips=body, radii=half_width)
+        self._still("outer_ring/surface", strips=[polar(outside, _CONTOUR_TURN)])
+        self._still("outer_ring/raceway", strips=[polar(contour, _CONTOUR_TURN)])
         round_radius = section.ideal_outer_radius(bearing) / MILLIMETRE
-        self._still("outer_ring/round_reference", rr.LineStrips2D(_dashes(round_radius, 120), radii=0.06, colors=colours.GREY, draw_order=7.0))
+        self._still("outer_ring/round_reference", strips=_dashes(round_radius, 120))
         if self._guide is not None and self._guiding_ring == "outer_ring":
-            self._still("outer_ring/guide_land", rr.LineStrips2D(_dashes(self._guide, 240), radii=0.08, colors=colours.GREEN, draw_order=-2.0))
+            self._still("outer_ring/guide_land", strips=_dashes(self._guide, 240))
         self._draw_axes()
         self._style_moving_parts()
 
@@ -84,81 +123,67 @@ class SectionDrawing(_Drawing):
         raceway = bearing.inner_raceway.radius / MILLIMETRE
         width = 0.35 * bearing.roller.diameter / MILLIMETRE
         ring = {"half_sizes": [[raceway - width / 2] * 2, [raceway - 0.1] * 2], "line_radii": [width / 2, 0.2]}
-        self._still("inner_ring/body", rr.Ellipses2D.from_fields(**ring, colors=[colours.DARK_STEEL, colours.BLUE], draw_order=0.0))
-        self._still("inner_ring/shaft_mark", rr.LineStrips2D.from_fields(radii=0.45, colors=colours.BLUE, draw_order=2.0))
-        cage = bearing.cage
-        rims = [cage.bore / MILLIMETRE, cage.outside / MILLIMETRE]
-        sizes = [[rim, rim] for rim in rims]
-        self._still("cage/rims", rr.Ellipses2D.from_fields(half_sizes=sizes, line_radii=0.12, colors=colours.DARK_BRONZE, draw_order=-1.0))
-        if self._guiding_ring == "inner_ring":
-            self._still("inner_ring/guide_land", rr.LineStrips2D.from_fields(radii=0.08, colors=colours.GREEN, draw_order=1.0))
+        self._still("inner_ring/body", **ring, colors=[colours.DARK_STEEL, colours.BLUE])
+        rims = np.array([bearing.cage.bore, bearing.cage.outside]) / MILLIMETRE
+        self._still("cage/rims", half_sizes=places(rims, rims), line_radii=0.12)
         bars = _bar_colours(bearing.roller.count)
-        self._still("cage/bars", rr.LineStrips2D.from_fields(radii=section.cage_bar_stroke(bearing), colors=bars, draw_order=3.0))
-        self._still("rollers", rr.Points2D.from_fields(radii=bearing.roller.diameter / 2 / MILLIMETRE, draw_order=5.0))
-        self._still("spin_marks", rr.LineStrips2D.from_fields(radii=0.22, colors=colours.WHITE, draw_order=6.0))
-        self._still("forces/inner", rr.Arrows2D.from_fields(radii=0.22, draw_order=9.0))
-        self._still("forces/outer", rr.Arrows2D.from_fields(radii=0.22, colors=colours.VERMILION, draw_order=9.0))
-        self._still("forces/pocket", rr.Arrows2D.from_fields(radii=0.22, colors=colours.PURPLE, draw_order=9.5))
-        self._still("forces/radial_load", rr.Arrows2D.from_fields(radii=0.5, colors=colours.YELLOW, draw_order=10.0))
+        self._still("cage/bars", radii=section.cage_bar_stroke(bearing), colors=bars)
+        self._still("rollers", radii=bearing.roller.diameter / 2 / MILLIMETRE)
 
     def draw(self, sample: np.void) -> None:
         """Draw the moving parts of one sample at the recording's current time."""
         largest = max(_largest(sample["inner_load"]), _largest(sample["outer_load"]))
-        if largest > 1.05 * self.load_scale:
-            self.load_scale = section.round_up(largest)
+        self.load_scale = _grown(self.load_scale, largest)
         if self.load_scale != self._legend_scale:
             self._draw_legend()
         self._draw_inner_ring(sample)
         cage = section.cage_displacement(self._cage_factor, sample)
-        self._log("cage/rims", rr.Ellipses2D.from_fields(centers=np.tile(picture(*cage), (2, 1))))
+        self._log("cage/rims", centers=np.tile(picture(*cage), (2, 1)))
         bars = section.cage_bars(self._bearing, sample["cage_angle"], cage)
-        self._log("cage/bars", rr.LineStrips2D.from_fields(strips=bars))
+        self._log("cage/bars", strips=bars)
         fill = colours.load_colours(sample["inner_load"], self.load_scale)
         centres = section.roller_centres(self._bearing, self.factor, sample)
-        self._log("rollers", rr.Points2D.from_fields(positions=centres, colors=fill))
-        self._log("spin_marks", rr.LineStrips2D.from_fields(strips=section.spin_marks(self._bearing, centres, sample)))
+        self._log("rollers", positions=centres, colors=fill)
+        self._log("spin_marks", strips=section.spin_marks(self._bearing, centres, sample))
         self._draw_forces(sample, fill)
         self._draw_pocket_forces(sample, centres)
 
     def _draw_inner_ring(self, sample) -> None:
         centre = section.ring_displacement(self.factor, sample)
         raceway = self._bearing.inner_raceway.radius / MILLIMETRE
-        self._log("inner_ring/body", rr.Ellipses2D.from_fields(centers=np.tile(picture(*centre), (2, 1))))
+        self._log("inner_ring/body", centers=np.tile(picture(*centre), (2, 1)))
         mark = polar(raceway * np.array([0.84, 1.0]), sample["shaft_angle"], centre)
-        self._log("inner_ring/shaft_mark", rr.LineStrips2D.from_fields(strips=mark[None]))
+        self._log("inner_ring/shaft_mark", strips=mark[None])
         if self._guiding_ring == "inner_ring":
             land = _dashes(self._guide, 240, section.land_displacement(self._bearing, self._cage_factor, sample))
-            self._log("inner_ring/guide_land", rr.LineStrips2D.from_fields(strips=land))
+            self._log("inner_ring/guide_land", strips=land)
 
     def _draw_forces(self, sample, fill: np.ndarray) -> None:
         per_newton = self._arrow / self.load_scale
         origins_i, vectors_i, origins_e, vectors_e = section.load_arrows(self._bearing, self.factor, sample, per_newton)
-        self._log("forces/inner", rr.Arrows2D.from_fields(origins=origins_i, vectors=vectors_i, colors=fill))
-        self._log("forces/outer", rr.Arrows2D.from_fields(origins=origins_e, vectors=vectors_e))
+        self._log("forces/inner", origins=origins_i, vectors=vectors_i, colors=fill)
+        self._log("forces/outer", origins=origins_e, vectors=vectors_e)
         load = math.hypot(sample["load_y"], sample["load_z"])
         length = min(max(LOAD_ARROW_FACTOR * load * per_newton, 0.12 * self._bore), 0.42 * self._bore) if load > 0 else 0.0
         vector = polar(length, math.atan2(sample["load_z"], sample["load_y"]))
-        self._log("forces/radial_load", rr.Arrows2D.from_fields(origins=np.zeros((1, 2)), vectors=vector[None]))
+        self._log("forces/radial_load", origins=np.zeros((1, 2)), vectors=vector[None])
         beside = picture(0.25 * self._bore, (0.25 if sample["load_z"] <= 0 else -0.05) * self._bore)  # where the arrow is not
-        self._log("forces/radial_load_text", labels([beside], [f"radial load {quantity_text('radial_load', load)}"]))
+        self._write("forces/radial_load_text", [beside], [f"radial load {quantity_text('radial_load', load)}"])
 
     def _draw_pocket_forces(self, sample, centres: np.ndarray) -> None:
         largest = _largest(np.abs(sample["pocket_force"]))
-        if largest > 1.05 * self._pocket_scale:
-            self._pocket_scale = section.round_up(largest)
+        self._pocket_scale = _grown(self._pocket_scale, largest)
         if self._pocket_scale != self._pocket_legend_scale:
             self._draw_pocket_legend()
         vectors = section.pocket_arrows(sample, self._pocket_length / self._pocket_scale)
-        self._log("forces/pocket", rr.Arrows2D.from_fields(origins=centres, vectors=vectors))
+        self._log("forces/pocket", origins=centres, vectors=vectors)
 
     def _draw_pocket_legend(self) -> None:
         self._pocket_legend_scale = self._pocket_scale
         level, start = -0.77 * self._bore, -0.55 * self._bore
         arrow = picture(self._pocket_length, 0.0)
-        self._log("legend/pocket", rr.Arrows2D(origins=[picture(start, level)], vectors=[arrow], radii=0.22, colors=colours.PURPLE))
-        self._log(
-            "legend/pocket_text", labels([picture(0.15 * self._bore, level + 0.11 * self._bore)], [f"pocket force {force(self._pocket_scale)}"])
-        )
+        self._log("legend/pocket", origins=[picture(start, level)], vectors=[arrow])
+        self._write("legend/pocket_text", [picture(0.15 * self._bore, level + 0.11 * self._bore)], [f"pocket force {force(self._pocket_scale)}"])
 
     @property
     def _pocket_length(self) -> float:
@@ -168,9 +193,8 @@ class SectionDrawing(_Drawing):
     def _draw_axes(self) -> None:
         unit = self._bore
         origin, vectors = picture(-0.6 * unit, 0.42 * unit), [picture(0.2 * unit, 0.0), picture(0.0, 0.2 * unit)]
-        self._still("axes/arrows", rr.Arrows2D(origins=[origin, origin], vectors=vectors, radii=0.2, colors=colours.WHITE))
-        places = [picture(-0.28 * unit, 0.52 * unit), picture(-0.6 * unit, 0.84 * unit)]
-        self._still("axes/names", labels(places, ["Y", "Z"]))
+        self._still("axes/arrows", origins=[origin, origin], vectors=vectors)
+        self._write("axes/names", [picture(-0.28 * unit, 0.52 * unit), picture(-0.6 * unit, 0.84 * unit)], ["Y", "Z"], static=True)
 
     @property
     def _bore(self) -> float:
@@ -184,11 +208,9 @@ class SectionDrawing(_Drawing):
 
     def _draw_legend(self) -> None:
         self._legend_scale = self.load_scale
-        unit, steps = self._bore, 64
-        edges, level = np.linspace(-0.45 * unit, 0.45 * unit, steps + 1), -0.36 * unit
-        strips = np.stack((picture(edges[:-1], level), picture(edges[1:], level)), axis=1)
-        self._log("legend/map", rr.LineStrips2D(strips, radii=0.03 * unit, colors=colours.load_palette(steps)))
-        self._log("legend/title", labels([picture(0.0, level - 0.05 * unit)], [f"roller load 0 to {force(self.load_scale)}"]))
+        unit, level = self._bore, -0.36 * self._bore
+        self._draw_scale((-0.45 * unit, 0.45 * unit), -level, 0.03 * unit, colours.load_palette(_STEPS))
+        self._write("legend/title", [picture(0.0, level - 0.05 * unit)], [f"roller load 0 to {force(self.load_scale)}"])
 
 
 def _bar_colours(count: int) -> np.ndarray:
@@ -198,14 +220,19 @@ def _bar_colours(count: int) -> np.ndarray:
     return bars
 
 
+def _grown(scale: float, largest: float) -> float:
+    """Return the full scale of a load, larger where the largest one exceeds it."""
+    return section.round_up(largest) if largest > 1.05 * scale else scale
+
+
 def _largest(loads: np.ndarray) -> float:
     return float(np.nan_to_num(loads).max())
 
 
-def labels(places, texts: list[str]) -> rr.Arrows2D:
+def labels(positions, texts: Sequence[str]) -> rr.Arrows2D:
     """Return texts just below picture points: arrows of no length, because points and boxes of no size leave a dot."""
     return rr.Arrows2D(
-        origins=places, vectors=np.zeros((len(texts), 2)), radii=0.0, colors=colours.WHITE, labels=texts, show_labels=True, draw_order=20.0
+        origins=positions, vectors=np.zeros((len(texts), 2)), radii=0.0, colors=colours.WHITE, labels=texts, show_labels=True, draw_order=20.0
     )
 
 
@@ -230,6 +257,8 @@ class SolidDrawing(_Drawing):
     scene : the scene that holds the bearing.
     """
 
+    _name = "solid"
+
     def __init__(self, recording: rr.RecordingStream, scene: Scene):
         super().__init__(recording, SOLID_ROOT)
         self._bearing = scene.bearing
@@ -242,54 +271,53 @@ class SolidDrawing(_Drawing):
     def draw_still_parts(self) -> None:
         """Draw the outer raceway, and what the moving parts keep."""
         bearing, half = self._bearing, self._half_length
-        self._still("", rr.Transform3D(mat3x3=_TO_BEARING_FRAME))
+        self._still("", mat3x3=_TO_BEARING_FRAME)
         contour = section.drawn_contour(bearing, self._factor, _TURN)
         ends = [_ring(contour, _TURN, end) for end in (-1.2 * half, 1.2 * half)]
-        self._still("outer_ring/raceway", rr.LineStrips3D(ends, radii=0.25, colors=colours.VERMILION))
+        self._still("outer_ring/raceway", strips=ends)
         generators = np.stack((ends[0][::5], ends[1][::5]), axis=1)
-        self._still("outer_ring/generators", rr.LineStrips3D(generators, radii=0.06, colors=colours.STEEL))
+        self._still("outer_ring/generators", strips=generators)
         roller, count = bearing.roller, bearing.roller.count
-        rollers = rr.Cylinders3D(
-            lengths=np.full(count, 2 * half), radii=np.full(count, roller.diameter / 2 / MILLIMETRE), fill_mode=rr.components.FillMode.Solid
+        self._still(
+            "rollers",
+            lengths=np.full(count, 2 * half),
+            radii=np.full(count, roller.diameter / 2 / MILLIMETRE),
+            fill_mode=rr.components.FillMode.Solid,
         )
-        self._still("rollers", rollers)
         ring = bearing.inner_raceway.radius / MILLIMETRE
-        self._still("inner_ring/body", _band(0.6 * ring, ring, 1.2 * half))
-        self._still("inner_ring/shaft_mark", rr.LineStrips3D.from_fields(radii=0.5, colors=colours.BLUE))
+        self._still("inner_ring/body", **_band(0.6 * ring, ring, 1.2 * half), albedo_factor=colours.STEEL)
         if self._tilts:
             self._write_factors()
-        self._still("cage/bars", rr.LineStrips3D.from_fields(radii=0.6 * section.cage_bar_stroke(bearing), colors=_bar_colours(count)))
+        self._still("cage/bars", radii=0.6 * section.cage_bar_stroke(bearing), colors=_bar_colours(count))
 
     def _write_factors(self) -> None:
         """Write under the bearing by what tilts and skews are drawn; the tab's title has no room for it."""
         text = f"tilt of ring and rollers x{self._tilt_factor}, skew x{self._skew_factor}, tilt of cage x{self._cage_factor}"
         below = [[0.0, -1.35 * self._bearing.outer_raceway.low_radius / MILLIMETRE, 0.0]]
         # an arrow of no length: a point of no size would leave a dot
-        self._still(
-            "factors", rr.Arrows3D(origins=below, vectors=[[0.0, 0.0, 0.0]], radii=0.0, colors=colours.WHITE, labels=[text], show_labels=True)
-        )
+        self._still("factors", origins=below, vectors=[[0.0, 0.0, 0.0]], labels=[text], show_labels=True)
 
     def draw(self, sample: np.void, load_scale: float) -> None:
         """Draw the moving parts of one sample, loads coloured up to ``load_scale`` [N]."""
         bearing, half = self._bearing, self._half_length
         radius = (bearing.pitch_radius + self._factor * (sample["roller_radius"] - bearing.pitch_radius)) / MILLIMETRE
-        self._log("rollers", rr.InstancePoses3D(translations=_ring(radius, sample["roller_angle"], 0.0), quaternions=self._roller_turns(sample)))
-        self._log("rollers", rr.Cylinders3D.from_fields(colors=colours.load_colours(sample["inner_load"], load_scale)))
+        self._place("rollers", _ring(radius, sample["roller_angle"], 0.0), self._roller_turns(sample))
+        self._log("rollers", colors=colours.load_colours(sample["inner_load"], load_scale))
         y, z = section.ring_displacement(self._factor, sample)
         ring_tilt, cage_tilt = self._tilt_factor * _lean(sample, "ring"), self._cage_factor * _lean(sample, "cage")
         turns = section.leaning(*ring_tilt)[None] if self._tilts else None
-        self._log("inner_ring/body", rr.InstancePoses3D(translations=[[y, z, 0.0]], quaternions=turns))
+        self._place("inner_ring/body", [[y, z, 0.0]], turns)
         mark = _ring(bearing.inner_raceway.radius / MILLIMETRE * np.array([0.6, 1.0]), sample["shaft_angle"], 1.22 * half)
         mark[:, 2] -= mark[:, :2] @ ring_tilt
         mark += [y + 1.22 * half * ring_tilt[0], z + 1.22 * half * ring_tilt[1], 0.0]
-        self._log("inner_ring/shaft_mark", rr.LineStrips3D.from_fields(strips=mark[None]))
+        self._log("inner_ring/shaft_mark", strips=mark[None])
         middle = (bearing.cage.bore + bearing.cage.outside) / 2 / MILLIMETRE
         azimuth = sample["cage_angle"] + (np.arange(bearing.roller.count) - 0.5) * 2 * math.pi / bearing.roller.count
         cage = [*section.cage_displacement(self._cage_factor, sample), 0.0]
         leant = np.array([*cage_tilt, 0.0])
         bars = np.stack([_ring(middle, azimuth, end) + cage + end * leant for end in (-1.1 * half, 1.1 * half)], axis=1)
         bars[..., 2] -= bars @ leant
-        self._log("cage/bars", rr.LineStrips3D.from_fields(strips=bars))
+        self._log("cage/bars", strips=bars)
 
     def _roller_turns(self, sample) -> np.ndarray | None:
         if not self._tilts:
@@ -304,8 +332,8 @@ def _lean(sample, body: str) -> np.ndarray:
     return np.nan_to_num([float(sample[f"{body}_tilt_{axis}"]) for axis in "yz"])
 
 
-def _band(inner: float, outer: float, half_length: float) -> rr.Mesh3D:
-    """Return a ring of rectangular section about the shaft's axis."""
+def _band(inner: float, outer: float, half_length: float) -> dict[str, np.ndarray]:
+    """Return the mesh of a ring of rectangular section about the shaft's axis, by the names of `rerun.Mesh3D`."""
     corners = [(inner, -half_length), (outer, -half_length), (outer, half_length), (inner, half_length)]
     count, faces = len(_TURN), []
     vertices = [_ring(radius, _TURN, height) for first, second in zip(corners, corners[1:] + corners[:1]) for radius, height in (first, second)]
@@ -314,12 +342,8 @@ def _band(inner: float, outer: float, half_length: float) -> rr.Mesh3D:
         b = a + count
         faces += [np.stack((a, a + 1, b), axis=1), np.stack((b, a + 1, b + 1), axis=1)]
     normals = [_side_normals(first, second) for first, second in zip(corners, corners[1:] + corners[:1]) for _ in range(2)]
-    return rr.Mesh3D(
-        vertex_positions=np.concatenate(vertices),
-        vertex_normals=np.concatenate(normals),
-        triangle_indices=np.concatenate(faces),
-        albedo_factor=colours.STEEL,
-    )
+    arrays = {"vertex_positions": vertices, "vertex_normals": normals, "triangle_indices": faces}
+    return {name: np.concatenate(parts) for name, parts in arrays.items()}
 
 
 def _side_normals(first: tuple[float, float], second: tuple[float, float]) -> np.ndarray:
@@ -383,6 +407,8 @@ class CageDrawing(_Drawing):
     scene : the scene that holds the cage.
     """
 
+    _name = "orbit"
+
     def __init__(self, recording: rr.RecordingStream, scene: Scene):
         super().__init__(recording, ORBIT_ROOT)
         self._guidance = scene.bearing.cage.guidance
@@ -393,13 +419,13 @@ class CageDrawing(_Drawing):
     def draw_still_parts(self) -> None:
         """Draw the clearance, the axes, and what the moving parts keep."""
         reach = self._clearance
-        self._still("clearance", rr.LineStrips2D([polar(reach, _TURN)], radii=0.008 * reach, colors=colours.GREEN, draw_order=-1.0))
+        self._still("clearance", strips=[polar(reach, _TURN)], radii=0.008 * reach)
         cross = [picture(np.array([-reach, reach]), 0.0), picture(0.0, np.array([-reach, reach]))]
-        self._still("axes", rr.LineStrips2D(cross, radii=0.004 * reach, colors=colours.STEEL, draw_order=-5.0))
-        self._still("names", labels([picture(1.16 * reach, 0.09 * reach), picture(0.0, 1.26 * reach)], ["Y", "Z"]))
-        self._still("path/dots", rr.Points2D.from_fields(radii=0.026 * reach, draw_order=2.0))
-        self._still("path/line", rr.LineStrips2D.from_fields(radii=0.008 * reach, draw_order=1.0))
-        self._still("centre", rr.Points2D.from_fields(radii=0.05 * reach, colors=colours.ORANGE, draw_order=5.0))
+        self._still("axes", strips=cross, radii=0.004 * reach)
+        self._write("names", [picture(1.16 * reach, 0.09 * reach), picture(0.0, 1.26 * reach)], ["Y", "Z"], static=True)
+        self._still("path/dots", radii=0.026 * reach)
+        self._still("path/line", radii=0.008 * reach)
+        self._still("centre", radii=0.05 * reach)
 
     def add(self, block: np.ndarray) -> None:
         """Add samples to the path, whether they are drawn or not."""
@@ -413,15 +439,15 @@ class CageDrawing(_Drawing):
         dense = self._path.is_dense()
         if dense or self._line_drawn:
             strips = np.stack((points[:-1], points[1:]), axis=1) if dense else np.empty((0, 2, 2))
-            self._log("path/line", rr.LineStrips2D.from_fields(strips=strips, colors=fade[1:] if dense else fade[:0]))
+            self._log("path/line", strips=strips, colors=fade[1:] if dense else fade[:0])
         if not dense or not self._line_drawn:
-            self._log("path/dots", rr.Points2D.from_fields(positions=points[:0] if dense else points, colors=fade[:0] if dense else fade))
+            self._log("path/dots", positions=points[:0] if dense else points, colors=fade[:0] if dense else fade)
         self._line_drawn = dense
         y, z = (float(position) / _MICROMETRE for position in eccentricity(self._guidance, sample))
         known = math.isfinite(y) and math.isfinite(z)
-        self._log("centre", rr.Points2D.from_fields(positions=[picture(y, z)] if known else np.empty((0, 2))))
+        self._log("centre", positions=[picture(y, z)] if known else np.empty((0, 2)))
         text = f"e/c = {sample['land_eccentricity']:.3f}, c = {self._clearance:g} µm" if known else "not recorded"
-        self._log("text", labels([picture(0.0, -1.1 * self._clearance)], [text]))
+        self._write("text", [picture(0.0, -1.1 * self._clearance)], [text])
 
 
 def _faded(count: int) -> np.ndarray:
@@ -432,32 +458,11 @@ def _faded(count: int) -> np.ndarray:
 
 POWER_ROOT = "/power_now"
 SAMPLES = 20  # that the bars are means of
-CAUSES = {
-    "shaft": ("in: shaft", colours.WHITE),
-    "inner_sliding": ("inner sliding", colours.BLUE),
-    "outer_sliding": ("outer sliding", colours.VERMILION),
-    "inner_rolling": ("inner rolling", colours.DARK_BLUE),
-    "outer_rolling": ("outer rolling", colours.DARK_VERMILION),
-    "churning": ("churning", colours.GREEN),
-    "windage": ("cage windage", colours.GREY),
-    "land": ("guide land", colours.ORANGE),
-    "pocket": ("pockets", colours.PURPLE),
-    "damping": ("damping", colours.YELLOW),
-    "seal": ("seals", colours.LIME),
-    "flange": ("flanges", colours.BRONZE),
-    "support": ("support", colours.SAND),
-}
+CAUSES = below("/power/", "_power")
 """Causes with their names and colours, in the order of the bars; a scene has those of `causes_of`."""
 
 CLEARANCE_ROOT = "/clearance_now"
-CLEARANCES = {
-    "running": ("running", colours.WHITE),
-    "initial": ("initial", colours.GREY),
-    "fit": ("fits", colours.ORANGE),
-    "rotation": ("rotation", colours.BLUE),
-    "heat": ("heat", colours.PURPLE),
-    "contour": ("contour", colours.GREEN),
-}
+CLEARANCES = {part: row for part, row in below("/clearance/", "_clearance").items() if not row.threshold}
 """The running clearance and its parts with their names and colours, in the order of the bars."""
 
 _WIDTH, _PITCH = 100.0, 12.0  # drawn length of the scale, and distance of two bars
@@ -470,17 +475,16 @@ class BarDrawing(_Drawing):
     ----------
     recording : rerun.RecordingStream to draw into; its time is set by the caller.
     root : the entity path.
-    bars : name and colour of each bar, by what it shows.
-    observable : ``observable.format(name)`` is the observable of a bar.
-    factor, unit : from SI to the unit shown.
+    bars : the series whose newest mean each bar shows, all of one unit.
     digits : after the point.
     signed : whether values are as often negative as positive: there is room for bars to the left, too.
     """
 
-    def __init__(self, recording, root: str, bars: dict, observable: str, factor: float, unit: str, digits: int = 0, signed: bool = False):
+    _name = "bars"
+
+    def __init__(self, recording: rr.RecordingStream, root: str, bars: Sequence[Series], digits: int = 0, signed: bool = False):
         super().__init__(recording, root)
-        self._bars, self._observables = bars, [observable.format(name) for name in bars]
-        self._factor, self._unit, self._digits, self._signed = factor, unit, digits, signed
+        self._bars, self._digits, self._signed = bars, digits, signed
         self._scale = 1.0  # in the unit shown
         self._newest = np.empty((0, len(bars)))
         self._levels = _PITCH * np.arange(len(bars))
@@ -488,22 +492,20 @@ class BarDrawing(_Drawing):
     def draw_still_parts(self) -> None:
         """Write the names, and what the bars keep."""
         left = -0.28 * _WIDTH - (_WIDTH if self._signed else 0.0)
-        names = np.stack((np.full(len(self._bars), left), self._levels - 0.42 * _PITCH), axis=1)
-        self._still("names", labels(names, [name for name, _ in self._bars.values()]))
-        style = rr.LineStrips2D.from_fields(colors=[colour for _, colour in self._bars.values()])
-        self._still("bars", style)
+        self._write("names", places(left, self._levels - 0.42 * _PITCH), [bar.name for bar in self._bars], static=True)
+        self._still("bars", colors=[bar.colour for bar in self._bars])
         if self._signed:
             zero = [[0.0, -0.7 * _PITCH], [0.0, (len(self._bars) - 0.3) * _PITCH]]
-            self._still("zero", rr.LineStrips2D([zero], radii=0.15, colors=colours.STEEL, draw_order=-1.0))
+            self._still("zero", strips=[zero])
 
     def add(self, block: np.ndarray) -> None:
         """Add the samples of a block, whether they are drawn or not."""
-        rows = np.stack([block[name][-SAMPLES:] for name in self._observables], axis=1)
+        rows = np.stack([block[bar.observable][-SAMPLES:] for bar in self._bars], axis=1)
         self._newest = np.concatenate((self._newest, rows))[-SAMPLES:]
 
     def draw(self) -> None:
         """Draw the bars at the recording's current time: means of the newest `SAMPLES`."""
-        values = self._factor * self._newest.mean(axis=0)
+        values = np.array([bar.values(mean) for bar, mean in zip(self._bars, self._newest.mean(axis=0))])
         known = np.nan_to_num(values)
         largest = float(np.abs(known).max())
         if largest > 0.0 and not 0.25 * self._scale < largest <= self._scale:
@@ -511,12 +513,12 @@ class BarDrawing(_Drawing):
         ends = _WIDTH * known / self._scale
         radii = np.minimum(0.3 * _PITCH, 0.45 * np.abs(ends))  # the ends of lines are round and stand out by this
         left, right = np.minimum(ends, 0.0) + radii, np.maximum(ends, 0.0) - radii
-        bars = np.stack((np.stack((left, self._levels), axis=1), np.stack((right, self._levels), axis=1)), axis=1)
-        self._log("bars", rr.LineStrips2D.from_fields(strips=bars, radii=radii))
-        places = np.stack((np.full(len(ends), 1.28 * _WIDTH), self._levels - 0.42 * _PITCH), axis=1)
+        bars = np.stack((places(left, self._levels), places(right, self._levels)), axis=1)
+        self._log("bars", strips=bars, radii=radii)
         rounded = np.round(values, self._digits) + 0.0  # no minus before a zero
-        texts = [f"{value:,.{self._digits}f} {self._unit}" if np.isfinite(value) else "unknown" for value in rounded]
-        self._log("values", labels(places, texts))
+        units = [shown(bar.observable).unit for bar in self._bars]
+        texts = [f"{value:,.{self._digits}f} {unit}" if np.isfinite(value) else "unknown" for value, unit in zip(rounded, units)]
+        self._write("values", places(1.28 * _WIDTH, self._levels - 0.42 * _PITCH), texts)
 
 
 def bar_bounds(count: int, signed: bool = False) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -524,34 +526,24 @@ def bar_bounds(count: int, signed: bool = False) -> tuple[tuple[float, float], t
     return (-(1.56 if signed else 0.56) * _WIDTH, (1.62 if signed else 1.46) * _WIDTH), (-0.8 * _PITCH, (count - 0.1) * _PITCH)
 
 
-def causes_of(scene: Scene) -> dict[str, tuple]:
+def causes_of(scene: Scene) -> dict[str, Series]:
     """Return the causes of losses that a scene can have."""
-    absent = {"inner_rolling", "outer_rolling"} if scene.lubricant.rolling_resistance.law == "none" else set()
-    absent |= {"seal"} if scene.bearing.seals.law == "none" else set()
-    absent |= set() if scene.bearing.flanges.present else {"flange"}
-    absent |= set() if scene.support.is_active else {"support"}
-    return {cause: shown for cause, shown in CAUSES.items() if cause not in absent}
+    present = features(scene)
+    return {cause: row for cause, row in CAUSES.items() if row.needs in present}
 
 
 def power_drawing(recording: rr.RecordingStream, scene: Scene) -> BarDrawing:
     """Return the bars of the powers: means, for at an instant the shaft's power is in part stored, in motion and elastic contacts, or given back."""
-    return BarDrawing(recording, POWER_ROOT, causes_of(scene), "{}_power", 1.0, "W")
+    return BarDrawing(recording, POWER_ROOT, [*causes_of(scene).values()])
 
 
 def clearance_drawing(recording: rr.RecordingStream) -> BarDrawing:
     """Return the bars of the running clearance and its parts, which add up to it."""
-    return BarDrawing(recording, CLEARANCE_ROOT, CLEARANCES, "{}_clearance", 1e6, "µm", digits=1, signed=True)
+    return BarDrawing(recording, CLEARANCE_ROOT, [*CLEARANCES.values()], digits=1, signed=True)
 
 
 HEAT_ROOT = "/temperatures"
-BODIES = {
-    "housing": ("housing", "housing_temperature", colours.GREY),
-    "outer_ring": ("outer ring", "outer_ring_temperature", colours.VERMILION),
-    "rollers": ("rollers", "roller_temperature", colours.YELLOW),
-    "inner_ring": ("inner ring", "inner_ring_temperature", colours.BLUE),
-    "shaft": ("shaft", "shaft_temperature", colours.PURPLE),
-    "oil_outlet": ("oil, leaving", "oil_outlet_temperature", colours.GREEN),
-}
+BODIES = below("/temperature/", "_temperature")
 """What has a temperature: name, observable and colour of its line, from the outside to the inside."""
 _NARROWEST = 10.0  # [K] least span of the colours, so that equal temperatures look alike
 
@@ -565,6 +557,8 @@ class HeatDrawing(_Drawing):
     scene : the scene that holds the bearing.
     """
 
+    _name = "temperatures"
+
     def __init__(self, recording: rr.RecordingStream, scene: Scene):
         super().__init__(recording, HEAT_ROOT)
         self._bearing, self._radii = scene.bearing, section.heat_radii(scene.bearing)
@@ -576,33 +570,30 @@ class HeatDrawing(_Drawing):
         """Draw what the moving parts keep: bodies to scale, except for the housing."""
         spans = np.array([self._radii[name] for name in self._round])
         middle, half = spans.mean(axis=1), 0.5 * np.diff(spans, axis=1)[:, 0]
-        self._still("bodies", rr.Ellipses2D.from_fields(half_sizes=np.stack((middle, middle), axis=1), line_radii=half, draw_order=0.0))
+        self._still("bodies", half_sizes=places(middle, middle), line_radii=half)
         edges = spans[:, 1]
-        self._still("edges", rr.Ellipses2D(half_sizes=np.stack((edges, edges), axis=1), line_radii=0.004 * self._edge, colors=colours.STEEL))
+        self._still("edges", half_sizes=places(edges, edges), line_radii=0.004 * self._edge)
         circle, radius = self._radii["rollers"]
         azimuth = 2 * math.pi * np.arange(self._bearing.roller.count) / self._bearing.roller.count
-        self._still("rollers", rr.Points2D.from_fields(positions=polar(circle, azimuth), radii=radius, draw_order=5.0))
+        self._still("rollers", positions=polar(circle, azimuth), radii=radius)
 
     def draw(self, sample: np.void) -> None:
         """Draw the temperatures of one sample at the recording's current time."""
-        kelvin = {name: float(sample[observable]) for name, (_, observable, _) in BODIES.items()}
-        celsius = {name: value - ZERO_CELSIUS for name, value in kelvin.items()}
+        celsius = {name: float(row.values(sample[row.observable])) for name, row in BODIES.items()}
         self._widen([value for value in celsius.values() if math.isfinite(value)])
         colour = {name: colours.heat_colours(np.array([value]), self._drawn_scale)[0] for name, value in celsius.items()}
-        self._log("bodies", rr.Ellipses2D.from_fields(colors=np.array([colour[name] for name in self._round])))
-        self._log("rollers", rr.Points2D.from_fields(colors=colour["rollers"][None]))
+        self._log("bodies", colors=np.array([colour[name] for name in self._round]))
+        self._log("rollers", colors=colour["rollers"][None])
         rows = -0.78 * self._edge + 0.24 * self._edge * np.arange(len(BODIES))
-        self._log(
-            "keys", rr.Points2D(np.stack((np.full(len(rows), 1.35 * self._edge), rows), axis=1), radii=0.08 * self._edge, colors=[*colour.values()])
-        )
-        texts = [f"{label} {_celsius(celsius[name])}{self._measured(sample, name)}" for name, (label, _, _) in BODIES.items()]
-        self._log("texts", labels(np.stack((np.full(len(rows), 2.25 * self._edge), rows - 0.09 * self._edge), axis=1), texts))
+        self._log("keys", positions=places(1.35 * self._edge, rows), radii=0.08 * self._edge, colors=[*colour.values()])
+        texts = [f"{row.name} {_celsius(celsius[name])}{self._measured(sample, row)}" for name, row in BODIES.items()]
+        self._write("texts", places(2.25 * self._edge, rows - 0.09 * self._edge), texts)
 
     @staticmethod
-    def _measured(sample: np.void, name: str) -> str:
-        observable = f"{name}_temperature_measured"
-        known = observable in sample.dtype.names and math.isfinite(sample[observable])
-        return f", measured {_celsius(float(sample[observable]) - ZERO_CELSIUS)}" if known else ""
+    def _measured(sample: np.void, body: Series) -> str:
+        row = next((row for row in LINES.values() if row.observable == f"{body.observable}_measured"), None)
+        known = row is not None and math.isfinite(sample[row.observable])
+        return f", measured {_celsius(float(row.values(sample[row.observable])))}" if known else ""
 
     @property
     def _drawn_scale(self) -> tuple[float, float]:
@@ -616,15 +607,10 @@ class HeatDrawing(_Drawing):
         low = 5.0 * math.floor(low / 5.0)
         high = max(5.0 * math.ceil(high / 5.0), low + _NARROWEST)
         self._scale = (low, high)
-        steps, level = 64, 0.78 * self._edge
-        places = np.linspace(1.3 * self._edge, 2.9 * self._edge, steps + 1)
-        strips = np.stack((np.stack((places[:-1], np.full(steps, level)), axis=1), np.stack((places[1:], np.full(steps, level)), axis=1)), axis=1)
-        self._log("legend/map", rr.LineStrips2D(strips, radii=0.05 * self._edge, colors=colours.heat_palette(steps)))
+        level, ends = 0.78 * self._edge, (1.3 * self._edge, 2.9 * self._edge)
+        self._draw_scale(ends, level, 0.05 * self._edge, colours.heat_palette(_STEPS))
         ticks = np.linspace(low, high, 3)
-        across = np.linspace(places[0], places[-1], len(ticks))
-        self._log(
-            "legend/ticks", labels(np.stack((across, np.full(len(ticks), level + 0.06 * self._edge)), axis=1), [_celsius(tick, 0) for tick in ticks])
-        )
+        self._write("legend/ticks", places(np.linspace(*ends, len(ticks)), level + 0.06 * self._edge), [_celsius(tick, 0) for tick in ticks])
 
 
 def heat_bounds(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -5,8 +5,10 @@ An hour at 1 kHz is 3.6 million rows of a hundred numbers; no viewer needs them 
 mean and highest values of buckets of time, and in full around events.
 """
 
+import csv
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +21,6 @@ from bearing_sim.messages.topics import (
     MEASURED,
     MEASURED_CHANNELS,
     MEASURED_CLEARANCE,
-    RING_TEMPERATURES,
     SLIP_FROM_SPEED,
     ZERO_CELSIUS,
     characteristic_frequencies,
@@ -30,75 +31,75 @@ from bearing_sim.scene.display import number, quantity_text, shown
 from bearing_sim.scene.fidelity import LEVELS, level_of
 from bearing_sim.scene.scene import NO_CLEARANCE_LIMIT, Scene
 from bearing_sim.view import colours, section
-from bearing_sim.view.drawings import BODIES, CAUSES, CLEARANCES, causes_of
 
 RPM = 30 / math.pi
+RINGS = ("inner", "outer")
 ENDLESS = 1e7  # [h]; a bearing that hardly turns has a life of 1e30 h, which would flatten everything else
+LOG_HOURS = "log10 h"
+_UNITS = {"°C": (1.0, -ZERO_CELSIUS), "mrad": (1e3, 0.0), "ppm": (1e6, 0.0)}  # scale and offset from SI, where not as `shown` has the quantity
 
-LINES = {
-    "/speed/shaft": ("shaft", colours.BLUE, 2.0),
-    "/speed/cage": ("cage", colours.ORANGE, 2.5),
-    "/speed/ideal_cage": ("cage without slip", colours.GREY, 1.5),
-    "/slip/cage": ("cage slip", colours.BLUE, 2.5),
-    "/slip/warning": ("warning", colours.YELLOW, 1.0),
-    "/slip/error": ("error", colours.VERMILION, 1.0),
-    "/life/log10_hours": ("life", colours.GREEN, 2.5),
-    "/life/modified_log10_hours": ("modified rating life", colours.PURPLE, 2.0),
-    "/life/l10_log10_hours": ("L10, by the load on the bearing", colours.WHITE, 1.5),
-    "/life/l10r_log10_hours": ("L10r, by laminae", colours.WHITE, 1.5),
-    "/slip/measured": ("measured cage slip", colours.WHITE, 1.5),
-    "/slip/residual": ("measured less predicted slip", colours.ORANGE, 2.0),
-    "/slip/no_residual": ("as predicted", colours.GREY, 1.0),
-    "/speed/cage_measured": ("cage, measured", colours.WHITE, 1.5),
-    "/life/warning": ("warning", colours.YELLOW, 1.0),
-    "/life/error": ("error", colours.VERMILION, 1.0),
-    "/damage/ppm": ("life used", colours.PURPLE, 2.5),
-    "/load/radial": ("radial load", colours.YELLOW, 2.0),
-    "/oil/temperature": ("oil", colours.VERMILION, 2.0),
-    "/loads/inner_largest": ("inner, largest", colours.BLUE, 2.0),
-    "/loads/outer_largest": ("outer, largest", colours.VERMILION, 2.0),
-    "/cage/eccentricity": ("cage eccentricity e/c", colours.ORANGE, 2.0),
-    "/loads/pocket_largest": ("on a roller by its pocket, largest", colours.PURPLE, 2.0),
-    "/loads/pocket_warning": ("warning", colours.YELLOW, 1.0),
-    "/loads/pocket_error": ("error", colours.VERMILION, 1.0),
-    "/pressure/inner": ("inner, largest", colours.BLUE, 2.0),
-    "/pressure/outer": ("outer, largest", colours.VERMILION, 2.0),
-    "/pressure/inner_edge": ("inner, end laminae", colours.WHITE, 1.0),
-    "/pressure/outer_edge": ("outer, end laminae", colours.YELLOW, 1.0),
-    "/tilt/ring_y": ("ring towards y", colours.BLUE, 2.0),
-    "/tilt/ring_z": ("ring towards z", colours.ORANGE, 2.0),
-    "/tilt/cage_y": ("cage towards y", colours.ORANGE, 2.0),
-    "/tilt/cage_z": ("cage towards z", colours.YELLOW, 2.0),
-    "/sink/dropped": ("blocks dropped", colours.WHITE, 1.5),
-    "/clearance/warning": ("warning", colours.YELLOW, 1.0),
-    "/clearance/error": ("error", colours.VERMILION, 1.0),
+
+class Series(NamedTuple):
+    """A row of ``series.csv``, whose head explains its columns."""
+
+    path: str
+    observable: str
+    unit: str
+    name: str
+    colour: tuple[int, int, int, int] | None
+    width: float
+    kind: str
+    threshold: str
+    pixel: str
+    needs: str
+
+    def values(self, numbers) -> np.ndarray:
+        """Return numbers of the observable, in SI (lives: hours), in the unit that is plotted."""
+        if self.unit == LOG_HOURS:
+            return log10_hours(numbers)
+        quantity = shown(self.observable)
+        scale, offset = _UNITS.get(self.unit, (quantity.scale, quantity.offset))
+        return scale * numbers + offset
+
+
+def table(name: str) -> list[dict[str, str]]:
+    """Return the rows of one of the tables beside this module; lines that begin with ``#`` are comments."""
+    with Path(__file__).with_name(f"{name}.csv").open(encoding="utf-8", newline="") as lines:
+        return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+SERIES = {
+    row["path"]: Series(**row | {"colour": getattr(colours, row["colour"], None), "width": float(row["width"] or 0.0)}) for row in table("series")
 }
-_FREQUENCY_COLOURS = (colours.ORANGE, colours.WHITE, colours.BLUE, colours.PURPLE)
-LINES |= {f"/frequency/{each.name}": (each.symbol, colour, 2.0) for each, colour in zip(FREQUENCIES, _FREQUENCY_COLOURS, strict=True)}
-LINES |= {f"/power/{cause}": (name, colour, 2.0) for cause, (name, colour) in CAUSES.items()}
-LINES |= {f"/clearance/{part}": (name, colour, 2.0) for part, (name, colour) in CLEARANCES.items()}
-LINES["/clearance/measured"] = ("running, measured", colours.LIME, 1.5)
-LINES |= {f"/temperature/{body}": (name, colour, 2.0) for body, (name, _, colour) in BODIES.items()}
-LINES |= {f"/temperature/{name}_measured": (f"{name.partition('_')[0]} ring, measured", colours.WHITE, 1.5) for name in RING_TEMPERATURES}
+"""What is plotted over time, by entity path."""
+LINES = {path: row for path, row in SERIES.items() if row.kind in ("line", "threshold")}
 
-EACH = {
-    "/loads/each/inner": "inner",
-    "/loads/each/outer": "outer",
-    "/loads/each/pocket": "pocket",
-    "/rollers/inner_sliding": "inner sliding",
-    "/rollers/outer_sliding": "outer sliding",
-    "/rollers/spin": "spin",
-    "/tilt/each/tilt": "tilt",
-    "/tilt/each/skew": "skew",
-}
-"""Entity paths with a line for each roller, and what a line's name begins with."""
 
-AGGREGATION = {
-    "/loads/pocket_largest": "Max",
-    "/loads/inner_largest": "Max",
-    "/loads/outer_largest": "Max",
-    "/slip/cage": "Max",
-}  # where many samples share a pixel
+def below(root: str, ending: str) -> dict[str, Series]:
+    """Return the series below an entity path whose observable ends like this, by the rest of their paths."""
+    return {path.removeprefix(root): row for path, row in LINES.items() if path.startswith(root) and row.observable.endswith(ending)}
+
+
+def features(scene: Scene, measured: Collection[str] = ()) -> set[str]:
+    """Return what series and plots may need (``needs`` in ``series.csv`` and ``plots.csv``) and a scene has, with the channels that are measured."""
+    bearing = scene.bearing
+    present = {
+        "": True,
+        compared_life(scene): True,
+        "whirl": scene.cage_whirls,
+        "tilts": scene.bodies_tilt,
+        "heat": scene.uses_ring_temperatures,
+        "bands": scene.estimation.bands,
+        "modified_life": not scene.life.is_basic,
+        "roller_slip": scene.level != "steady",  # which computes neither slip nor spin of rollers
+        "rolling_resistance": scene.lubricant.rolling_resistance.law != "none",
+        "seals": bearing.seals.law != "none",
+        "flanges": bearing.flanges.present,
+        "support": scene.support.is_active,
+        "measured_cage": MEASURED in measured,
+        "measured_clearance": MEASURED_CLEARANCE in measured,
+    }
+    return {name for name, is_present in present.items() if is_present}
 
 
 def plottable(values) -> np.ndarray:
@@ -123,29 +124,21 @@ def dim(colour: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
     return (*(int(0.6 * part) for part in colour[:3]), 255)
 
 
-def series(block: np.ndarray, slip_from_speed: float = SLIP_FROM_SPEED) -> dict[str, np.ndarray]:
+def series(scene: Scene, block: np.ndarray) -> dict[str, np.ndarray]:
     """Return what is plotted of a block, in the units that people read, by entity path.
 
-    There is no slip where the shaft does not turn, slower than ``slip_from_speed`` [rad/s].
+    There is no slip where the shaft does not turn, slower than the scene's ``thresholds.slip_from_speed``.
     """
+    present, slow = features(scene), scene.thresholds.slip_from_speed
+    of_samples = [row for row in SERIES.values() if row.observable and not row.threshold and row.kind != "band" and row.needs in present]
     return {
-        "/speed/shaft": RPM * block["shaft_speed"],
-        "/speed/cage": RPM * block["cage_speed"],
-        "/speed/ideal_cage": RPM * block["ideal_cage_speed"],
-        "/slip/cage": np.where(turns(block["shaft_speed"], slip_from_speed), 100 * block["cage_slip"], np.nan),
-        "/life/log10_hours": log10_hours(block["rating_life"]),
-        "/life/hours": block["rating_life"],
-        "/damage/ppm": 1e6 * block["damage"],
+        **{row.path: row.values(block[row.observable]) for row in of_samples},
+        "/slip/cage": np.where(turns(block["shaft_speed"], slow), 100 * block["cage_slip"], np.nan),
         "/load/radial": np.hypot(block["load_y"], block["load_z"]),
-        "/oil/temperature": block["oil_temperature"] - ZERO_CELSIUS,
-        **{f"/loads/{ring}_largest": largest_loads(block, ring) for ring in ("inner", "outer")},
+        **{f"/loads/{ring}_largest": largest_loads(block, ring) for ring in RINGS},
         "/loads/pocket_largest": np.abs(block["pocket_force"]).max(axis=1),
-        "/loads/each/inner": block["inner_load"],
-        "/loads/each/outer": block["outer_load"],
-        "/loads/each/pocket": block["pocket_force"],
-        "/cage/eccentricity": block["land_eccentricity"],
-        **{f"/clearance/{part}": 1e6 * block[f"{part}_clearance"] for part in CLEARANCES},
         **{f"/frequency/{each.name}": column for each, column in zip(FREQUENCIES, characteristic_frequencies(block).T)},
+        **(roller_series(scene, block) if "roller_slip" in present else {}),
     }
 
 
@@ -167,18 +160,9 @@ def roller_series(scene: Scene, block: np.ndarray) -> dict[str, np.ndarray]:
 
 def threshold_lines(scene: Scene) -> dict[str, float]:
     """Return where the scene's thresholds stand in the plots, by entity path; only those there are."""
-    limits = scene.thresholds
-    lines = {"/slip/warning": 100 * limits.slip_warning, "/slip/error": 100 * limits.slip_error}
-    for path, life in (("/life/warning", limits.life_warning), ("/life/error", limits.life_error)):
-        if life > 0.0:
-            lines[path] = float(log10_hours(life))
-    for path, force in (("/loads/pocket_warning", limits.pocket_force_warning), ("/loads/pocket_error", limits.pocket_force_error)):
-        if force is not None:
-            lines[path] = force
-    for path, clearance in (("/clearance/warning", limits.clearance_warning), ("/clearance/error", limits.clearance_error)):
-        if clearance > NO_CLEARANCE_LIMIT:
-            lines[path] = 1e6 * clearance
-    return lines
+    limits = {row: getattr(scene.thresholds, row.threshold) for row in SERIES.values() if row.threshold}
+    lines = {row.path: float(row.values(limit)) for row, limit in limits.items() if limit is not None and limit > NO_CLEARANCE_LIMIT}
+    return {path: line for path, line in lines.items() if math.isfinite(line)}  # there is no logarithm of a life of zero, which means none
 
 
 def measured_series(
@@ -205,22 +189,6 @@ def measured_series(
 def compared_life(scene: Scene) -> str:
     """Return the observable of the life that is drawn beside the one by the method of the scene: of another standard."""
     return "l10" if scene.life.method == "iso16281" else "l10r"
-
-
-def further_series(scene: Scene, block: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what is plotted besides `series` because only some scenes have it: lives, powers, temperatures, tilts, pressures by slices."""
-    name = compared_life(scene)
-    lines = {f"/life/{name}_log10_hours": log10_hours(block[name])} | {f"/power/{cause}": block[f"{cause}_power"] for cause in causes_of(scene)}
-    if not scene.life.is_basic:
-        lines["/life/modified_log10_hours"] = log10_hours(block["modified_rating_life"])
-    if scene.uses_ring_temperatures:
-        lines |= {f"/temperature/{body}": block[observable] - ZERO_CELSIUS for body, (_, observable, _) in BODIES.items()}
-        lines |= {f"/temperature/{ring}_measured": block[f"{ring}_measured"] - ZERO_CELSIUS for ring in RING_TEMPERATURES}
-    if scene.bodies_tilt:
-        lines |= {f"/tilt/{body}_{axis}": 1e3 * block[f"{body}_tilt_{axis}"] for body in ("ring", "cage") for axis in "yz"}
-        lines |= {f"/tilt/each/{name}": 1e3 * block[f"roller_{name}"] for name in ("tilt", "skew")}
-        lines |= {f"/pressure/{place}": 1e-6 * block[f"{place}_pressure"] for place in ("inner", "outer", "inner_edge", "outer_edge")}
-    return lines
 
 
 AROUND = 1.0  # [s] before and after an event that are kept in full
@@ -267,6 +235,10 @@ def bucket_for(interval: float, duration: float | None) -> float | None:
     return max(duration / _BUCKETS, _LEAST_ROWS * interval)
 
 
+def _all_of(lines: Lines) -> Thinned:
+    return Thinned(lines, Lines(lines.times[:0], {}))
+
+
 class Overview:
     """Thins out the series of one run.
 
@@ -292,7 +264,7 @@ class Overview:
         """Take in rows that follow those before; return what is decided by now, once it is enough to be worth sending."""
         if self._whole > 0:
             self._whole -= len(lines.times)
-            return Thinned(lines, Lines(lines.times[:0], {}))
+            return _all_of(lines)
         self._waiting.append(lines)
         newest, oldest = float(lines.times[-1]), float(self._waiting[0].times[0])
         limit = np.floor((newest - AROUND) / self._bucket) * self._bucket
@@ -319,7 +291,7 @@ class Overview:
         kept = self._around_events(decided.times)
         full, thin = _cut(decided, kept), _cut(decided, ~kept)
         if not len(thin.times):
-            return Thinned(full, Lines(thin.times, {}))
+            return _all_of(full)
         numbers = np.floor(thin.times / self._bucket)
         starts = np.flatnonzero(np.diff(numbers, prepend=np.nan) != 0)
         middles = (numbers[starts] + 0.5) * self._bucket
@@ -386,12 +358,16 @@ LOG_LEVELS = {Level.OK: rr.TextLogLevel.INFO, Level.WARN: rr.TextLogLevel.WARN, 
 
 
 def send_columns(recording: rr.RecordingStream, lines: Lines, named: Callable[[str], str] = str) -> None:
-    """Send series, each in one piece, under the entity paths that ``named`` makes of theirs."""
+    """Send series, each in one piece, under the entity paths that ``named`` makes of theirs; those of bands have both edges."""
     if not len(lines.times):
         return
     index = [rr.TimeColumn(TIMELINE, duration=lines.times)]
     for path, values in lines.values.items():
-        recording.send_columns(named(path), indexes=index, columns=rr.Scalars.columns(scalars=values.astype(np.float32)))
+        if path.endswith("/band"):
+            columns = rr.Measurements.columns(values=values.mean(axis=1), variances=(0.5 * (values[:, 1] - values[:, 0])) ** 2)
+        else:
+            columns = rr.Scalars.columns(scalars=values.astype(np.float32))
+        recording.send_columns(named(path), indexes=index, columns=columns)
 
 
 def send_thinned(recording: rr.RecordingStream, thinned: Thinned) -> None:
@@ -412,7 +388,6 @@ def log_event(recording: rr.RecordingStream, event: Event) -> None:
     recording.log("/log", rr.TextLog(f"{event.text}  [{event.kind}]", level=LOG_LEVELS[Level(event.level)]))
 
 
-RINGS = ("inner", "outer")
 _MOST_OF_A_PASSAGE = 256  # samples
 
 
@@ -484,15 +459,15 @@ class RunSeries:
 
     def describe(self) -> None:
         """Log names, colours and texts that hold for the whole run."""
-        for path, (name, colour, width) in LINES.items():
-            line = rr.SeriesLines(names=[name], colors=[colour], widths=[width], aggregation_policy=AGGREGATION.get(path, "Average"))
+        for path, row in LINES.items():
+            line = rr.SeriesLines(names=[row.name], colors=[row.colour], widths=[row.width], aggregation_policy=row.pixel or "Average")
             self._recording.log(path, line, static=True)
-        count = self._scene.bearing.roller.count
+        count, present = self._scene.bearing.roller.count, features(self._scene)
         around = colours.load_palette(count)
-        for path, name in EACH.items():
-            if self._scene.bodies_tilt or not path.startswith("/tilt"):
-                names = [f"{name} {j + 1}" for j in range(count)]
-                self._recording.log(path, rr.SeriesLines(names=names, colors=around, widths=np.full(count, 1.0)), static=True)
+        for path, row in SERIES.items():
+            if row.kind == "each roller" and row.needs in present:
+                names = [f"{row.name} {j + 1}" for j in range(count)]
+                self._recording.log(path, rr.SeriesLines(names=names, colors=around, widths=np.full(count, row.width)), static=True)
         self._describe_lane("/regime", REGIMES)
         fallen = {_level_state(level, self._scene.level): _FALLEN for level in LEVELS if level != self._scene.level}
         self._describe_lane("/level", {self._scene.level: _LEVEL_COLOURS[self._scene.level]} | fallen)
@@ -504,11 +479,8 @@ class RunSeries:
     def write(self, block: np.ndarray) -> None:
         """Send the columns of a block, in one piece per series."""
         self._started = float(block["time"][0]) if self._started is None else self._started
-        values = series(block, self._scene.thresholds.slip_from_speed)
+        values = series(self._scene, block)
         values |= {f"/loads/{ring}_largest": column for ring, column in zip(RINGS, self._plotted.add(block).T)}
-        values |= further_series(self._scene, block)
-        if self._scene.level != "steady":  # which computes neither slip nor spin of rollers
-            values |= roller_series(self._scene, block)
         lines = Lines(block["time"], {path: plottable(rows) for path, rows in values.items()})
         for path, rows in lines.values.items():
             _widen(self._ranges, path, rows)
@@ -547,12 +519,12 @@ class RunSeries:
             self._overview = Overview(bucket, whole)
             self._measured_overviews = {channel: Overview(bucket, whole) for channel in MEASURED_CHANNELS}
             self._keep_around(float(times[0]))
-            for path, (name, colour, _) in LINES.items():
-                describe_range(self._recording, path, name, colour)
+            for path, row in LINES.items():
+                describe_range(self._recording, path, row.name, row.colour)
 
     def _send(self, lines: Lines, overview: Overview | None) -> None:
         """Send series, or in a long run what is left of them by now."""
-        self._send_thinned(Thinned(lines, Lines(lines.times[:0], {})) if overview is None else overview.add(lines))
+        self._send_thinned(_all_of(lines) if overview is None else overview.add(lines))
 
     def _send_thinned(self, thinned: Thinned | None) -> None:
         if thinned is None:
@@ -654,11 +626,12 @@ class RunSeries:
             ("cage slip", f"**{quantity_text('cage_slip', slip)}**" if math.isfinite(slip) else "none (at rest)"),
             (f"life, {counted[1]}", f"**{_life_text(sample[counted[0]])}**"),
             ("largest roller load", quantity_text("inner_load_maximum", inner)),
-            ("shaft speed", quantity_text("shaft_speed", float(sample["shaft_speed"]))),
+            _readout("shaft_speed", sample),
             ("radial load", quantity_text("radial_load", load)),
-            ("oil temperature", quantity_text("oil_temperature", float(sample["oil_temperature"]))),
+            _readout("oil_temperature", sample),
             ("cage", section.regime(slip, limits.slip_warning, limits.slip_error)),
-            *((shown(name).name, quantity_text(name, float(sample[name]))) for name in ("cage_speed", "running_clearance")),
+            _readout("cage_speed", sample),
+            _readout("running_clearance", sample),
             *self._further_readout(sample),
             ("life used", f"{number(1e6 * float(sample['damage']), 3)} ppm"),
             ("load, outer raceway", quantity_text("outer_load_maximum", outer)),
@@ -691,6 +664,11 @@ class RunSeries:
         self._recording.log("/sink/dropped", rr.Scalars(float(dropped)))
         text = f"the view has dropped {dropped} blocks so far because it is slower than the simulation; the simulation itself is not affected"
         self._recording.log("/log", rr.TextLog(text, level=rr.TextLogLevel.WARN))
+
+
+def _readout(name: str, sample: np.void) -> tuple[str, str]:
+    """Return name and value of an observable in words."""
+    return shown(name).name, quantity_text(name, float(sample[name]))
 
 
 def _level_state(level: str, wanted: str) -> str:

@@ -339,10 +339,9 @@ class RunView:
             self._recording.log(f"{root}/map", picture)
             times = section.round_ticks(chart.start, chart.start + chart.span, most=4 if narrow else 6)
             across = (times - chart.start) / chart.span * width
-            below = np.stack((across, np.full(len(times), 1.02 * height)), axis=1)
-            self._recording.log(f"{root}/time", labels(below, [f"{time:g} s" for time in times]))
+            self._recording.log(f"{root}/time", labels(section.places(across, 1.02 * height), [f"{time:g} s" for time in times]))
             upwards, names = rows[root]
-            beside = np.stack((np.full(len(upwards), -label_distance(narrow)), height * (0.9 - 0.92 * upwards)), axis=1)
+            beside = section.places(-label_distance(narrow), height * (0.9 - 0.92 * upwards))
             self._recording.log(f"{root}/rows", labels(beside, names))
 
 

@@ -21,12 +21,17 @@ CONTOUR_POINTS = 361
 _FACTORS = (300, 200, 150, 100, 80, 50, 40, 30, 20, 15, 10, 8, 5, 4, 3, 2)
 
 
+def places(across, down) -> np.ndarray:
+    """Return points of the picture, whose vertical axis points down, shape (..., 2)."""
+    return np.stack(np.broadcast_arrays(across, down), axis=-1)
+
+
 def picture(y, z) -> np.ndarray:
     """Return points (y, z) as picture coordinates, whose vertical axis points down, shape (..., 2).
 
     The only function that flips the vertical axis.
     """
-    return np.stack(np.broadcast_arrays(np.asarray(y, float), -np.asarray(z, float)), axis=-1)
+    return places(np.asarray(y, float), -np.asarray(z, float))
 
 
 def polar(radius, azimuth, centre=(0.0, 0.0)) -> np.ndarray:

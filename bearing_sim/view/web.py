@@ -21,10 +21,10 @@ import threading
 import time
 import zipfile
 from collections.abc import Mapping
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from importlib.metadata import version
 from pathlib import Path
-from typing import NamedTuple
+from typing import BinaryIO
 from urllib.parse import quote, urlsplit
 
 from bearing_sim.files.kept import cache_folder, checked_contents, kept_if_possible, read_kept, tell_once, with_checksum
@@ -32,32 +32,21 @@ from bearing_sim.files.limits import JSON_FILE
 from bearing_sim.view.viewer import HOST, free_port, stream_url
 
 _PAGE = "index.html"
-_FILES = {  # of the viewer, with their types; the icon is not needed
-    _PAGE: "text/html; charset=utf-8",
-    "re_viewer.js": "text/javascript",
-    "re_viewer_bg.wasm": "application/wasm",
-    "favicon.ico": "image/x-icon",
-}
-_NEEDED = tuple(_FILES)[:3]
+_NEEDED = (_PAGE, "re_viewer.js", "re_viewer_bg.wasm")
+_FILES = (*_NEEDED, "favicon.ico")  # of the viewer
+_TYPES = {".html": "text/html; charset=utf-8", ".js": "text/javascript", ".wasm": "application/wasm"}  # whatever the machine says
 _DIGESTS = "digests.json"  # of the files, beside them
-_RECORDING = "application/octet-stream"
 # What the viewer is: its own files, code that it compiles, and streams from servers on this machine.
 _POLICY = (
     "default-src 'self' blob: data:; script-src 'self' 'unsafe-inline' 'unsafe-eval' 'wasm-unsafe-eval' blob:; style-src 'self' 'unsafe-inline'; "
     "worker-src 'self' blob:; connect-src 'self' blob: data: http://127.0.0.1:* ws://127.0.0.1:*"
 )
 _START_UP = 60.0  # [s] for the program to serve its files on a busy machine
-_CHUNK = 1 << 18  # byte
 _log = logging.getLogger(__name__)
 
 
 class NoWebViewer(RuntimeError):
     """The web viewer cannot be served; the message says why."""
-
-
-class _Served(NamedTuple):
-    path: Path
-    kind: str
 
 
 class WebViewer:
@@ -81,9 +70,9 @@ class WebViewer:
 
     def __init__(self, port: int, stream: int | None = None, recording: Path | None = None):
         folder = viewer_files()
-        served = {f"/{name}": _Served(folder / name, kind) for name, kind in _FILES.items() if (folder / name).is_file()}
+        served = {f"/{name}": folder / name for name in _FILES}
         if recording is not None:
-            served["/recording.rrd"] = _Served(recording, _RECORDING)
+            served["/recording.rrd"] = recording
         try:
             self._server = _Server((HOST, port), _Handler)
         except OSError as error:
@@ -115,7 +104,7 @@ class _Server(ThreadingHTTPServer):
 
     daemon_threads = True
     allow_reuse_address = True
-    served: Mapping[str, _Served]
+    served: Mapping[str, Path]  # by the path of a request
     shown: str  # where the page begins
 
     def handle_error(self, request, client_address) -> None:
@@ -124,49 +113,38 @@ class _Server(ThreadingHTTPServer):
             _log.exception("the web viewer could not be served")
 
 
-class _Handler(BaseHTTPRequestHandler):
+class _Handler(SimpleHTTPRequestHandler):
     """Answers requests for the files of the viewer and for the recording; all others are refused."""
 
     protocol_version = "HTTP/1.1"
+    extensions_map = SimpleHTTPRequestHandler.extensions_map | _TYPES
     server: _Server
 
-    def do_GET(self) -> None:
-        """Answer with a file."""
-        self._answer(with_body=True)
-
-    def do_HEAD(self) -> None:
-        """Answer with the head of a file."""
-        self._answer(with_body=False)
-
-    def _answer(self, with_body: bool) -> None:
+    def send_head(self) -> BinaryIO | None:
+        """Send the head of an answer; return the file that follows, if any."""
         host = self.headers.get("Host", "").rpartition(":")[0]
         if host not in (HOST, "localhost"):  # a page from elsewhere whose name leads to this machine
             self.send_error(403, f"this viewer is for browsers on this machine: http://{HOST}:{self.server.server_port}")
-            return
+            return None
         asked = urlsplit(self.path)
         if asked.path == "/" and "url=" not in asked.query:
             self.send_response(302)
             self.send_header("Location", self.server.shown)
             self.send_header("Content-Length", "0")
             self.end_headers()
-            return
-        served = self.server.served.get(f"/{_PAGE}" if asked.path == "/" else asked.path)
-        if served is None:
-            self.send_error(404)
-            return
-        try:
-            with open(served.path, "rb") as file:
-                size = os.fstat(file.fileno()).st_size
-                self.send_response(200)
-                self.send_header("Content-Type", served.kind)
-                self.send_header("Content-Length", str(size))
-                self.send_header("Content-Security-Policy", _POLICY)
-                self.send_header("Cache-Control", "no-cache")
-                self.end_headers()
-                if with_body:
-                    shutil.copyfileobj(file, self.wfile, _CHUNK)
-        except FileNotFoundError:
-            self.send_error(404)
+            return None
+        return super().send_head()
+
+    def translate_path(self, path: str) -> str:
+        """Return the file that a path of a request means; empty, which is no file, where nothing is served."""
+        asked = urlsplit(path).path
+        return str(self.server.served.get(f"/{_PAGE}" if asked == "/" else asked, ""))
+
+    def end_headers(self) -> None:
+        """Send what every answer says of itself, and the end of its head."""
+        self.send_header("Content-Security-Policy", _POLICY)
+        self.send_header("Cache-Control", "no-cache")
+        super().end_headers()
 
     def log_message(self, format, *arguments) -> None:
         """Log requests for developers only."""
