@@ -43,15 +43,6 @@ DEGREES, TRUNCATION = (3, 4), 0.75  # of polynomial chaos, and the exponent of i
 BAND = 256  # draws of a band
 
 
-def places(conditions, domain):
-    """Return operating points by the coordinates that vary, the angle as a point on a circle, shape (n, c)."""
-    there = coordinates(conditions, domain)
-    columns = [there[:, :2], there[:, 2:3]] if domain.temperatures[1] > domain.temperatures[0] else [there[:, :2]]
-    if domain.period:
-        columns.append(np.stack([np.cos(there[:, 3]), np.sin(there[:, 3])], axis=1))
-    return np.concatenate(columns, axis=1)
-
-
 def together(there, fractions):
     """Return inputs of each operating point with all draws of the fields, shape (n m, c + d)."""
     return np.concatenate([np.repeat(there, len(fractions), axis=0), np.tile(fractions, (len(there), 1))], axis=1)
@@ -125,7 +116,7 @@ def compare(scene, training, conditions, exact):
 
     slips = transformed(answers)[:, SLIP].reshape(-1, DRAWS)
     kept = np.isfinite(slips).all(axis=1)
-    slips, there, asked = slips[kept], places(nodes[::DRAWS][kept], domain), places(conditions, domain)
+    slips, there, asked = slips[kept], coordinates(nodes[::DRAWS][kept], domain), coordinates(conditions, domain)
     inputs = together(there, 2.0 * fields.fractions_of(scores[:DRAWS]) - 1.0)
     wanted = together(asked, 2.0 * fields.fractions_of(drawn) - 1.0)
 

@@ -20,7 +20,7 @@ from scipy.special import logsumexp, ndtri
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities, value_at
 from bearing_sim.watchers.estimation.posterior import SLIP, Posterior
-from bearing_sim.watchers.estimation.response import ANSWERS, ResponseModel, restored, transformed
+from bearing_sim.watchers.estimation.response import ResponseModel, restored_slip, slip_scale
 
 OIL_QUANTITY, OIL, TRACTION, CLEARANCE = "oil quantity", "viscosity or temperature of the oil", "traction of the oil", "clearance"
 COOLING, CAGE, LOAD, SENSOR, NONE = "cooling", "cage and its guide", "load", "cage speed sensor", "none of the modelled causes"
@@ -132,10 +132,8 @@ class _Departures:
     def __init__(self, response: ResponseModel, before: Posterior, evidence: Evidence):
         self.response, self.evidence = response, gathered(evidence)
         found = self.evidence
-        start = np.zeros((len(found.own), len(ANSWERS)))
-        start[:, 0], start[:, 1:3] = found.own, 1.0
         nominal = response.respond_scaled(found.conditions, response.basis_of(response.nominal[None]))[:, 0, 0]
-        self._start = transformed(start)[:, 0] - nominal
+        self._start = slip_scale(found.own) - nominal
         self._centre = before.scores.mean(axis=0)
         drawn = [before.predict(SLIP, each, float(own)) for each, own in zip(found.conditions, found.own)]
         spread = np.stack([departures for departures, _ in drawn], axis=1)
@@ -147,9 +145,7 @@ class _Departures:
     def slip(self, scores: np.ndarray, conditions: np.ndarray | None = None) -> np.ndarray:
         """Return slip at scores of shape (k, d), shape (k, m); NaN outside of the response."""
         asked = self.evidence.conditions if conditions is None else conditions
-        found = np.zeros((len(scores), len(asked), len(ANSWERS)))
-        found[:, :, 0] = self._start + self.response.respond_scaled(asked, self.response.basis_of(scores))[:, :, 0].T
-        return restored(found)[:, :, 0]
+        return restored_slip(self._start + self.response.respond_scaled(asked, self.response.basis_of(scores))[:, :, 0].T)
 
     def by_field(self, column: int, scores: np.ndarray) -> np.ndarray:
         """Return how slip changes if the score of a field becomes each of ``scores``, shape (k, m)."""
@@ -214,7 +210,7 @@ def causes_of(scene: Scene, response: ResponseModel, before: Posterior, evidence
             continue
         states = np.repeat(centre[None], _SIZES + 1, axis=0)
         states[1:, column] = sizes
-        values = response.values_of(states)[:, column]
+        values = response.fields.values_of(states)[:, column]
         show = known[field].show if field in known else "{:.4g}".format
         effects = departures.by_field(column, sizes)
         found.append(_cause(group_of(field), field, values[0], values[1:], departures.log_likelihood(effects), quiet, show))

@@ -189,7 +189,7 @@ class Estimator:
         self._known = np.array([name in known for name in response.names], bool)
         self._calibrated = np.array([name in settings.calibrated for name in response.names], bool) & ~self._known
         self._prior = np.quantile(
-            response.values_of(np.where(self._known, response.nominal, prior_scores(DRAWS, len(self._known)))), _ENDS[1:], axis=0
+            response.fields.values_of(np.where(self._known, response.nominal, prior_scores(DRAWS, len(self._known)))), _ENDS[1:], axis=0
         )
         self._residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed, CALIBRATED_SLIP)
         self._course = Course(_OBSERVED)
@@ -230,12 +230,15 @@ class Estimator:
         return self._updates > 0
 
     @property
+    def _ranges(self) -> list[list]:
+        return [[one.field, one.low, one.high, one.distribution, one.mode] for one in self._response.fields.ranges]
+
+    @property
     def learned(self) -> dict[str, object]:
         """What was learned, as numbers, texts and nested mappings that JSON has, as `restore` takes it; empty before the first measurement."""
         if not self._updates:
             return {}
-        ranges = [[one.field, one.low, one.high, one.distribution, one.mode] for one in self._response.ranges]
-        learned = {"ranges": ranges, "measured": self._before.learned, "noise": self._scatter.learned, "updates": self._updates}
+        learned = {"ranges": self._ranges, "measured": self._before.learned, "noise": self._scatter.learned, "updates": self._updates}
         learned |= {"residual": self._residual.learned}
         if self._since_change is not None:
             learned |= {"changed": self._since_change.learned, "since": self.change.since}
@@ -255,8 +258,7 @@ class Estimator:
             It is something else.
         """
         self.restart()
-        ranges = [[one.field, one.low, one.high, one.distribution, one.mode] for one in self._response.ranges]
-        if not learned or learned["ranges"] != ranges:
+        if not learned or learned["ranges"] != self._ranges:
             return
         try:
             self._before.restore(learned["measured"])
@@ -458,7 +460,7 @@ class Estimator:
 
     def estimates(self) -> tuple[Estimate, ...]:
         """Return what is known about each uncertain field, in the order of the response."""
-        values = np.quantile(self._response.values_of(self.posterior.scores), _ENDS, axis=0)
+        values = np.quantile(self._response.fields.values_of(self.posterior.scores), _ENDS, axis=0)
         prior = self._prior
         return tuple(
             Estimate(name, *map(float, values[:, k]), *map(float, prior[:, k]), bool(self._calibrated[k]))
