@@ -118,7 +118,7 @@ def domain_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> 
 
 
 def coordinates(conditions: np.ndarray, domain: Domain) -> np.ndarray:
-    """Return operating points as numbers in [-1, 1], in which the response is smooth; the angle, with which the contour repeats, as a point on a circle.
+    """Return operating points as numbers in [-1, 1], in which the response is smooth; the angle that the contour repeats with as a point on a circle.
 
     Speed and load count by their logarithms.  Slower and lighter points than the domain's are taken as its ends.  What does not vary is left out.
 
