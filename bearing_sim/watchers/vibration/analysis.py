@@ -28,7 +28,7 @@ from bearing_sim.watchers.vibration.comb import (
     spectra,
     train_below,
 )
-from bearing_sim.watchers.vibration.order_tracking import Shaft, constant_shaft, find_shaft, recorded_shaft, shaft_signal_range, wide_range
+from bearing_sim.watchers.vibration.order_tracking import HIGHEST, HIGHEST_OF_MANY, Shaft, constant_shaft, find_shaft, recorded_shaft
 from bearing_sim.watchers.vibration.phase import Rate, Track, follow, mean_rate, smoothed
 from bearing_sim.watchers.vibration.regularity import UNKNOWN, Regularity, regularity
 from bearing_sim.watchers.vibration.signal import Band, Spectrum, Vibration, VibrationError, candidate_bands, narrow_bands, repetition
@@ -436,10 +436,9 @@ def _shaft_of(vibration, raw: Spectrum, envelopes, low: float, high: float, tole
     """Return the shaft: by its own lines, or as recorded or given."""
     about = _about(vibration, low, high, tolerance)
     if follows_lines:
-        highest = shaft_signal_range(high)
-        signals = [raw.low_passed(min(highest, raw.highest))]
-        signals += [_low_passed(envelope, rate, highest) for envelope, rate in envelopes[:2]]
-        wide = raw.low_passed(min(wide_range(high), raw.highest))
+        spectra_of_two = (Spectrum(envelope, rate) for envelope, rate in envelopes[:2])
+        signals = [each.low_passed(HIGHEST * high) for each in (raw, *spectra_of_two)]
+        wide = raw.low_passed(HIGHEST_OF_MANY * high)
         found, by_vibration = (find_shaft(some, about, tolerance, wide) for some in (signals, signals[:1]))
         if found is None or by_vibration is None:
             return found or by_vibration or about
@@ -448,10 +447,6 @@ def _shaft_of(vibration, raw: Spectrum, envelopes, low: float, high: float, tole
         if apart < max(3.0 * math.hypot(found.standard_error, by_vibration.standard_error), 1.0 / vibration.duration):
             return min(found, by_vibration, key=lambda each: each.standard_error)
     return about
-
-
-def _low_passed(envelope: np.ndarray, rate: float, highest: float) -> tuple[np.ndarray, float]:
-    return Spectrum(envelope, rate).low_passed(min(highest, rate / 2.0))
 
 
 def _rate_of(fit: Fit, signal: np.ndarray, per_turn: float) -> Rate | None:

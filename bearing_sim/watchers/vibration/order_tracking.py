@@ -20,9 +20,11 @@ from bearing_sim.watchers.vibration.comb import Spectra, spectra
 from bearing_sim.watchers.vibration.phase import follow, mean_rate, smoothed, vertex
 
 _HARMONICS = np.arange(1.0, 6.0)
-_HIGHEST = 6.0  # orders that are kept for the shaft's lines
-_MANY_HARMONICS = np.arange(1.0, 21.0)  # by which a shaft that is found is sharpened
-_HIGHEST_OF_MANY = 22.0
+HIGHEST = 6.0
+"""Orders that the signals of `find_shaft` need for the shaft's lines."""
+HIGHEST_OF_MANY = 22.0
+"""Orders that the signal needs by which `find_shaft` sharpens a shaft."""
+_MANY_HARMONICS = np.arange(1.0, 21.0)  # by which it does
 _SEGMENT_TURNS = 24.0
 _MOST_SEGMENTS = 128
 _PER_TURN = 16  # samples in a turn, for the shaft's own lines
@@ -117,7 +119,7 @@ def find_shaft(signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance:
     signals : with the shaft's lines, and their rates [Hz]: the low-passed vibration first, then envelopes.
     about : the shaft as it is known beforehand, constant or recorded.
     tolerance : within which its speed is known, relative.
-    wide : the vibration low-passed at `wide_range`, and its rate [Hz]; its higher lines sharpen a shaft that is found.
+    wide : the vibration low-passed at `HIGHEST_OF_MANY`, and its rate [Hz]; its higher lines sharpen a shaft that is found.
     """
     turns = float(about.turns[-1])
     per_turn = _PER_TURN * (1.0 + tolerance)
@@ -162,16 +164,6 @@ def find_shaft(signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance:
     own = scipy.interpolate.PchipInterpolator(shaft.times, shaft.turns)(np.interp(times, about.times, about.turns))
     mean = float(own[-1] / duration)
     return Shaft(times, own, mean, mean * shaft.standard_error / shaft.frequency, "lines", shaft.angle_error)
-
-
-def shaft_signal_range(high: float) -> float:
-    """Return the highest frequency [Hz] of the signals of `find_shaft`."""
-    return _HIGHEST * high
-
-
-def wide_range(high: float) -> float:
-    """Return the highest frequency [Hz] of the signal by which `find_shaft` sharpens a shaft."""
-    return _HIGHEST_OF_MANY * high
 
 
 class _Lines(NamedTuple):
@@ -230,7 +222,7 @@ def _surprise_of_lines(signals, shaft: Shaft) -> np.ndarray:
     """Return -ln of the probability that noise is as high as each of the shaft's lines over the whole record, (signal, line)."""
     found = np.zeros((len(signals), len(_HARMONICS)))
     for row, (signal, rate) in zip(found, signals):
-        whole = spectra(shaft.resampled(signal, rate, _PER_TURN), _PER_TURN, 1, _HIGHEST, excludes_shaft=False)
+        whole = spectra(shaft.resampled(signal, rate, _PER_TURN), _PER_TURN, 1, HIGHEST, excludes_shaft=False)
         if whole is not None:
             row[:] = whole.at(_HARMONICS)
     return found
@@ -316,7 +308,7 @@ def _sharpened(signal: np.ndarray, per_turn: float, highest: float, shaft: Shaft
     sharpened, used = shaft._replace(angle_error=0.0), orders[:0]
     for _ in range(2):
         resampled = sharpened.resampled(signal, per_turn, _PER_TURN_OF_MANY)
-        near, kept, noise = _clear_lines(resampled, _PER_TURN_OF_MANY, _HIGHEST_OF_MANY, orders)
+        near, kept, noise = _clear_lines(resampled, _PER_TURN_OF_MANY, HIGHEST_OF_MANY, orders)
         if len(kept) < _FEWEST_OF_MANY:
             break
         changed = _followed(sharpened, resampled, _PER_TURN_OF_MANY, kept, noise)
@@ -354,7 +346,7 @@ def _clearest(signals, shaft: Shaft) -> tuple[np.ndarray, np.ndarray, np.ndarray
     found = []
     for signal, rate in signals:
         resampled = shaft.resampled(signal, rate, _PER_TURN)
-        near, orders, noise = _clear_lines(resampled, _PER_TURN, _HIGHEST, _HARMONICS)
+        near, orders, noise = _clear_lines(resampled, _PER_TURN, HIGHEST, _HARMONICS)
         if len(orders):
             found.append((near.sum(), resampled, orders, noise))
     return max(found, key=lambda each: each[0])[1:] if found else None
