@@ -23,7 +23,6 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Matern, WhiteK
 
 from bearing_sim.studies.response_points import DRAWS, at_points, design
 from bearing_sim.sweep.tasks import Journal
-from bearing_sim.watchers.estimation.bands import prior_draws
 from bearing_sim.watchers.estimation.lives import SlipAndOil
 from bearing_sim.watchers.estimation.response import (
     ANSWERS,
@@ -31,6 +30,7 @@ from bearing_sim.watchers.estimation.response import (
     coordinates,
     domain_of,
     fit_response,
+    prior_draws,
     scene_fields,
     slip_scale,
     transformed,

@@ -12,6 +12,7 @@ change.  They come apart as speed and load change.
 """
 
 import math
+from collections import Counter
 from typing import NamedTuple
 
 import numpy as np
@@ -74,23 +75,23 @@ class Cause(NamedTuple):
     ----------
     group : what has changed, in words.
     what : the number that has: a dotted path, or words.
+    text : group, number and sizes in words.
     probability : given that one of the causes holds.
     before, after, low, high : of the number [SI], the latter two the ends that 5 and 95 % lie below; NaN for no modelled cause.
     evidence : natural logarithm of how much more probable it makes the departures than no change does.
     misfit : mean square of what it leaves of the departures, over their variance; about 1 for a cause that explains them.
-    text : all that in words.
     """
 
     group: str
     what: str
-    probability: float
-    before: float
-    after: float
-    low: float
-    high: float
-    evidence: float
-    misfit: float
     text: str
+    probability: float = 0.0
+    before: float = math.nan
+    after: float = math.nan
+    low: float = math.nan
+    high: float = math.nan
+    evidence: float = -math.inf
+    misfit: float = math.nan
 
 
 def group_of(field: str) -> str:
@@ -202,7 +203,8 @@ def causes_of(scene: Scene, response: ResponseModel, before: Posterior, evidence
     """
     departures, known = _Departures(response, before, evidence), quantities(type(scene))
     sizes = ndtri((np.arange(_SIZES) + 0.5) / _SIZES)
-    quiet = departures.log_likelihood(np.zeros((1, len(departures.residual))))[0][0]
+    nothing = np.zeros((1, len(departures.residual)))
+    quiet = departures.log_likelihood(nothing)[0][0]
     found = []
     centre, spread = before.scores.mean(axis=0), before.scores.var(axis=0)
     for column, field in enumerate(response.names):
@@ -225,10 +227,8 @@ def causes_of(scene: Scene, response: ResponseModel, before: Posterior, evidence
         (SENSOR, "sensor scale", 1.0, scale, by_scale, "{:.4g}".format),
     ):
         found.append(_cause(group, what, own, values, departures.log_likelihood(effects), quiet, show))
-    nothing = np.zeros((1, len(departures.residual)))
     logarithm, misfit = departures.log_likelihood(nothing, _UNEXPLAINED)
-    nan = math.nan
-    found.append(Cause(NONE, NONE, 0.0, nan, nan, nan, nan, float(logarithm[0] - quiet), float(misfit[0]), NONE))
+    found.append(Cause(NONE, NONE, NONE, evidence=float(logarithm[0] - quiet), misfit=float(misfit[0])))
     return _with_probabilities(found)
 
 
@@ -238,20 +238,18 @@ def _cause(group: str, what: str, before: float, values: np.ndarray, likelihood:
     logarithms, misfits = likelihood
     total = float(logsumexp(logarithms))
     if not math.isfinite(total):
-        return Cause(group, what, 0.0, before, math.nan, math.nan, math.nan, -math.inf, math.nan, f"{group}: {what}")
+        return Cause(group, what, f"{group}: {what}", before=before)
     weights = np.exp(logarithms - total)
     order = np.argsort(values)
     low, after, high = np.interp((_MIDDLE[0], 0.5, _MIDDLE[1]), np.cumsum(weights[order]) - 0.5 * weights[order], values[order])
     text = f"{group}: {what} from {show(before)} to {show(float(after))} ({show(float(low))} to {show(float(high))})"
     evidence = total - math.log(len(values)) - quiet
-    return Cause(group, what, 0.0, float(before), float(after), float(low), float(high), evidence, float(misfits.min()), text)
+    return Cause(group, what, text, 0.0, float(before), float(after), float(low), float(high), evidence, float(misfits.min()))
 
 
 def _with_probabilities(found: list[Cause]) -> tuple[Cause, ...]:
     """Return causes with their probabilities, sorted by them; groups are equally probable beforehand."""
-    sizes: dict[str, int] = {}
-    for one in found:
-        sizes[one.group] = sizes.get(one.group, 0) + 1
+    sizes = Counter(one.group for one in found)
     logarithms = np.array([one.evidence - math.log(sizes[one.group]) for one in found])
     probabilities = np.exp(logarithms - logsumexp(logarithms))
     order = np.argsort(-probabilities)

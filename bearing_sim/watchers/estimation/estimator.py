@@ -25,7 +25,7 @@ from bearing_sim.messages.events import Event, Level
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities
 from bearing_sim.watchers.estimation.causes import Cause, Evidence, causes_of, not_modelled
-from bearing_sim.watchers.estimation.posterior import CLEARANCE, DRAWS, INNER, OUTER, SLIP, Posterior, prior_scores
+from bearing_sim.watchers.estimation.posterior import CLEARANCE, INNER, OUTER, SLIP, Posterior, prior_scores
 from bearing_sim.watchers.estimation.response import ResponseModel
 from bearing_sim.watchers.monitoring.residual import CALIBRATED_SLIP, Course, ResidualMonitor
 
@@ -188,9 +188,7 @@ class Estimator:
         settings = self._settings
         self._known = np.array([name in known for name in response.names], bool)
         self._calibrated = np.array([name in settings.calibrated for name in response.names], bool) & ~self._known
-        self._prior = np.quantile(
-            response.fields.values_of(np.where(self._known, response.nominal, prior_scores(DRAWS, len(self._known)))), _ENDS[1:], axis=0
-        )
+        self._prior = np.quantile(response.fields.values_of(prior_scores(response, self._known)), _ENDS[1:], axis=0)
         self._residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed, CALIBRATED_SLIP)
         self._course = Course(_OBSERVED)
         self.restart()

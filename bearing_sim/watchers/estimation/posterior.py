@@ -27,7 +27,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtri
 
 from bearing_sim.scene.scene import Scene
-from bearing_sim.watchers.estimation.response import ANSWERS, SLIP_SCALE, ResponseModel, restored_slip, slip_scale
+from bearing_sim.watchers.estimation.response import ANSWERS, SLIP_SCALE, ResponseModel, prior_draws, restored_slip, slip_scale
 
 SLIP, INNER, OUTER, CLEARANCE = MEASURED = ("cage_slip", "inner_ring_temperature", "outer_ring_temperature", "running_clearance")
 """What may be measured, by the names of the answers of a response."""
@@ -76,12 +76,9 @@ class Row:
     prior: float
 
 
-def prior_scores(count: int, dimensions: int, seed: int = 0) -> np.ndarray:
-    """Return draws of scores of which nothing is measured, evenly spread, shape (count, dimensions); ``count`` a power of two."""
-    from scipy.stats import qmc  # half a second to import, which no run without bands spends
-
-    uniform = qmc.Sobol(d=max(dimensions, 1), scramble=True, seed=np.random.default_rng(seed)).random_base2(count.bit_length() - 1)
-    return ndtri(np.clip(uniform, 1e-4, 1.0 - 1e-4))[:, :dimensions]
+def prior_scores(response: ResponseModel, known: np.ndarray, count: int = DRAWS) -> np.ndarray:
+    """Return draws of scores of which nothing is measured, those of known fields at the scene's own values, shape (count, d)."""
+    return np.where(known, response.nominal, prior_draws(len(known), count, seed=0, least=1e-4))
 
 
 class Posterior:
@@ -110,7 +107,7 @@ class Posterior:
     def restart(self) -> None:
         """Return to the ranges of the scene."""
         self._random = np.random.default_rng(0)
-        self.scores = np.where(self._known, self._response.nominal, prior_scores(DRAWS, len(self._known)))
+        self.scores = prior_scores(self._response, self._known)
         self._noise = self._random.permutation(ndtri((np.arange(DRAWS) + 0.5) / DRAWS))  # of what the draws do not explain
         self._basis = self._response.basis_of(self.scores)
         self.rows: list[Row] = []
@@ -208,7 +205,8 @@ class Posterior:
         outcome = _judged(departure - expected, left + variance, *wild)
         variance /= max(1.0 - outcome.wild, 1e-9)
         if place is None:
-            prior = float(self._departures(quantity, conditions, own, self._response.basis_of(self._prior())).var())
+            scores = prior_scores(self._response, self._known, DRAWS // 4)
+            prior = float(self._departures(quantity, conditions, own, self._response.basis_of(scores)).var())
             self.rows.append(Row(quantity, tuple(map(float, conditions)), float(own), float(departure), float(variance), prior))
             if math.isfinite(prior):
                 self._arrange()
@@ -226,9 +224,6 @@ class Posterior:
         )
         self._update(place)
         return outcome
-
-    def _prior(self) -> np.ndarray:
-        return np.where(self._known, self._response.nominal, prior_scores(DRAWS // 4, len(self._known)))
 
     def _place(self, quantity: str, conditions: np.ndarray) -> int | None:
         """Return the row that a measurement belongs to; None where it needs a new one."""

@@ -173,7 +173,8 @@ class Fields:
         self._logarithmic = np.array([one.distribution == "log_uniform" for one in ranges], bool)
         self._low = np.array([math.log(one.low) if one.distribution == "log_uniform" else one.low for one in ranges])
         self._width = np.array([math.log(one.high / one.low) if one.distribution == "log_uniform" else one.high - one.low for one in ranges])
-        self._mode = np.array([_mode(one, value) for one, value in zip(ranges, own)])  # of its width; NaN where it is not triangular
+        self._is_triangular = np.array([one.distribution == "triangular" for one in ranges], bool)
+        self._mode = np.array([_mode(one, value) for one, value in zip(ranges, own)])  # of its width
 
     def __len__(self) -> int:
         return len(self.ranges)
@@ -183,10 +184,9 @@ class Fields:
         from scipy.special import ndtr
 
         probability = ndtr(np.clip(scores, -_FARTHEST, _FARTHEST))
-        mode = np.where(np.isnan(self._mode), 0.5, self._mode)
-        rising = np.sqrt(probability * mode)
-        falling = 1.0 - np.sqrt((1.0 - probability) * (1.0 - mode))
-        return np.where(np.isnan(self._mode), probability, np.where(probability < mode, rising, falling))
+        rising = np.sqrt(probability * self._mode)
+        falling = 1.0 - np.sqrt((1.0 - probability) * (1.0 - self._mode))
+        return np.where(self._is_triangular, np.where(probability < self._mode, rising, falling), probability)
 
     def values_of(self, scores: np.ndarray) -> np.ndarray:
         """Return the values of the fields [SI] for scores of shape (..., d)."""
@@ -200,20 +200,34 @@ class Fields:
         values = np.asarray(values, float)
         counted = np.where(self._logarithmic, np.log(np.where(self._logarithmic, values, 1.0)), values)
         fraction = np.clip((counted - self._low) / self._width, 0.0, 1.0)
-        mode = np.where(np.isnan(self._mode), 0.5, self._mode)
-        rising = fraction**2 / np.where(mode > 0.0, mode, 1.0)
-        falling = 1.0 - (1.0 - fraction) ** 2 / np.where(mode < 1.0, 1.0 - mode, 1.0)
-        probability = np.where(np.isnan(self._mode), fraction, np.where(fraction < mode, rising, falling))
+        rising = fraction**2 / np.where(self._mode > 0.0, self._mode, 1.0)
+        falling = 1.0 - (1.0 - fraction) ** 2 / np.where(self._mode < 1.0, 1.0 - self._mode, 1.0)
+        probability = np.where(self._is_triangular, np.where(fraction < self._mode, rising, falling), fraction)
         with np.errstate(divide="ignore"):
             return np.clip(ndtri(probability), -_FARTHEST, _FARTHEST)
 
 
 def _mode(one: Range, own: float) -> float:
-    """Return the peak of a triangular range as a fraction of its width (see `bearing_sim.scene.uncertainty.Range`); NaN for the others."""
-    if one.distribution != "triangular":
-        return math.nan
+    """Return the peak of a triangular range as a fraction of its width (see `bearing_sim.scene.uncertainty.Range`)."""
     mode = one.mode if one.mode is not None else own if one.low <= own <= one.high else 0.5 * (one.low + one.high)
     return (mode - one.low) / (one.high - one.low)
+
+
+def prior_draws(fields: int, count: int = 256, seed: int = 1, least: float = 1e-6) -> np.ndarray:
+    """Return scores of fields of which nothing is measured, evenly spread, shape (count, fields).
+
+    Parameters
+    ----------
+    fields : number of them.
+    count : of draws, a power of two.
+    seed : of the sequence.
+    least : probability to lie beyond the farthest scores on either side.
+    """
+    from scipy.special import ndtri
+    from scipy.stats import qmc  # half a second to import, which no run without bands spends
+
+    uniform = qmc.Sobol(d=max(fields, 1), scramble=True, seed=np.random.default_rng(seed)).random_base2(count.bit_length() - 1)
+    return ndtri(np.clip(uniform, least, 1.0 - least))[:, :fields]
 
 
 def transformed(answers: np.ndarray) -> np.ndarray:
