@@ -182,15 +182,15 @@ def read_vibration(
         _bag(found, tuple(name for name in (channel, speed_channel) if name))
     else:
         _read(found, reader)
-    name = channel or _only_channel(path, found, time_channel, speed_channel)
-    samples = _array(path, found, name, "--channel")
+    name = channel or _only_channel(found, time_channel, speed_channel)
+    samples = _array(found, name, "--channel")
     speeds = None
     if speed_channel is not None:
-        speeds = _array(path, found, speed_channel, "--speed-channel")
+        speeds = _array(found, speed_channel, "--speed-channel")
         if len(speeds) != len(samples):
             raise VibrationError(f"{path}: {speed_channel} has {len(speeds)} values and {name} {len(samples)}; expected as many of each")
         speeds = speeds * _factor(speed_unit)
-    rate, note = (rate, "") if rate is not None else _rate(path, found, time_channel, len(samples))
+    rate, note = (rate, "") if rate is not None else _rate(found, time_channel, len(samples))
     if rate > _HIGHEST_RATE:
         raise VibrationError(
             f"{path}: a sampling rate of {rate:.4g} Hz; expected at most {_HIGHEST_RATE:g} Hz: check --rate, or the unit of the times"
@@ -210,19 +210,19 @@ def _listed(names) -> str:
     return ", ".join(shown[:_MOST_SHOWN]) + (f", and {len(shown) - _MOST_SHOWN} more" if len(shown) > _MOST_SHOWN else "") if shown else "none"
 
 
-def _array(path: Path, found: Channels, name: str, option: str) -> np.ndarray:
+def _array(found: Channels, name: str, option: str) -> np.ndarray:
     if name in found.arrays:
         with np.errstate(invalid="ignore"):  # of numbers that are none, which the record refuses
             return np.asarray(found.arrays[name], float)
     for whole in (name, name.rpartition("[")[0]):
         if whole in found.unusable:
-            raise VibrationError(f"{path}: {found.unusable[whole].told(whole)}")
+            raise VibrationError(f"{found.path}: {found.unusable[whole].told(whole)}")
     raise VibrationError(
-        f"{path}: no channel {name!r}{did_you_mean(name, list(found.arrays))}; there are {_listed(found.arrays)}; choose one with {option}"
+        f"{found.path}: no channel {name!r}{did_you_mean(name, list(found.arrays))}; there are {_listed(found.arrays)}; choose one with {option}"
     )
 
 
-def _only_channel(path: Path, found: Channels, time_channel: str | None, speed_channel: str | None) -> str:
+def _only_channel(found: Channels, time_channel: str | None, speed_channel: str | None) -> str:
     """Return the name of the channel that must be the vibration, because no other is long enough."""
     given = {time_channel, speed_channel}
     names = [name for name in found.arrays if name not in given and not _TIME_NAMES.search(name) and len(found.arrays[name]) >= FEWEST_SAMPLES]
@@ -233,12 +233,12 @@ def _only_channel(path: Path, found: Channels, time_channel: str | None, speed_c
     told = "".join(f"; {found.unusable[name].told(name)}" for name in others[:_MOST_TOLD])
     told += f"; {len(others) - _MOST_TOLD} more are not of real numbers" if len(others) > _MOST_TOLD else ""
     if not names:
-        raise VibrationError(f"{path}: no channel of at least {FEWEST_SAMPLES} numbers; it has {_listed(found.arrays)}{told}")
+        raise VibrationError(f"{found.path}: no channel of at least {FEWEST_SAMPLES} numbers; it has {_listed(found.arrays)}{told}")
     told = told if doubtful else ""
-    raise VibrationError(f"{path}: which channel is the vibration? there are {_listed(names)}; choose one with --channel{told}")
+    raise VibrationError(f"{found.path}: which channel is the vibration? there are {_listed(names)}; choose one with --channel{told}")
 
 
-def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> tuple[float, str]:
+def _rate(found: Channels, time_channel: str | None, count: int) -> tuple[float, str]:
     """Return the rate of the samples by the file, and what is to be said about it."""
     note = ""
     if time_channel is None and found.rate is not None:
@@ -248,15 +248,16 @@ def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> 
         if len(set(rates.values())) == 1:
             return next(iter(rates.values())), note
         if rates:
-            raise VibrationError(f"{path}: {', '.join(f'{printable(name)} = {value:g}' for name, value in rates.items())}; choose one with --rate")
+            listed = ", ".join(f"{printable(name)} = {value:g}" for name, value in rates.items())
+            raise VibrationError(f"{found.path}: {listed}; choose one with --rate")
     names = [time_channel] if time_channel else [name for name, array in found.arrays.items() if _TIME_NAMES.search(name) and len(array) == count]
     if len(names) != 1:
-        raise VibrationError(f"{path}: the file does not say its sampling rate; give it with --rate, such as --rate 50kHz")
-    times = _array(path, found, names[0], "--time-channel")
+        raise VibrationError(f"{found.path}: the file does not say its sampling rate; give it with --rate, such as --rate 50kHz")
+    times = _array(found, names[0], "--time-channel")
     steps = np.diff(times)
     changes = np.flatnonzero(steps) + 1
     if len(times) != count or len(changes) < 2 or not steps.min() >= 0.0:
-        raise VibrationError(f"{path}: {names[0]} is no column of increasing times; give the sampling rate with --rate")
+        raise VibrationError(f"{found.path}: {names[0]} is no column of increasing times; give the sampling rate with --rate")
     mean, usual = float(times[-1] - times[0]) / (count - 1), float(np.median(steps))
     if abs(mean - usual) > _UNEVEN * usual:  # times with fewer digits than their steps need, or a gap
         mean = float(times[changes[-1]] - times[changes[0]]) / float(changes[-1] - changes[0])
@@ -264,7 +265,8 @@ def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> 
         if off.max() > _ROUNDINGS * float(np.median(steps[steps > 0.0])):
             worst = int(np.argmax(np.abs(steps - mean)))
             raise VibrationError(
-                f"{path}: {names[0]} has a gap: {times[worst]:g} is followed by {times[worst + 1]:g}; expected equal steps: cut the record there"
+                f"{found.path}: {names[0]} has a gap: {times[worst]:g} is followed by {times[worst + 1]:g}; expected equal steps:"
+                " cut the record there"
             )
         note = f"; {printable(names[0])} has rounded times, so the rate is the mean one"
     unit = _UNIT.search(names[0])
