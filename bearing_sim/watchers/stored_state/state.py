@@ -190,7 +190,14 @@ class StoredState:
 
     def as_mapping(self) -> dict[str, object]:
         """Return the contents of a state file."""
-        return {**dataclasses.asdict(self), "covered": self.covered.stretches, "package_version": package_version()}
+        return {
+            **vars(self),  # not copied: what was learned and the estimates of years may be long, and this is called every few seconds
+            "totals": dataclasses.asdict(self.totals),
+            "covered": self.covered.stretches,
+            "days": {day: dataclasses.asdict(totals) for day, totals in self.days.items()},
+            "thermal": self.thermal and dataclasses.asdict(self.thermal),
+            "package_version": package_version(),
+        }
 
     @classmethod
     def from_mapping(cls, mapping: Mapping[str, object]) -> "StoredState":
