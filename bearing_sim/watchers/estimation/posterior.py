@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What measurements say about the uncertain fields of a bearing: a Bayesian posterior that is updated measurement by measurement.
+"""Bayesian calibration of the uncertain fields of a scene: a posterior that is updated measurement by measurement.
 
 **What is kept of the measurements.** Where the bearing has been, at operating points apart from each other (`Row`), how far the measured
 quantity departs from the level's own prediction: a mean and a variance, updated by every measurement there (a scalar Kalman filter) and widening

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The stretches of wall time whose running a bearing's totals contain, so that a recording fills what is missing once and only once."""
+"""Time intervals that are already included in a bearing's totals, so that a recording fills what is missing once and only once."""
 
 from bisect import bisect_left, bisect_right
 

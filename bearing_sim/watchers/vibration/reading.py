@@ -34,7 +34,7 @@ _TIME_NAMES = re.compile(r"(?:^|[^a-z])(?:t|time|times|timestamp|seconds|x_value
 _UNIT = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 _FIRST_LINES = 200
 _MOST_SHOWN = 12
-_MOST_TOLD = 3
+_MOST_DESCRIBED = 3
 _DEEPEST = 8  # levels of structures in a MAT or HDF5 file
 _MOST_CHANNELS = 2000
 _UNEVEN = 0.01  # of the spacing of times
@@ -69,7 +69,7 @@ class Unusable(NamedTuple):
     holds: str
     may_be_meant: bool
 
-    def told(self, name: str) -> str:
+    def describe(self, name: str) -> str:
         """Return what is wrong with it, and what was expected."""
         return f"{printable(name)} holds {self.holds}; {_EXPECTED.get(self.holds, 'expected real numbers')}"
 
@@ -216,7 +216,7 @@ def _array(found: Channels, name: str, option: str) -> np.ndarray:
             return np.asarray(found.arrays[name], float)
     for whole in (name, name.rpartition("[")[0]):
         if whole in found.unusable:
-            raise VibrationError(f"{found.path}: {found.unusable[whole].told(whole)}")
+            raise VibrationError(f"{found.path}: {found.unusable[whole].describe(whole)}")
     raise VibrationError(
         f"{found.path}: no channel {name!r}{did_you_mean(name, list(found.arrays))}; there are {_listed(found.arrays)}; choose one with {option}"
     )
@@ -230,12 +230,13 @@ def _only_channel(found: Channels, time_channel: str | None, speed_channel: str 
     if len(names) == 1 and not doubtful:
         return names[0]
     others = doubtful or list(found.unusable)
-    told = "".join(f"; {found.unusable[name].told(name)}" for name in others[:_MOST_TOLD])
-    told += f"; {len(others) - _MOST_TOLD} more are not of real numbers" if len(others) > _MOST_TOLD else ""
+    beside = "".join(f"; {found.unusable[name].describe(name)}" for name in others[:_MOST_DESCRIBED])
+    beside += f"; {len(others) - _MOST_DESCRIBED} more are not of real numbers" if len(others) > _MOST_DESCRIBED else ""
     if not names:
-        raise VibrationError(f"{found.path}: no channel of at least {FEWEST_SAMPLES} numbers; it has {_listed(found.arrays)}{told}")
-    told = told if doubtful else ""
-    raise VibrationError(f"{found.path}: which channel is the vibration? there are {_listed(names)}; choose one with --channel{told}")
+        raise VibrationError(f"{found.path}: no channel of at least {FEWEST_SAMPLES} numbers; it has {_listed(found.arrays)}{beside}")
+    raise VibrationError(
+        f"{found.path}: which channel is the vibration? there are {_listed(names)}; choose one with --channel{beside if doubtful else ''}"
+    )
 
 
 def _rate(found: Channels, time_channel: str | None, count: int) -> tuple[float, str]:
@@ -612,10 +613,10 @@ def _tdms(stream: BinaryIO, found: Channels) -> None:
         for channel in (each for group in file.groups() for each in group.channels()):
             values += len(channel)
             VIBRATION_SAMPLES.check(values, str(found.path))
-            told = channel.properties
-            name = f"{channel.group_name}/{channel.name}" + (f" [{told['unit_string']}]" if told.get("unit_string") else "")
+            properties = channel.properties
+            name = f"{channel.group_name}/{channel.name}" + (f" [{properties['unit_string']}]" if properties.get("unit_string") else "")
             found.add(name, channel[:] if len(channel) else np.zeros(0))
-            _note_rate(found, name, told.get("wf_increment", 0.0))
+            _note_rate(found, name, properties.get("wf_increment", 0.0))
 
 
 def _note_rate(found: Channels, name: str, step: float) -> None:
@@ -684,8 +685,8 @@ def block_of(message, field: str = "data") -> Block:
         raise ValueError(f"{field} holds no numbers") from None
     if samples.ndim != 1:
         raise ValueError(f"{field} holds no row of numbers")
-    told = {str(each.label): int(each.size) for each in getattr(getattr(message, "layout", None), "dim", ())}
-    return Block(samples, float(told["rate"]) if told.get("rate", 0) > 0 else math.nan, told.get("sequence"))
+    sizes = {str(each.label): int(each.size) for each in getattr(getattr(message, "layout", None), "dim", ())}
+    return Block(samples, float(sizes["rate"]) if sizes.get("rate", 0) > 0 else math.nan, sizes.get("sequence"))
 
 
 def _bag(found: Channels, wanted: tuple[str, ...]) -> None:
