@@ -552,6 +552,13 @@ def test_a_file_that_cannot_be_used_is_refused_with_what_is_wrong_and_where(tmp_
         assert name in str(refusal.value), str(refusal.value)
 
 
+def test_an_empty_data_set_beside_the_vibration_is_passed_over(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "e.h5", "w") as file:
+        file["wave"], file["nothing"] = SAMPLES, h5py.Empty("f")
+    assert np.array_equal(read_vibration(tmp_path / "e.h5", rate=2000.0).samples, SAMPLES)
+
+
 def called(*arguments):
     return CliRunner().invoke(main, ["vibration", *map(str, arguments)])
 
