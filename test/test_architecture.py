@@ -31,7 +31,7 @@ ROOMS = {
     "simulation": ("numpy", "scene numerics model levels"),
     "messages": ("numpy rosbags", "files model"),
     "recording": ("lz4 mcap numpy pyarrow rosbags yaml zstandard", "files scene model messages"),
-    "watchers": ("numpy pyarrow h5py matplotlib nptdms pyuff scipy", "files scene model messages recording physics numerics levels"),
+    "watchers": ("numpy pyarrow pydantic h5py matplotlib nptdms pyuff scipy", "files scene model messages recording physics numerics levels"),
     "inputs": ("numpy pyarrow pydantic yaml", "files scene simulation messages recording"),
     "runtime": ("numpy", "files scene numerics model levels simulation messages recording watchers inputs"),
     "view": ("PIL numpy rerun rerun_cli", "files scene messages recording"),

@@ -14,9 +14,18 @@ from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.studies.response_points import design, obtain_response, settled_points
 from bearing_sim.studies.uncertainty_propagation import UncertaintyError
 from bearing_sim.watchers.estimation import response as kept
-from bearing_sim.watchers.estimation.bands import QUANTITIES, BandEstimator, prior_draws, quantiles
+from bearing_sim.watchers.estimation.bands import QUANTITIES, BandEstimator, quantiles
 from bearing_sim.watchers.estimation.lives import SlipAndOil
-from bearing_sim.watchers.estimation.response import ANSWERS, conditions_at, domain_of, fit_response, read_response, scene_fields, write_response
+from bearing_sim.watchers.estimation.response import (
+    ANSWERS,
+    conditions_at,
+    domain_of,
+    fit_response,
+    prior_draws,
+    read_response,
+    scene_fields,
+    write_response,
+)
 
 SCENE = asking_scene()
 CLEARANCE_BAND = QUANTITIES.index("running_clearance")

@@ -110,7 +110,7 @@ def test_quantity_and_traction_of_the_oil_cannot_be_told_apart_and_that_is_said(
     shrunk = widths(estimator)
     assert any({QUANTITY, SCALE} <= set(group) for group in estimator.unresolved())
     assert shrunk[QUANTITY] > 0.4 and shrunk[SCALE] > 0.6, "each alone is nearly as uncertain as before"
-    assert all(one.low <= response.values_of(rig.scores)[k] <= one.high for k, one in enumerate(known.values()))
+    assert all(one.low <= response.fields.values_of(rig.scores)[k] <= one.high for k, one in enumerate(known.values()))
 
 
 def widths(estimator):
@@ -132,7 +132,7 @@ def test_a_ring_temperature_that_follows_the_quantity_of_oil_tells_it_from_the_t
         estimator.take(block[first : first + 10])
     after = widths(estimator)
     assert after[QUANTITY] < 0.5 * before[QUANTITY]
-    for found, truth in zip(estimator.estimates(), response.values_of(rig.scores)):
+    for found, truth in zip(estimator.estimates(), response.fields.values_of(rig.scores)):
         assert found.low <= truth <= found.high
 
 
@@ -146,7 +146,7 @@ def test_a_measured_clearance_teaches_the_raceway(scene, response):
         block["time"] = rig.now = rig.now + 0.1
         live.take(block)
     _, low, high = live.estimates[RADIUS]
-    assert high - low < 0.6 * (prior.high - prior.low) and low <= response.values_of(rig.scores)[2] <= high
+    assert high - low < 0.6 * (prior.high - prior.low) and low <= response.fields.values_of(rig.scores)[2] <= high
 
 
 @pytest.mark.parametrize(("sensor", "field", "pause"), [(TEMPERATURES, QUANTITY, PAUSE), (STUDIED_CLEARANCE, RADIUS, 0.0)])
@@ -237,7 +237,7 @@ def test_readings_from_before_a_pause_say_nothing_about_what_has_wandered_in_it(
 
 
 def test_a_step_of_the_mixture_fraction_from_003_to_004_is_told_within_30_s_with_its_cause_among_those_named(scene, response):
-    start, end = (response.scores_of(np.array([quantity, 1.0, 34.8625e-3]))[0] for quantity in (0.03, 0.04))
+    start, end = (response.fields.scores_of(np.array([quantity, 1.0, 34.8625e-3]))[0] for quantity in (0.03, 0.04))
     rig, estimator = Rig(scene, response, [start, 0.0, 0.0]), Estimator(scene, response)
     assert math.isnan(rig.run(estimator, 200))
     began, rig.scores[0] = rig.now, end

@@ -405,7 +405,7 @@ def test_a_measured_oil_temperature_keeps_what_was_learned_of_other_fields(respo
 def test_learned_by_something_else_is_refused_and_nothing_is_kept_of_it(response):
     live = LiveEstimation(CALIBRATED, response)
     with pytest.raises((KeyError, TypeError, ValueError)):
-        live.restore({"ranges": [[one.field, one.low, one.high, one.distribution, one.mode] for one in response.ranges]})
+        live.restore({"ranges": [[one.field, one.low, one.high, one.distribution, one.mode] for one in response.fields.ranges]})
     assert not live.is_calibrated and live.estimates == {}
 
 

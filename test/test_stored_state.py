@@ -33,8 +33,8 @@ from bearing_sim.watchers.stored_state.counting import LifeCounter
 from bearing_sim.watchers.stored_state.covered import MOST, Covered
 from bearing_sim.watchers.stored_state.keeper import RECORD, StateKeeper
 from bearing_sim.watchers.stored_state.merging import merge
-from bearing_sim.watchers.stored_state.state import StoredState, new_state
-from bearing_sim.watchers.stored_state.state_file import StateError, StateFile, checked_serial, default_path, previous_path, read_state
+from bearing_sim.watchers.stored_state.state import Damaged, StoredState, new_state
+from bearing_sim.watchers.stored_state.state_file import StateError, StateFile, checked_serial, default_path, parsed, previous_path, read_state
 from bearing_sim.watchers.stored_state.totals import Criteria, Totals
 
 SECOND = 1_000_000_000
@@ -611,3 +611,15 @@ def test_what_a_residual_monitor_has_learned_goes_on_as_if_there_had_been_no_res
     other = ResidualMonitor(dataclasses.replace(detection, batch=2.0 * detection.batch), 20.0)
     other.restore(first.learned)
     assert math.isnan(other.mean), "learned from other batches"
+
+
+@pytest.mark.parametrize(("name", "value"), [("starts", 2.5), ("starts", True), ("damage", -1), ("running_hours", "3"), ("serial", "\a")])
+def test_what_people_write_wrongly_is_refused_with_its_name_and_nothing_is_rounded(name, value):
+    state = {"serial": 4711, "starts": 5.0}
+    assert parsed(_by_hand(state)).serial == "4711" and parsed(_by_hand(state)).totals.starts == 5
+    with pytest.raises(Damaged, match=name):
+        parsed(_by_hand({name: value}))
+
+
+def _by_hand(state):
+    return json.dumps({"format": "bearing_sim state", "version": 0, "state": state}).encode()

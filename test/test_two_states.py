@@ -25,7 +25,7 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies import fleet as fleet_replay
 from bearing_sim.watchers.estimation import correction as corrections
 from bearing_sim.watchers.estimation.correction import Correction, correction_domain, correction_path, write_correction
-from bearing_sim.watchers.estimation.response import coordinates, embedded
+from bearing_sim.watchers.estimation.response import coordinates
 from bearing_sim.watchers.estimation.two_states import TwoStates, laws_of_table
 
 PAPER = "deng2017_table1"
@@ -38,7 +38,7 @@ def made_up(scene, temperatures=None, two_states_at_speed=FAST):
     """Return a correction by nothing, of 12 points, whose states slip by 8 and 20 % at one of two speeds."""
     domain, kelvin = correction_domain(scene, temperatures), scene.lubricant.temperature
     conditions = np.array([(speed, LOAD, kelvin, angle) for speed in (SLOW, FAST) for angle in np.arange(6) * domain.period / 6.0])
-    columns, count = embedded(coordinates(conditions, domain), domain).shape[1], len(conditions)
+    columns, count = coordinates(conditions, domain).shape[1], len(conditions)
     there = conditions[conditions[:, 0] == two_states_at_speed]
     states = np.column_stack([there, np.full(len(there), 0.08), np.full(len(there), 0.2)])
     nothing = np.zeros((count + columns + 1, len(ANSWER))), np.zeros((count, len(ANSWER))), np.zeros((count, 2))

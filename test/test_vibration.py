@@ -27,7 +27,7 @@ from bearing_sim.cli.main import main
 from bearing_sim.files.limits import VARIABLE, FileError
 from bearing_sim.recording.writer import McapFile
 from bearing_sim.watchers.vibration.analysis import Geometry, analyse
-from bearing_sim.watchers.vibration.comb import families, orders_of, spectra
+from bearing_sim.watchers.vibration.comb import families, spectra
 from bearing_sim.watchers.vibration.order_tracking import constant_shaft, find_shaft, recorded_shaft
 from bearing_sim.watchers.vibration.phase import Track, follow, mean_rate, smoothed
 from bearing_sim.watchers.vibration.reading import read_vibration
@@ -113,14 +113,14 @@ def test_a_result_depends_neither_on_the_unit_nor_on_the_sense_of_the_vibration_
 def test_the_lines_of_both_raceways_add_up_to_the_rollers_whatever_the_cage_does():
     by_name = {family.name: family for family in families(ROLLERS)}
     for ratio in (0.2, 0.38, 0.45):
-        outer_line, inner_line = (orders_of(by_name[name], ratio)[0][0] for name in ("outer_ring", "inner_ring"))
+        outer_line, inner_line = (by_name[name].orders(ratio)[0] for name in ("outer_ring", "inner_ring"))
         assert outer_line + inner_line == pytest.approx(ROLLERS) and outer_line == pytest.approx(ROLLERS * ratio)
 
 
 def test_what_modulates_the_impacts_of_a_ring_or_roller_gives_sidebands_up_to_the_second():
     by_name, ratio, passes = {family.name: family for family in families(ROLLERS)}, 0.4, 5.2
     for name, line, modulation in (("inner_ring", ROLLERS * (1.0 - ratio), 1.0), ("roller", passes, ratio)):
-        orders = orders_of(by_name[name], ratio, passes)[0]
+        orders = by_name[name].orders(ratio, passes)
         for shift in (-2, -1, 0, 1, 2):
             assert np.min(np.abs(orders - line - shift * modulation)) < 1e-9, (name, shift)
 
@@ -550,6 +550,13 @@ def test_a_file_that_cannot_be_used_is_refused_with_what_is_wrong_and_where(tmp_
         with pytest.raises((FileError, VibrationError), match=reason) as refusal:
             read_vibration(tmp_path / name, rate=rate)
         assert name in str(refusal.value), str(refusal.value)
+
+
+def test_an_empty_data_set_beside_the_vibration_is_passed_over(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "e.h5", "w") as file:
+        file["wave"], file["nothing"] = SAMPLES, h5py.Empty("f")
+    assert np.array_equal(read_vibration(tmp_path / "e.h5", rate=2000.0).samples, SAMPLES)
 
 
 def called(*arguments):

@@ -37,7 +37,7 @@ from bearing_sim.watchers.estimation.correction import (
     read_correction,
     write_correction,
 )
-from bearing_sim.watchers.estimation.response import CONDITIONS, Domain, conditions_at, coordinates, embedded
+from bearing_sim.watchers.estimation.response import CONDITIONS, Domain, conditions_at
 
 FIRST_POINTS, ENOUGH_POINTS, MOST_POINTS = 256, 512, 1024
 SLIP_GOAL, LIFE_GOAL = 5e-4, 0.01  # errors at points left out, root mean square, below which no more points are added
@@ -275,7 +275,7 @@ def _doubtful(found: Correction, count: int, seed: int) -> np.ndarray:
     candidates = _spread(_CANDIDATES, seed, found.domain)
     errors = found.errors_near(candidates) / [SLIP_GOAL, LIFE_GOAL]
     weights = np.sqrt(np.square(np.minimum(errors, _PURSUED)).sum(axis=1))
-    there, chosen = (embedded(coordinates(each, found.domain), found.domain) @ found.metrics[0] for each in (candidates, found.conditions))
+    there, chosen = (found.places(each) for each in (candidates, found.conditions))
     distances = np.sqrt(np.square(there[:, None] - chosen).sum(axis=-1).min(axis=1))
     picked = []
     for _ in range(count):

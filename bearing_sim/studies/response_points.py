@@ -16,7 +16,6 @@ from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies.batches import answers_at
 from bearing_sim.studies.uncertainty_propagation import UncertaintyError, varied
 from bearing_sim.sweep.tasks import Journal, Progress, in_silence
-from bearing_sim.watchers.estimation.bands import prior_draws
 from bearing_sim.watchers.estimation.lives import SlipAndOil
 from bearing_sim.watchers.estimation.response import (
     ANSWERS,
@@ -25,6 +24,7 @@ from bearing_sim.watchers.estimation.response import (
     domain_of,
     fit_response,
     kept_response,
+    prior_draws,
     response_path,
     scene_fields,
     write_response,

@@ -24,9 +24,9 @@ import numpy as np
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.response_points import at_points, obtain_response
 from bearing_sim.sweep.tasks import Journal
-from bearing_sim.watchers.estimation.bands import QUANTITIES, BandEstimator, prior_draws
+from bearing_sim.watchers.estimation.bands import QUANTITIES, BandEstimator
 from bearing_sim.watchers.estimation.lives import SlipAndOil
-from bearing_sim.watchers.estimation.response import ANSWERS, PROBABILITIES, conditions_at, domain_of, scene_fields
+from bearing_sim.watchers.estimation.response import ANSWERS, PROBABILITIES, conditions_at, domain_of, prior_draws, scene_fields
 
 RESOLVED = 32  # samples of an operating point by which the level's resolution is found
 SPENT = 0.5  # of the life, along the course

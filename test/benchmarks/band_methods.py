@@ -23,7 +23,6 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Matern, WhiteK
 
 from bearing_sim.studies.response_points import DRAWS, at_points, design
 from bearing_sim.sweep.tasks import Journal
-from bearing_sim.watchers.estimation.bands import prior_draws
 from bearing_sim.watchers.estimation.lives import SlipAndOil
 from bearing_sim.watchers.estimation.response import (
     ANSWERS,
@@ -31,6 +30,7 @@ from bearing_sim.watchers.estimation.response import (
     coordinates,
     domain_of,
     fit_response,
+    prior_draws,
     scene_fields,
     slip_scale,
     transformed,
@@ -41,15 +41,6 @@ POINTS = 16_384  # that all methods see
 SEARCHED, TAKEN = 400, 2_048  # of them by which a Gaussian process finds its lengths, and that it is fitted to
 DEGREES, TRUNCATION = (3, 4), 0.75  # of polynomial chaos, and the exponent of its hyperbolic truncation
 BAND = 256  # draws of a band
-
-
-def places(conditions, domain):
-    """Return operating points by the coordinates that vary, the angle as a point on a circle, shape (n, c)."""
-    there = coordinates(conditions, domain)
-    columns = [there[:, :2], there[:, 2:3]] if domain.temperatures[1] > domain.temperatures[0] else [there[:, :2]]
-    if domain.period:
-        columns.append(np.stack([np.cos(there[:, 3]), np.sin(there[:, 3])], axis=1))
-    return np.concatenate(columns, axis=1)
 
 
 def together(there, fractions):
@@ -125,7 +116,7 @@ def compare(scene, training, conditions, exact):
 
     slips = transformed(answers)[:, SLIP].reshape(-1, DRAWS)
     kept = np.isfinite(slips).all(axis=1)
-    slips, there, asked = slips[kept], places(nodes[::DRAWS][kept], domain), places(conditions, domain)
+    slips, there, asked = slips[kept], coordinates(nodes[::DRAWS][kept], domain), coordinates(conditions, domain)
     inputs = together(there, 2.0 * fields.fractions_of(scores[:DRAWS]) - 1.0)
     wanted = together(asked, 2.0 * fields.fractions_of(drawn) - 1.0)
 

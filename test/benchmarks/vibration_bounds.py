@@ -16,7 +16,7 @@ import math
 import numpy as np
 from vibration_study import KINDS, Condition, Synthetic, _run
 
-from bearing_sim.watchers.vibration.comb import _log_gamma_tail, families, orders_of, spectra
+from bearing_sim.watchers.vibration.comb import _log_gamma_tail, families, spectra
 from bearing_sim.watchers.vibration.order_tracking import constant_shaft
 from bearing_sim.watchers.vibration.signal import Band, Spectrum
 
@@ -31,7 +31,7 @@ def surprise(synthetic: Synthetic, shows: str) -> float:
     spectrum = Spectrum(samples, rate, 0.05).without_lines()
     shaft = constant_shaft(synthetic.shaft_frequency, 0.0, synthetic.vibration.duration)
     family = next(each for each in families(ROLLERS) if each.name == shows)
-    orders = orders_of(family, synthetic.ratio, SPIN)[0]
+    orders = family.orders(synthetic.ratio, SPIN)
     per_centre, best = 1 + 2 * len(family.sidebands), 0.0
     for lines in (1.0, 2.0, 4.0):
         width = lines * 2.2 * 8.0 * synthetic.shaft_frequency

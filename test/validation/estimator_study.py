@@ -269,7 +269,7 @@ def judge(
                 predict(k, 1, block[first], slips[first])
             changed = bool(_changes(estimator, float(times[part][-1])))
             alarms, holding = alarms + (changed and not holding), changed
-    fields = [pair for pair in zip(estimator.estimates(), response.values_of(machine.scores)) if pair[0].calibrated]
+    fields = [pair for pair in zip(estimator.estimates(), response.fields.values_of(machine.scores)) if pair[0].calibrated]
     errors = found[0] - found[3]
     return Judgement(
         np.array([one.low <= value <= one.high for one, value in fields]),
@@ -329,7 +329,7 @@ def detections(
     scores = np.where(free, random.normal(size=(runs, len(free))), response.nominal)
     both = np.repeat(scores, 2, axis=0)
     both[:, column] = np.tile(
-        [response.scores_of(np.where(np.arange(len(free)) == column, value, response.fields.own))[column] for value in values], runs
+        [response.fields.scores_of(np.where(np.arange(len(free)) == column, value, response.fields.own))[column] for value in values], runs
     )
     operating = scene.operating
     there = np.array([operating.shaft_speed, operating.radial_load, scene.lubricant.temperature, operating.load_angle])

@@ -5,7 +5,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.special import ndtri
 
 from bearing_sim.scene.scene import Scene
 from bearing_sim.watchers.estimation.lives import SlipAndOil
@@ -16,6 +15,7 @@ from bearing_sim.watchers.estimation.response import (
     Interpolation,
     ResponseModel,
     add_slip_and_oil,
+    prior_draws,
     restored,
     transformed,
 )
@@ -24,7 +24,6 @@ QUANTITIES = ("cage_slip", "rating_life", "running_clearance", "remaining_life")
 """What has a band; units [1, h, m, h]."""
 
 _QUANTILES = (*PROBABILITIES, 0.5)
-_DRAWS = 256  # of the scores before anything is measured, a power of two
 _CELL = np.array([0.01, 0.01, 0.2, math.radians(0.5)])  # of speed and load, relative, temperature [K] and angle: operating points alike in bands
 _CELLS_KEPT = 5_000
 _AT_ONCE = 64  # operating points: so many fit the processor's cache
@@ -193,14 +192,6 @@ def cells(conditions: np.ndarray, domain: Domain) -> np.ndarray:
     found[:, 2] = np.where((found[:, 2] >= low) & (found[:, 2] <= high), np.clip(rounded, low, high), found[:, 2])
     found[:, 3] = _CELL[3] * np.round(found[:, 3] / _CELL[3]) if domain.period else 0.0
     return found
-
-
-def prior_draws(fields: int, count: int = _DRAWS, seed: int = 1) -> np.ndarray:
-    """Return scores of fields of which nothing is measured, evenly spread, shape (count, fields)."""
-    from scipy.stats import qmc  # half a second to import, which no run without bands spends
-
-    uniform = qmc.Sobol(d=max(fields, 1), scramble=True, seed=np.random.default_rng(seed)).random_base2(count.bit_length() - 1)
-    return ndtri(np.clip(uniform, 1e-6, 1.0 - 1e-6))[:, :fields]
 
 
 def quantiles(values: np.ndarray, probabilities: Sequence[float]) -> np.ndarray:

@@ -12,6 +12,7 @@ change.  They come apart as speed and load change.
 """
 
 import math
+from collections import Counter
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ from scipy.special import logsumexp, ndtri
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities, value_at
 from bearing_sim.watchers.estimation.posterior import SLIP, Posterior
-from bearing_sim.watchers.estimation.response import ANSWERS, ResponseModel, restored, transformed
+from bearing_sim.watchers.estimation.response import ResponseModel, restored_slip, slip_scale
 
 OIL_QUANTITY, OIL, TRACTION, CLEARANCE = "oil quantity", "viscosity or temperature of the oil", "traction of the oil", "clearance"
 COOLING, CAGE, LOAD, SENSOR, NONE = "cooling", "cage and its guide", "load", "cage speed sensor", "none of the modelled causes"
@@ -74,23 +75,23 @@ class Cause(NamedTuple):
     ----------
     group : what has changed, in words.
     what : the number that has: a dotted path, or words.
+    text : group, number and sizes in words.
     probability : given that one of the causes holds.
     before, after, low, high : of the number [SI], the latter two the ends that 5 and 95 % lie below; NaN for no modelled cause.
     evidence : natural logarithm of how much more probable it makes the departures than no change does.
     misfit : mean square of what it leaves of the departures, over their variance; about 1 for a cause that explains them.
-    text : all that in words.
     """
 
     group: str
     what: str
-    probability: float
-    before: float
-    after: float
-    low: float
-    high: float
-    evidence: float
-    misfit: float
     text: str
+    probability: float = 0.0
+    before: float = math.nan
+    after: float = math.nan
+    low: float = math.nan
+    high: float = math.nan
+    evidence: float = -math.inf
+    misfit: float = math.nan
 
 
 def group_of(field: str) -> str:
@@ -132,10 +133,8 @@ class _Departures:
     def __init__(self, response: ResponseModel, before: Posterior, evidence: Evidence):
         self.response, self.evidence = response, gathered(evidence)
         found = self.evidence
-        start = np.zeros((len(found.own), len(ANSWERS)))
-        start[:, 0], start[:, 1:3] = found.own, 1.0
         nominal = response.respond_scaled(found.conditions, response.basis_of(response.nominal[None]))[:, 0, 0]
-        self._start = transformed(start)[:, 0] - nominal
+        self._start = slip_scale(found.own) - nominal
         self._centre = before.scores.mean(axis=0)
         drawn = [before.predict(SLIP, each, float(own)) for each, own in zip(found.conditions, found.own)]
         spread = np.stack([departures for departures, _ in drawn], axis=1)
@@ -147,9 +146,7 @@ class _Departures:
     def slip(self, scores: np.ndarray, conditions: np.ndarray | None = None) -> np.ndarray:
         """Return slip at scores of shape (k, d), shape (k, m); NaN outside of the response."""
         asked = self.evidence.conditions if conditions is None else conditions
-        found = np.zeros((len(scores), len(asked), len(ANSWERS)))
-        found[:, :, 0] = self._start + self.response.respond_scaled(asked, self.response.basis_of(scores))[:, :, 0].T
-        return restored(found)[:, :, 0]
+        return restored_slip(self._start + self.response.respond_scaled(asked, self.response.basis_of(scores))[:, :, 0].T)
 
     def by_field(self, column: int, scores: np.ndarray) -> np.ndarray:
         """Return how slip changes if the score of a field becomes each of ``scores``, shape (k, m)."""
@@ -206,7 +203,8 @@ def causes_of(scene: Scene, response: ResponseModel, before: Posterior, evidence
     """
     departures, known = _Departures(response, before, evidence), quantities(type(scene))
     sizes = ndtri((np.arange(_SIZES) + 0.5) / _SIZES)
-    quiet = departures.log_likelihood(np.zeros((1, len(departures.residual))))[0][0]
+    nothing = np.zeros((1, len(departures.residual)))
+    quiet = departures.log_likelihood(nothing)[0][0]
     found = []
     centre, spread = before.scores.mean(axis=0), before.scores.var(axis=0)
     for column, field in enumerate(response.names):
@@ -214,7 +212,7 @@ def causes_of(scene: Scene, response: ResponseModel, before: Posterior, evidence
             continue
         states = np.repeat(centre[None], _SIZES + 1, axis=0)
         states[1:, column] = sizes
-        values = response.values_of(states)[:, column]
+        values = response.fields.values_of(states)[:, column]
         show = known[field].show if field in known else "{:.4g}".format
         effects = departures.by_field(column, sizes)
         found.append(_cause(group_of(field), field, values[0], values[1:], departures.log_likelihood(effects), quiet, show))
@@ -229,10 +227,8 @@ def causes_of(scene: Scene, response: ResponseModel, before: Posterior, evidence
         (SENSOR, "sensor scale", 1.0, scale, by_scale, "{:.4g}".format),
     ):
         found.append(_cause(group, what, own, values, departures.log_likelihood(effects), quiet, show))
-    nothing = np.zeros((1, len(departures.residual)))
     logarithm, misfit = departures.log_likelihood(nothing, _UNEXPLAINED)
-    nan = math.nan
-    found.append(Cause(NONE, NONE, 0.0, nan, nan, nan, nan, float(logarithm[0] - quiet), float(misfit[0]), NONE))
+    found.append(Cause(NONE, NONE, NONE, evidence=float(logarithm[0] - quiet), misfit=float(misfit[0])))
     return _with_probabilities(found)
 
 
@@ -242,20 +238,18 @@ def _cause(group: str, what: str, before: float, values: np.ndarray, likelihood:
     logarithms, misfits = likelihood
     total = float(logsumexp(logarithms))
     if not math.isfinite(total):
-        return Cause(group, what, 0.0, before, math.nan, math.nan, math.nan, -math.inf, math.nan, f"{group}: {what}")
+        return Cause(group, what, f"{group}: {what}", before=before)
     weights = np.exp(logarithms - total)
     order = np.argsort(values)
     low, after, high = np.interp((_MIDDLE[0], 0.5, _MIDDLE[1]), np.cumsum(weights[order]) - 0.5 * weights[order], values[order])
     text = f"{group}: {what} from {show(before)} to {show(float(after))} ({show(float(low))} to {show(float(high))})"
     evidence = total - math.log(len(values)) - quiet
-    return Cause(group, what, 0.0, float(before), float(after), float(low), float(high), evidence, float(misfits.min()), text)
+    return Cause(group, what, text, 0.0, float(before), float(after), float(low), float(high), evidence, float(misfits.min()))
 
 
 def _with_probabilities(found: list[Cause]) -> tuple[Cause, ...]:
     """Return causes with their probabilities, sorted by them; groups are equally probable beforehand."""
-    sizes: dict[str, int] = {}
-    for one in found:
-        sizes[one.group] = sizes.get(one.group, 0) + 1
+    sizes = Counter(one.group for one in found)
     logarithms = np.array([one.evidence - math.log(sizes[one.group]) for one in found])
     probabilities = np.exp(logarithms - logsumexp(logarithms))
     order = np.argsort(-probabilities)

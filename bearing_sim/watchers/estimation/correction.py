@@ -17,8 +17,6 @@ The errors of the correction are those at points left out of it.  Where ``planar
 slip, the correction is that of the state from ideal rolling, and the point is kept among `Correction.two_states`.
 """
 
-import hashlib
-import itertools
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -34,8 +32,8 @@ from bearing_sim.model.validity import BY_NAME
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.heat import NoHeat
 from bearing_sim.scene.scene import Scene
-from bearing_sim.watchers.estimation.response import CONDITIONS, Domain, coordinates, domain_of, embedded, restored_slip, slip_scale
-from bearing_sim.watchers.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
+from bearing_sim.watchers.estimation.response import CONDITIONS, Domain, coordinates, digest_of, domain_of, restored_slip, slip_scale
+from bearing_sim.watchers.estimation.splines import left_out, metric_of, metric_starts, searched, spline_functions, spline_weights
 
 LIFE_EXPONENT = 4.0
 """A life falls with this power of the equivalent loads: 4.5 times 8/9 (`bearing_sim.physics.rating_life.rating_life_revolutions`)."""
@@ -45,7 +43,7 @@ _SLOWEST = 0.1  # of the largest speed; slower points are corrected as these
 _FACTORS = slice(ANSWER.inner_equivalent_load, ANSWER.outer_load_maximum + 1)
 _POWERS = slice(ANSWER.shaft_power, len(ANSWER))
 _LEAST_POWER = 1e-9  # W; of a shaft that puts in less no share is taken
-_SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES = (1.0, 2.0), (0.5, 1.0), (0.35, 0.7)  # from the best of which a search starts
+_SCALES = (1.0, 2.0), (0.5, 1.0), (0.35, 0.7)  # of speed, load and temperature, from the best of which a search starts
 _SMOOTHING = (0.0, 1e-3, 1e-2, 1e-1)  # that are tried
 _LARGEST_SLIP_ERROR, _LARGEST_LIFE_ERROR = 0.01, 0.1  # larger ones are of jumps from one state to another, which no spline follows
 _NEIGHBOURS = 8  # points whose errors tell that between them
@@ -121,13 +119,11 @@ class Correction(NamedTuple):
         ----------
         conditions : columns `bearing_sim.watchers.estimation.response.CONDITIONS`, shape (n, 4).
         """
-        return self._there(np.asarray(conditions, float)) @ self.metrics[0]
-
-    def _there(self, conditions):
-        return embedded(coordinates(conditions, self.domain), self.domain)
+        return coordinates(conditions, self.domain) @ self.metrics[0]
 
     def _changes_at(self, conditions):
-        there, centres, found = self._there(conditions), self._there(self.conditions), np.empty((len(conditions), len(ANSWER)))
+        there, centres = (coordinates(each, self.domain) for each in (conditions, self.conditions))
+        found = np.empty((len(conditions), len(ANSWER)))
         for metric, columns in zip(self.metrics, _COLUMNS):
             found[:, columns] = spline_functions(there @ metric, centres @ metric) @ self.weights[:, columns]
         return np.clip(found, self.changes.min(axis=0), self.changes.max(axis=0))
@@ -182,7 +178,7 @@ def fit_correction(domain: Domain, conditions: np.ndarray, answers: np.ndarray, 
     """
     changes = changes_between(answers, others)
     kept = np.isfinite(changes).all(axis=1)
-    there = embedded(coordinates(conditions[kept], domain), domain)
+    there = coordinates(conditions[kept], domain)
     least = 4 * (there.shape[1] + 1)
     if len(there) < least:
         raise ValueError(f"{len(there)} of {len(conditions)} operating points have answers at both levels; expected {least} or more")
@@ -211,18 +207,16 @@ def _life_errors(errors):
 
 def _best_spline(there, domain, values, to_error, largest):
     """Return metric and smoothing whose spline misses the points that are left out least; errors above ``largest`` count alike."""
-    columns = 3 if domain.temperatures[1] > domain.temperatures[0] else 2
-    axes = [_SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES][:columns]
-    starts = [np.concatenate([np.log(chosen), np.zeros(columns * (columns - 1) // 2)]) for chosen in itertools.product(*axes)]
+    starts = metric_starts(_SCALES[: 2 + domain.varies_in_temperature])
 
     def missed(parameters, smoothing):
-        errors = to_error(left_out(there @ metric_of(parameters, there.shape[1], columns), values, smoothing)[:, 0])
+        errors = to_error(left_out(there @ metric_of(parameters, there.shape[1]), values, smoothing)[:, 0])
         return float(np.minimum(np.abs(errors), largest).mean()) if np.isfinite(errors).all() else math.inf
 
     scored = [(missed(start, smoothing), k, smoothing) for k, start in enumerate(starts) for smoothing in _SMOOTHING]
     _, best, smoothing = min(scored)
     found = searched(starts[best], lambda parameters: missed(parameters, smoothing))
-    return metric_of(found, there.shape[1], columns), smoothing
+    return metric_of(found, there.shape[1]), smoothing
 
 
 def correction_domain(scene: Scene, temperatures: tuple[float, float] | None = None) -> Domain:
@@ -239,8 +233,9 @@ def correction_domain(scene: Scene, temperatures: tuple[float, float] | None = N
 
 def correction_digest(scene: Scene, domain: Domain) -> str:
     """Return a hash of what a correction depends on: bearing, mounting, support, oil and life of the scene, operating points, this program."""
-    parts = (scene.bearing, scene.mounting, scene.support, scene.lubricant, scene.life, scene.dynamics, domain, CORRECTION_VERSION)
-    return hashlib.sha256("\n".join([sources_hash(), *map(repr, parts)]).encode()).hexdigest()[:24]
+    return digest_of(
+        sources_hash(), scene.bearing, scene.mounting, scene.support, scene.lubricant, scene.life, scene.dynamics, domain, CORRECTION_VERSION
+    )
 
 
 def correction_path(scene: Scene, domain: Domain) -> Path:

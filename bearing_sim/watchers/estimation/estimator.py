@@ -25,7 +25,7 @@ from bearing_sim.messages.events import Event, Level
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities
 from bearing_sim.watchers.estimation.causes import Cause, Evidence, causes_of, not_modelled
-from bearing_sim.watchers.estimation.posterior import CLEARANCE, DRAWS, INNER, OUTER, SLIP, Posterior, prior_scores
+from bearing_sim.watchers.estimation.posterior import CLEARANCE, INNER, OUTER, SLIP, Posterior, prior_scores
 from bearing_sim.watchers.estimation.response import ResponseModel
 from bearing_sim.watchers.monitoring.residual import CALIBRATED_SLIP, Course, ResidualMonitor
 
@@ -188,9 +188,7 @@ class Estimator:
         settings = self._settings
         self._known = np.array([name in known for name in response.names], bool)
         self._calibrated = np.array([name in settings.calibrated for name in response.names], bool) & ~self._known
-        self._prior = np.quantile(
-            response.values_of(np.where(self._known, response.nominal, prior_scores(DRAWS, len(self._known)))), _ENDS[1:], axis=0
-        )
+        self._prior = np.quantile(response.fields.values_of(prior_scores(response, self._known)), _ENDS[1:], axis=0)
         self._residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed, CALIBRATED_SLIP)
         self._course = Course(_OBSERVED)
         self.restart()
@@ -230,12 +228,15 @@ class Estimator:
         return self._updates > 0
 
     @property
+    def _ranges(self) -> list[list]:
+        return [[one.field, one.low, one.high, one.distribution, one.mode] for one in self._response.fields.ranges]
+
+    @property
     def learned(self) -> dict[str, object]:
         """What was learned, as numbers, texts and nested mappings that JSON has, as `restore` takes it; empty before the first measurement."""
         if not self._updates:
             return {}
-        ranges = [[one.field, one.low, one.high, one.distribution, one.mode] for one in self._response.ranges]
-        learned = {"ranges": ranges, "measured": self._before.learned, "noise": self._scatter.learned, "updates": self._updates}
+        learned = {"ranges": self._ranges, "measured": self._before.learned, "noise": self._scatter.learned, "updates": self._updates}
         learned |= {"residual": self._residual.learned}
         if self._since_change is not None:
             learned |= {"changed": self._since_change.learned, "since": self.change.since}
@@ -255,8 +256,7 @@ class Estimator:
             It is something else.
         """
         self.restart()
-        ranges = [[one.field, one.low, one.high, one.distribution, one.mode] for one in self._response.ranges]
-        if not learned or learned["ranges"] != ranges:
+        if not learned or learned["ranges"] != self._ranges:
             return
         try:
             self._before.restore(learned["measured"])
@@ -458,7 +458,7 @@ class Estimator:
 
     def estimates(self) -> tuple[Estimate, ...]:
         """Return what is known about each uncertain field, in the order of the response."""
-        values = np.quantile(self._response.values_of(self.posterior.scores), _ENDS, axis=0)
+        values = np.quantile(self._response.fields.values_of(self.posterior.scores), _ENDS, axis=0)
         prior = self._prior
         return tuple(
             Estimate(name, *map(float, values[:, k]), *map(float, prior[:, k]), bool(self._calibrated[k]))

@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from bearing_sim.levels.slip.forces import pitch_loads
 from bearing_sim.levels.slip.state import new_work
@@ -53,17 +54,14 @@ class SlipAndOil:
         self._params, self._heat = pack(scene), scene.heat
         work = new_work(self._params)
         self._bearing = self._params, work, work.ring.copy()
-        self._knots = np.zeros((3, len(_KNOTS)))
         self.follows_slip = scene.heat.law != "network" and self._params.life.method != METHODS["iso281"]
         self.follows_oil = bool(self._params.life.modified)
         self._by_laminae = self._params.life.method == METHODS["iso16281"]
-        self._follow_slip = self._follow_films = None  # code for this bearing's types, compiled now and not during a run
-        one, somewhere = np.zeros(1), self._at((1.0, 0.0, 300.0, 0.0))
-        if self.follows_slip:
-            self._follow_slip = _compiled(_follow_slip, (one, one, *somewhere, self._knots))
+        knots, somewhere = np.zeros(len(_KNOTS)), self._at((1.0, 0.0, 300.0, 0.0))  # code for this bearing's types, compiled now and not during a run
+        self._write_lives = _compiled(_write_lives, (knots, knots.copy(), *somewhere)) if self.follows_slip else _write_lives
         if self.follows_oil:
             if self._by_laminae:
-                self._follow_films = _compiled(_follow_films, (one, one, 0.0, *somewhere, self._knots))
+                self._write_factors = _compiled(_write_factors, (knots, knots.copy(), 0.0, *somewhere))
             (_film_loads if self._by_laminae else _modification_factors)(np.zeros(1), np.zeros(1), 0.05, self._params.life, np.zeros(1))
 
     def by_slip(self, conditions: np.ndarray, slips: np.ndarray) -> np.ndarray:
@@ -80,17 +78,15 @@ class SlipAndOil:
         -------
         shape (n, m); NaN where a slip is.
         """
-        slips = np.ascontiguousarray(slips, float)
-        found = np.zeros_like(slips)
-        if self.follows_slip:
-            for condition, slip, change in zip(conditions.tolist(), slips, found):
-                self._follow_slip(slip, change, *self._at(condition), self._knots)
-        return found
+        slips = np.asarray(slips, float)
+        if not self.follows_slip:
+            return np.zeros_like(slips)
+        return _changes(slips, lambda row, knots: self.rating_lives(conditions[row].tolist(), knots))
 
     def rating_lives(self, condition: Sequence[float], slips: np.ndarray) -> np.ndarray:
         """Return the logarithms of the rating life in revolutions at an operating point and slips of the cage, shape (m,)."""
         found = np.empty(len(slips))
-        _write_lives(np.asarray(slips, float), found, *self._at(condition))
+        self._write_lives(np.asarray(slips, float), found, *self._at(condition))
         return found
 
     def _at(self, condition: Sequence[float]) -> tuple:
@@ -121,13 +117,39 @@ class SlipAndOil:
             bounded = np.minimum(lives, _GREATEST_LIFE)
             heavier = bounded[:, :1] - bounded
             _film_loads(np.exp(ratios).ravel(), heavier.ravel(), pitch_diameter, self._params.life, found.ravel())
-            for condition, slip, films in zip(conditions.tolist(), slips.tolist(), found):
-                self._follow_films(films, films, slip, *self._at(condition), self._knots)
-            return found
+
+            def factors(row: int, films: np.ndarray) -> np.ndarray:
+                written = np.empty(len(films))
+                self._write_factors(films, written, float(slips[row]), *self._at(conditions[row].tolist()))
+                return written
+
+            return _changes(found, factors)
         revolutions = np.exp(np.minimum(lives, _GREATEST_LIFE)) * np.abs(conditions[:, :1]) * (3600.0 / (2.0 * math.pi))
         _modification_factors(np.exp(ratios).ravel(), revolutions.ravel(), pitch_diameter, self._params.life, found.ravel())
         found = np.where(np.isnan(lives + ratios), math.nan, np.log(found))
         return found - found[:, :1]
+
+
+def _changes(values: np.ndarray, function: Callable[[int, np.ndarray], np.ndarray]) -> np.ndarray:
+    """Return by how much a function of values differs from that of the first in each row, by a polynomial of the fourth degree through five points.
+
+    Parameters
+    ----------
+    values : shape (n, m).
+    function : ``function(row, knots)`` returns the function at knots in the range of a row; where it is not finite nothing changes.
+
+    Returns
+    -------
+    shape (n, m); NaN where a value is, and 0 elsewhere in such a row.
+    """
+    found, low, high = 0.0 * values, values.min(axis=1), values.max(axis=1)
+    for row in np.flatnonzero(high - low > _NARROWEST):
+        middle, half = 0.5 * (low[row] + high[row]), 0.5 * (high[row] - low[row])
+        coefficients = _INVERSE @ function(row, middle + half * _KNOTS)
+        if np.isfinite(coefficients[0]):
+            course = polyval((values[row] - middle) / half, [0.0, *coefficients[1:]])
+            found[row] = course - course[0]
+    return found
 
 
 def _compiled(function: Callable, arguments: tuple) -> Callable:
@@ -176,85 +198,22 @@ def _write_lives(slips, found, shaft_speed, load_y, load_z, solids, params, work
 
 
 @kernel
-def _follow_slip(slips, found, shaft_speed, load_y, load_z, solids, params, work, ring, knots):
-    """Write by how much the logarithm of the rating life at slips differs from that at the first into ``found``; both of shape (k,).
+def _write_factors(films, found, slip, shaft_speed, load_y, load_z, solids, params, work, ring):
+    """Write the logarithm of the a_ISO of all laminae at films of `_film_loads` into ``found``; both of shape (k,).
 
-    Parameters
-    ----------
-    knots : memory, shape (3, 5).
-    others : as of `_write_lives`.
+    The loads are balanced once, at a slip of the cage, for they follow no film; the other parameters are those of `_write_lives`.
     """
-    middle, half = _range(slips)
-    for k in range(_KNOTS.shape[0]):
-        knots[0, k] = middle + half * _KNOTS[k]
-    if half > 0.0:
-        _write_lives(knots[0], knots[1], shaft_speed, load_y, load_z, solids, params, work, ring)
-    _write_changes(slips, middle, half, knots, found)
-
-
-@kernel
-def _follow_films(films, found, slip, shaft_speed, load_y, load_z, solids, params, work, ring, knots):
-    """Write by how much the logarithm of the a_ISO of all laminae differs from that of the first of `_film_loads`; both of shape (k,).
-
-    The loads are balanced once, at a slip of the cage, for they follow no film.  ``found`` may be the films; the other parameters are those of
-    `_follow_slip`.
-    """
-    middle, half = _range(films)
-    if half > 0.0:
-        _take_place(shaft_speed, solids, params, work, ring)
-        ideal = 0.5 * shaft_speed * (1.0 - params.raceways.diameter_ratio)
-        pitch_loads(0.0, ideal * (1.0 - slip), load_y, load_z, OilFactors(math.nan, math.nan), params, work)
-        for k in range(_KNOTS.shape[0]):
-            oil = OilFactors(LARGEST_VISCOSITY_RATIO, max(middle + half * _KNOTS[k], 0.0) ** 2.5)
-            knots[1, k] = math.log(equivalent_loads(work.load_moments, oil, params.life).reference_modification_factor)
-    _write_changes(films, middle, half, knots, found)
-
-
-@kernel
-def _range(values):
-    """Return the middle and half the range of values; 0 for half where the range is that of rounding or a value is NaN."""
-    low, high = math.inf, -math.inf
-    for k in range(values.shape[0]):
-        if math.isnan(values[k]):
-            return 0.0, 0.0
-        low, high = min(low, values[k]), max(high, values[k])
-    half = 0.5 * (high - low)
-    return 0.5 * (low + high), half if 2.0 * half > _NARROWEST else 0.0
-
-
-@kernel
-def _write_changes(values, middle, half, knots, found):
-    """Write by how much a function of values differs from that of the first, by a polynomial of the fourth degree through five points.
-
-    Parameters
-    ----------
-    values : shape (k,).
-    middle, half : of their range, see `_range`.
-    knots : in its second row the function at `_KNOTS`, where it is not finite nothing changes; its third takes the coefficients, shape (3, 5).
-    found : result, shape (k,); may be the values.  NaN where a value is.
-    """
-    degree = _KNOTS.shape[0] - 1
-    for power in range(degree + 1):
-        knots[2, power] = 0.0
-        for k in range(degree + 1):
-            knots[2, power] += _INVERSE[power, k] * knots[1, k]
-    if not half > 0.0 or not math.isfinite(knots[2, 0]):
-        for k in range(values.shape[0]):
-            found[k] = 0.0 * values[k]
-        return
-    first = 0.0
-    for k in range(values.shape[0]):
-        place, change = (values[k] - middle) / half, 0.0
-        for power in range(degree, 0, -1):
-            change = (change + knots[2, power]) * place
-        if k == 0:
-            first = change
-        found[k] = change - first
+    _take_place(shaft_speed, solids, params, work, ring)
+    ideal = 0.5 * shaft_speed * (1.0 - params.raceways.diameter_ratio)
+    pitch_loads(0.0, ideal * (1.0 - slip), load_y, load_z, OilFactors(math.nan, math.nan), params, work)
+    for k in range(films.shape[0]):
+        oil = OilFactors(LARGEST_VISCOSITY_RATIO, max(films[k], 0.0) ** 2.5)
+        found[k] = math.log(equivalent_loads(work.load_moments, oil, params.life).reference_modification_factor)
 
 
 @kernel
 def _take_place(shaft_speed, solids, params, work, ring):
-    """Let the rings of a bearing be where and as large as they are before its loads are balanced; parameters as of `_lives_at`."""
+    """Let the rings of a bearing be where and as large as they are before its loads are balanced; parameters as of `_write_lives`."""
     work.growth[0] = total_growth(shaft_speed, growth_at(params.mounted, solids))
     work.ring[0], work.ring[1] = ring[0], ring[1]
 

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What measurements say about the uncertain fields of a bearing: a Bayesian posterior that is updated measurement by measurement.
+"""Bayesian calibration of the uncertain fields of a scene: a posterior that is updated measurement by measurement.
 
 **What is kept of the measurements.** Where the bearing has been, at operating points apart from each other (`Row`), how far the measured
 quantity departs from the level's own prediction: a mean and a variance, updated by every measurement there (a scalar Kalman filter) and widening
@@ -18,7 +18,7 @@ follow given these: what is not to be learned stays as uncertain as it was (a cu
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -27,7 +27,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtri
 
 from bearing_sim.scene.scene import Scene
-from bearing_sim.watchers.estimation.response import ANSWERS, SLIP_SCALE, ResponseModel, restored, slip_scale
+from bearing_sim.watchers.estimation.response import ANSWERS, SLIP_SCALE, ResponseModel, prior_draws, restored_slip, slip_scale
 
 SLIP, INNER, OUTER, CLEARANCE = MEASURED = ("cage_slip", "inner_ring_temperature", "outer_ring_temperature", "running_clearance")
 """What may be measured, by the names of the answers of a response."""
@@ -76,12 +76,9 @@ class Row:
     prior: float
 
 
-def prior_scores(count: int, dimensions: int, seed: int = 0) -> np.ndarray:
-    """Return draws of scores of which nothing is measured, evenly spread, shape (count, dimensions); ``count`` a power of two."""
-    from scipy.stats import qmc  # half a second to import, which no run without bands spends
-
-    uniform = qmc.Sobol(d=max(dimensions, 1), scramble=True, seed=np.random.default_rng(seed)).random_base2(count.bit_length() - 1)
-    return ndtri(np.clip(uniform, 1e-4, 1.0 - 1e-4))[:, :dimensions]
+def prior_scores(response: ResponseModel, known: np.ndarray, count: int = DRAWS) -> np.ndarray:
+    """Return draws of scores of which nothing is measured, those of known fields at the scene's own values, shape (count, d)."""
+    return np.where(known, response.nominal, prior_draws(len(known), count, seed=0, least=1e-4))
 
 
 class Posterior:
@@ -104,14 +101,13 @@ class Posterior:
         self._scene, self._response = scene, response
         self._columns, self._known = np.flatnonzero(calibrated & ~known), known
         self._own_basis = response.basis_of(response.nominal[None])
-        self._known_coefficients: dict[tuple, np.ndarray] = {}
-        self._known_scales: dict[tuple, tuple[float, float]] = {}
+        self._kept: dict[tuple, tuple[np.ndarray, float, float]] = {}
         self.restart()
 
     def restart(self) -> None:
         """Return to the ranges of the scene."""
         self._random = np.random.default_rng(0)
-        self.scores = np.where(self._known, self._response.nominal, prior_scores(DRAWS, len(self._known)))
+        self.scores = prior_scores(self._response, self._known)
         self._noise = self._random.permutation(ndtri((np.arange(DRAWS) + 0.5) / DRAWS))  # of what the draws do not explain
         self._basis = self._response.basis_of(self.scores)
         self.rows: list[Row] = []
@@ -171,11 +167,10 @@ class Posterior:
         departures = self._departures(quantity, conditions, own, self._basis)
         errors = self._errors_at(quantity, conditions, own)
         variance = float(errors @ errors)
-        same = [k for k, row in enumerate(self.rows) if row.quantity == quantity]
+        same = self._rows_of(quantity)
         if not same:
             return departures, variance
-        beside = np.zeros(len(self.rows))
-        places = np.array([self._scaled(self.rows[k].conditions) for k in same])
+        beside, places = np.zeros(len(self.rows)), self._places(self.rows[k] for k in same)
         beside[same] = _shared(errors[None], self._errors[same], self._scaled(conditions)[None], places)[0]
         factor = cho_factor(self._covariance(), lower=True)
         gain = cho_solve(factor, beside)
@@ -210,7 +205,8 @@ class Posterior:
         outcome = _judged(departure - expected, left + variance, *wild)
         variance /= max(1.0 - outcome.wild, 1e-9)
         if place is None:
-            prior = float(self._departures(quantity, conditions, own, self._response.basis_of(self._prior())).var())
+            scores = prior_scores(self._response, self._known, DRAWS // 4)
+            prior = float(self._departures(quantity, conditions, own, self._response.basis_of(scores)).var())
             self.rows.append(Row(quantity, tuple(map(float, conditions)), float(own), float(departure), float(variance), prior))
             if math.isfinite(prior):
                 self._arrange()
@@ -229,16 +225,12 @@ class Posterior:
         self._update(place)
         return outcome
 
-    def _prior(self) -> np.ndarray:
-        return np.where(self._known, self._response.nominal, prior_scores(DRAWS // 4, len(self._known)))
-
     def _place(self, quantity: str, conditions: np.ndarray) -> int | None:
         """Return the row that a measurement belongs to; None where it needs a new one."""
-        same = [k for k, row in enumerate(self.rows) if row.quantity == quantity]
+        same = self._rows_of(quantity)
         if not same:
             return None
-        places = np.array([self._scaled(self.rows[k].conditions) for k in same])
-        correlation = _correlation(self._scaled(conditions)[None], places)[0]
+        correlation = _correlation(self._scaled(conditions)[None], self._places(self.rows[k] for k in same))[0]
         best = int(correlation.argmax())
         if correlation[best] > (_SAME if len(same) < _MOST_ROWS else _ALIKE):
             return same[best]
@@ -249,15 +241,14 @@ class Posterior:
     def _arrange(self) -> None:
         """Compute what follows from the rows."""
         rows, self._centre = self.rows, self._basis.mean(axis=0)
-        errors = [self._errors_at(row.quantity, np.array(row.conditions), row.own) for row in rows]
-        self._errors = np.array(errors).reshape(len(rows), 2)
-        places = np.array([self._scaled(row.conditions) for row in rows]).reshape(-1, len(_DISTANCES))
+        self._errors = np.array([self._errors_at(row.quantity, row.conditions, row.own) for row in rows]).reshape(-1, 2)
+        places = self._places(rows)
         alike = np.array([[one.quantity == other.quantity for other in rows] for one in rows]).reshape(len(rows), len(rows))
         self._model = _shared(self._errors, self._errors, places, places) * alike
         self._diagonal = np.array([row.variance for row in rows])
         self._wander = np.array([row.prior for row in rows]) + self._model.diagonal()
         self._measured = np.array([row.departure for row in rows])
-        slopes = [self._coefficients(row.quantity, np.array(row.conditions)) for row in rows]
+        slopes = [self._response_at(row.quantity, row.conditions)[0] for row in rows]
         self._slopes = np.array(slopes).reshape(len(rows), self._basis.shape[1] + 1)
         self._predicted = self._at_rows(self._basis)
         self._seen = self._measured.copy(), self._model.diagonal() + self._diagonal
@@ -284,8 +275,7 @@ class Posterior:
         arranged last, so that errors at one operating point are the same from there on.
         """
         errors = self._scene.estimation.model_error
-        proportion, least = self._error_scales(quantity, conditions)
-        slopes = self._coefficients(quantity, conditions)
+        slopes, proportion, least = self._response_at(quantity, conditions)
         change, rising = float(slopes[:-1] @ self._centre + slopes[-1]), 1.0
         if quantity == SLIP:
             slip = own + float(slip_departures(np.array([own]), np.array([[change]]))[0, 0])
@@ -294,35 +284,33 @@ class Posterior:
             model = errors.clearance if quantity == CLEARANCE else errors.temperature
         return np.array([max(model, 1e-9), math.copysign(math.hypot(proportion * change, least) / rising, change)])
 
-    def _error_scales(self, quantity: str, conditions: np.ndarray) -> tuple[float, float]:
-        """Return by what part of a departure, and by how much at least, the response errs at an operating point."""
-        key = (quantity, *conditions.tolist())
-        if key not in self._known_scales:
-            if len(self._known_scales) >= _REMEMBERED:
-                self._known_scales.clear()
-            proportion, least = self._response.error_scales(conditions[None], ANSWERS.index(quantity))
-            self._known_scales[key] = float(proportion[0]), float(least[0])
-        return self._known_scales[key]
+    def _response_at(self, quantity: str, conditions: Sequence[float]) -> tuple[np.ndarray, float, float]:
+        """Return what the response says at an operating point, from what is kept of the newest ones.
 
-    def _coefficients(self, quantity: str, conditions: np.ndarray) -> np.ndarray:
-        """Return the coefficients of the polynomials of the fields at an operating point, the last of them that of the scene's own values."""
-        key = (quantity, *conditions.tolist())
-        if key not in self._known_coefficients:
-            if len(self._known_coefficients) >= _REMEMBERED:
-                self._known_coefficients.clear()
-            rows = self._response.condition_coefficients(conditions[None])[0, ANSWERS.index(quantity)]
-            self._known_coefficients[key] = np.append(rows, -rows @ self._own_basis[0])
-        return self._known_coefficients[key]
+        Returns
+        -------
+        coefficients of the polynomials of the fields, the last of them that of the scene's own values; by what part of a departure, and by how
+        much at least, the response errs.
+        """
+        key = (quantity, *map(float, conditions))
+        if key not in self._kept:
+            if len(self._kept) >= _REMEMBERED:
+                self._kept.clear()
+            there, column = np.array([key[1:]]), ANSWERS.index(quantity)
+            rows = self._response.condition_coefficients(there)[0, column]
+            proportion, least = self._response.error_scales(there, column)
+            self._kept[key] = np.append(rows, -rows @ self._own_basis[0]), float(proportion[0]), float(least[0])
+        return self._kept[key]
 
     def _at_rows(self, basis: np.ndarray) -> np.ndarray:
         """Return departures at all rows for draws with a basis of shape (m, j), shape (m, rows)."""
         changes = basis @ self._slopes[:, :-1].T + self._slopes[:, -1]
-        slips = [k for k, row in enumerate(self.rows) if row.quantity == SLIP]
+        slips = self._rows_of(SLIP)
         changes[:, slips] = slip_departures(np.array([self.rows[k].own for k in slips]), changes[:, slips])
         return changes
 
     def _departures(self, quantity: str, conditions: np.ndarray, own: float, basis: np.ndarray) -> np.ndarray:
-        slopes = self._coefficients(quantity, np.asarray(conditions, float))
+        slopes = self._response_at(quantity, conditions)[0]
         changes = basis @ slopes[:-1] + slopes[-1]
         return slip_departures(np.array([own]), changes[:, None])[:, 0] if quantity == SLIP else changes
 
@@ -333,24 +321,20 @@ class Posterior:
     def _approach(self) -> None:
         """Let the draws begin to approach the posterior of the rows as they are now; further measurements go on with it (`_go_on`)."""
         self._due = _MOVES
-        if not len(self._columns) or not self.rows:
-            return
-        self._factor = np.linalg.cholesky(self._covariance())
-        logarithms = self._log_likelihood(self._predicted)
-        surprise = -2.0 * float(np.median(logarithms)) / len(self.rows)
-        if surprise > _SURPRISE:
-            for power in np.geomspace(min(2.0 / surprise, 0.5), 1.0, _ANNEALED):
-                logarithms = self._move(logarithms, power)
-        self._go_on()
+        self._go_on(tempers=True)
 
-    def _go_on(self) -> None:
-        """Let the draws take a few of the steps that are due since the rows have changed."""
+    def _go_on(self, tempers: bool = False) -> None:
+        """Let the draws take a few of the steps that are due since the rows have changed, after a surprise through tempered posteriors first."""
         if not self._due or not len(self._columns) or not self.rows:
             return
         self._factor = np.linalg.cholesky(self._covariance())
         logarithms = self._log_likelihood(self._predicted)
-        for _ in range(min(_AT_ONCE, self._due)):
-            logarithms = self._move(logarithms, 1.0)
+        surprise = -2.0 * float(np.median(logarithms)) / len(self.rows)
+        powers = [1.0] * min(_AT_ONCE, self._due)
+        if tempers and surprise > _SURPRISE:
+            powers = [*np.geomspace(min(2.0 / surprise, 0.5), 1.0, _ANNEALED), *powers]
+        for power in powers:
+            logarithms = self._move(logarithms, power)
         self._due = max(self._due - _AT_ONCE, 0)
 
     def _move(self, logarithms: np.ndarray, power: float) -> np.ndarray:
@@ -381,6 +365,12 @@ class Posterior:
         self._predicted[mine] = np.where(accepted[:, None], predicted, self._predicted[mine])
         return np.where(accepted, found, logarithms)
 
+    def _rows_of(self, quantity: str) -> list[int]:
+        return [k for k, row in enumerate(self.rows) if row.quantity == quantity]
+
+    def _places(self, rows: Iterable[Row]) -> np.ndarray:
+        return np.array([self._scaled(row.conditions) for row in rows]).reshape(-1, len(_DISTANCES))
+
     def _scaled(self, conditions: Sequence[float]) -> np.ndarray:
         floor = max(_LOAD_FLOOR * self._scene.operating.radial_load, 1.0)
         speed, load, temperature = conditions[:3]
@@ -389,9 +379,7 @@ class Posterior:
 
 def slip_departures(own: np.ndarray, changes: np.ndarray) -> np.ndarray:
     """Return how far slip departs from its own values, shape (k,), by changes on the scale of the response, shape (m, k)."""
-    values = np.zeros((*changes.shape, len(ANSWERS)))
-    values[..., 0] = slip_scale(own) + changes
-    return restored(values)[..., 0] - own
+    return restored_slip(slip_scale(own) + changes) - own
 
 
 def _correlation(one: np.ndarray, other: np.ndarray) -> np.ndarray:

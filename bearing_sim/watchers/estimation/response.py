@@ -32,7 +32,7 @@ from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import Range, number_at, ranges_of
 from bearing_sim.watchers.estimation.lives import SlipAndOil
-from bearing_sim.watchers.estimation.splines import left_out, metric_of, searched, spline_functions, spline_weights
+from bearing_sim.watchers.estimation.splines import left_out, metric_of, metric_starts, searched, spline_functions, spline_weights
 
 CONDITIONS = ("shaft_speed", "load", "oil_temperature", "load_angle")
 """Columns of conditions: [rad/s, N, K, rad]; the load counts by its magnitude."""
@@ -58,7 +58,7 @@ _RIDGE, _PRODUCT_RIDGE = 1e-6, 1.0  # of polynomials of one field, and of two
 _NARROWEST = np.array([1e-9, 1e-11, 1e-11, 1e-13, 1e-6, 1e-6, 1e-9])  # widths of bands on the scales of `transformed`, below which there is none
 _RESOLVED = 1e-3  # of the width of a band; where less than that is left to fit at most operating points, it is the noise of the level
 _CIRCLE = 0.6  # radius of the circle that stands for the angle, beside coordinates from -1 to 1
-_SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES = (0.5, 1.0, 2.0), (1.0, 2.0, 4.0), (0.35, 0.7, 1.4)  # from the best of which a search starts
+_SCALES = (0.5, 1.0, 2.0), (1.0, 2.0, 4.0), (0.35, 0.7, 1.4)  # of speed, load and temperature, from the best of which a search starts
 _GOOD = 1e-3  # of the width of a band; where operating points left out are met to that no metric is searched for
 _WIDEST = 50.0  # logarithm of a width that a spline may reach
 _SMALL = 0.2  # of the width of a band; errors of smaller departures do not follow them (found by cross validation)
@@ -92,6 +92,11 @@ class Domain(NamedTuple):
     period: float
     mirror: float
 
+    @property
+    def varies_in_temperature(self) -> bool:
+        """Whether there is more than one oil temperature."""
+        return self.temperatures[1] > self.temperatures[0]
+
 
 def domain_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> Domain:
     """Return the operating points that the response of a scene must answer for: those of its table (block ``table``).
@@ -113,9 +118,9 @@ def domain_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> 
 
 
 def coordinates(conditions: np.ndarray, domain: Domain) -> np.ndarray:
-    """Return operating points as numbers in [-1, 1], in which the response is smooth, and the angle that the contour repeats with [rad].
+    """Return operating points as numbers in [-1, 1], in which the response is smooth; the angle that the contour repeats with as a point on a circle.
 
-    Speed and load count by their logarithms.  Slower and lighter points than the domain's are taken as its ends.
+    Speed and load count by their logarithms.  Slower and lighter points than the domain's are taken as its ends.  What does not vary is left out.
 
     Parameters
     ----------
@@ -124,19 +129,22 @@ def coordinates(conditions: np.ndarray, domain: Domain) -> np.ndarray:
 
     Returns
     -------
-    shape (n, 4).
+    shape (n, c), c from 2 to 5.
     """
     speed, load, temperature, angle = np.asarray(conditions, float).T
-    if math.isfinite(domain.mirror):
-        angle = np.where(speed < 0.0, 2.0 * domain.mirror - angle, angle)
-    found = np.empty((len(speed), 4))
-    for column, (values, ends) in enumerate(((np.abs(speed), domain.speeds), (load, domain.loads))):
+    found = []
+    for values, ends in ((np.abs(speed), domain.speeds), (load, domain.loads)):
         low, high = np.log(ends)
-        found[:, column] = 2.0 * (np.log(np.clip(values, *ends)) - low) / (high - low) - 1.0
-    low, high = domain.temperatures
-    found[:, 2] = 2.0 * (temperature - low) / (high - low) - 1.0 if high > low else 0.0
-    found[:, 3] = 2.0 * math.pi * angle / domain.period if domain.period else 0.0
-    return found
+        found.append(2.0 * (np.log(np.clip(values, *ends)) - low) / (high - low) - 1.0)
+    if domain.varies_in_temperature:
+        low, high = domain.temperatures
+        found.append(2.0 * (temperature - low) / (high - low) - 1.0)
+    if domain.period:
+        if math.isfinite(domain.mirror):
+            angle = np.where(speed < 0.0, 2.0 * domain.mirror - angle, angle)
+        turned = 2.0 * math.pi * angle / domain.period
+        found += [_CIRCLE * np.cos(turned), _CIRCLE * np.sin(turned)]
+    return np.stack(found, axis=1)
 
 
 def conditions_at(positions: np.ndarray, domain: Domain) -> np.ndarray:
@@ -165,7 +173,8 @@ class Fields:
         self._logarithmic = np.array([one.distribution == "log_uniform" for one in ranges], bool)
         self._low = np.array([math.log(one.low) if one.distribution == "log_uniform" else one.low for one in ranges])
         self._width = np.array([math.log(one.high / one.low) if one.distribution == "log_uniform" else one.high - one.low for one in ranges])
-        self._mode = np.array([_mode(one, value) for one, value in zip(ranges, own)])  # of its width; NaN where it is not triangular
+        self._is_triangular = np.array([one.distribution == "triangular" for one in ranges], bool)
+        self._mode = np.array([_mode(one, value) for one, value in zip(ranges, own)])  # of its width
 
     def __len__(self) -> int:
         return len(self.ranges)
@@ -175,10 +184,9 @@ class Fields:
         from scipy.special import ndtr
 
         probability = ndtr(np.clip(scores, -_FARTHEST, _FARTHEST))
-        mode = np.where(np.isnan(self._mode), 0.5, self._mode)
-        rising = np.sqrt(probability * mode)
-        falling = 1.0 - np.sqrt((1.0 - probability) * (1.0 - mode))
-        return np.where(np.isnan(self._mode), probability, np.where(probability < mode, rising, falling))
+        rising = np.sqrt(probability * self._mode)
+        falling = 1.0 - np.sqrt((1.0 - probability) * (1.0 - self._mode))
+        return np.where(self._is_triangular, np.where(probability < self._mode, rising, falling), probability)
 
     def values_of(self, scores: np.ndarray) -> np.ndarray:
         """Return the values of the fields [SI] for scores of shape (..., d)."""
@@ -192,20 +200,34 @@ class Fields:
         values = np.asarray(values, float)
         counted = np.where(self._logarithmic, np.log(np.where(self._logarithmic, values, 1.0)), values)
         fraction = np.clip((counted - self._low) / self._width, 0.0, 1.0)
-        mode = np.where(np.isnan(self._mode), 0.5, self._mode)
-        rising = fraction**2 / np.where(mode > 0.0, mode, 1.0)
-        falling = 1.0 - (1.0 - fraction) ** 2 / np.where(mode < 1.0, 1.0 - mode, 1.0)
-        probability = np.where(np.isnan(self._mode), fraction, np.where(fraction < mode, rising, falling))
+        rising = fraction**2 / np.where(self._mode > 0.0, self._mode, 1.0)
+        falling = 1.0 - (1.0 - fraction) ** 2 / np.where(self._mode < 1.0, 1.0 - self._mode, 1.0)
+        probability = np.where(self._is_triangular, np.where(fraction < self._mode, rising, falling), fraction)
         with np.errstate(divide="ignore"):
             return np.clip(ndtri(probability), -_FARTHEST, _FARTHEST)
 
 
 def _mode(one: Range, own: float) -> float:
-    """Return the peak of a triangular range as a fraction of its width (see `bearing_sim.scene.uncertainty.Range`); NaN for the others."""
-    if one.distribution != "triangular":
-        return math.nan
+    """Return the peak of a triangular range as a fraction of its width (see `bearing_sim.scene.uncertainty.Range`)."""
     mode = one.mode if one.mode is not None else own if one.low <= own <= one.high else 0.5 * (one.low + one.high)
     return (mode - one.low) / (one.high - one.low)
+
+
+def prior_draws(fields: int, count: int = 256, seed: int = 1, least: float = 1e-6) -> np.ndarray:
+    """Return scores of fields of which nothing is measured, evenly spread, shape (count, fields).
+
+    Parameters
+    ----------
+    fields : number of them.
+    count : of draws, a power of two.
+    seed : of the sequence.
+    least : probability to lie beyond the farthest scores on either side.
+    """
+    from scipy.special import ndtri
+    from scipy.stats import qmc  # half a second to import, which no run without bands spends
+
+    uniform = qmc.Sobol(d=max(fields, 1), scramble=True, seed=np.random.default_rng(seed)).random_base2(count.bit_length() - 1)
+    return ndtri(np.clip(uniform, least, 1.0 - least))[:, :fields]
 
 
 def transformed(answers: np.ndarray) -> np.ndarray:
@@ -241,19 +263,20 @@ def add_slip_and_oil(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAn
     """
     if effects.follows_slip:
         scaled[:, :, _LIFE] += effects.by_slip(conditions, restored_slip(scaled[:, :, _SLIP]))
-    scaled[:, :, _MODIFIED] += scaled[:, :, _LIFE] - scaled[:, :1, _LIFE] + _by_oil(scaled, conditions, effects)
+    scaled[:, :, _MODIFIED] += _changes_of_modified_life(scaled, conditions, effects)
 
 
 def _without_slip_and_oil(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAndOil) -> np.ndarray:
     """Return answers without what `add_slip_and_oil` adds; the parameters are its."""
     found = scaled.copy()
     found[:, :, _LIFE] -= effects.by_slip(conditions, restored_slip(scaled[:, :, _SLIP]))
-    found[:, :, _MODIFIED] -= scaled[:, :, _LIFE] - scaled[:, :1, _LIFE] + _by_oil(scaled, conditions, effects)
+    found[:, :, _MODIFIED] -= _changes_of_modified_life(scaled, conditions, effects)
     return found
 
 
-def _by_oil(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAndOil) -> np.ndarray:
-    return effects.by_oil(conditions, restored_slip(scaled[:, 0, _SLIP]), scaled[:, :, _LIFE], scaled[:, :, _RATIO])
+def _changes_of_modified_life(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAndOil) -> np.ndarray:
+    lives = scaled[:, :, _LIFE]
+    return lives - lives[:, :1] + effects.by_oil(conditions, restored_slip(scaled[:, 0, _SLIP]), lives, scaled[:, :, _RATIO])
 
 
 def restored_slip(scaled: np.ndarray) -> np.ndarray:
@@ -310,22 +333,9 @@ class ResponseModel(NamedTuple):
         return tuple(one.field for one in self.fields.ranges)
 
     @property
-    def ranges(self) -> tuple[Range, ...]:
-        """Ranges of the uncertain fields."""
-        return self.fields.ranges
-
-    @property
     def nominal(self) -> np.ndarray:
         """Scores of the scene's own values, shape (d,)."""
         return self.fields.scores_of(self.fields.own)
-
-    def scores_of(self, values: np.ndarray) -> np.ndarray:
-        """Return the scores of values [SI] of the fields, shape (..., d)."""
-        return self.fields.scores_of(values)
-
-    def values_of(self, scores: np.ndarray) -> np.ndarray:
-        """Return the values of the fields [SI] for scores, shape (..., d)."""
-        return self.fields.values_of(scores)
 
     def outside(self, conditions: np.ndarray) -> np.ndarray:
         """Return whether operating points lie outside of what the response was fitted to, shape (n,).
@@ -400,7 +410,7 @@ class ResponseModel(NamedTuple):
         -------
         proportions and least errors, each of shape (n,).
         """
-        there = embedded(coordinates(np.asarray(conditions, float), self.domain), self.domain) @ self.metrics[column]
+        there = coordinates(conditions, self.domain) @ self.metrics[column]
         centres = self.centres @ self.metrics[column]
         distances = np.square(there[:, None] - centres).sum(axis=-1)
         near = np.argsort(distances, axis=1)[:, :_NEIGHBOURS]
@@ -432,8 +442,8 @@ class Interpolation:
 
     def coefficients(self, conditions: np.ndarray) -> np.ndarray:
         """Return what `ResponseModel.condition_coefficients` does; zeros for all other answers."""
-        model, conditions = self._model, np.asarray(conditions, float)
-        there = embedded(coordinates(conditions, model.domain), model.domain) @ self._metrics
+        model = self._model
+        there = coordinates(conditions, model.domain) @ self._metrics
         found = np.moveaxis(spline_functions(there, self._centres) @ self._weights, 0, 1)
         departures = found[:, :, 2:] * np.exp(found[:, :, 1:2])
         coefficients = np.zeros((len(conditions), len(ANSWERS), found.shape[2] - 1))
@@ -441,35 +451,6 @@ class Interpolation:
         coefficients[:, self._answers, 1:] = departures
         coefficients[model.outside(conditions)] = math.nan
         return coefficients
-
-
-def embedded(there: np.ndarray, domain: Domain) -> np.ndarray:
-    """Return `coordinates` with the angle as a point on a circle, without those that do not vary, shape (n, c)."""
-    columns = [there[:, 0], there[:, 1]]
-    if domain.temperatures[1] > domain.temperatures[0]:
-        columns.append(there[:, 2])
-    if domain.period:
-        columns += [_CIRCLE * np.cos(there[:, 3]), _CIRCLE * np.sin(there[:, 3])]
-    return np.stack(columns, axis=1)
-
-
-def _legendre(positions: np.ndarray, degree: int) -> np.ndarray:
-    """Return Legendre polynomials of unit variance up to a degree, shape (*positions.shape, degree + 1)."""
-    found = np.empty((*positions.shape, degree + 1))
-    found[..., 0] = 1.0
-    if degree:
-        found[..., 1] = positions
-    for k in range(1, degree):
-        found[..., k + 1] = ((2 * k + 1) * positions * found[..., k] - k * found[..., k - 1]) / (k + 1)
-    return found * np.sqrt(2.0 * np.arange(degree + 1) + 1.0)
-
-
-def _products(table: np.ndarray, terms: np.ndarray) -> np.ndarray:
-    """Return products over columns of polynomials, shape (n, terms), from polynomials of shape (n, columns, degrees)."""
-    found = np.ones((len(table), len(terms)))
-    for column in range(terms.shape[1]):
-        found *= table[:, column, terms[:, column]]
-    return found
 
 
 def _score_terms(count: int) -> np.ndarray:
@@ -510,8 +491,7 @@ def fit_response(
         raise ValueError("expected the same scores at each operating point, the scene's own values first")
     scaled = transformed(answers).reshape(len(nodes), -1, len(ANSWERS))
     kept = np.isfinite(scaled[:, :, :4]).all(axis=(1, 2))
-    there = coordinates(nodes[kept], domain)
-    centres = embedded(there, domain)
+    centres = coordinates(nodes[kept], domain)
     if len(centres) < 4 * (centres.shape[1] + 1):
         raise ValueError(f"{len(centres)} of {len(nodes)} operating points have answers; expected {4 * (centres.shape[1] + 1)} or more")
     widths = _widths(np.nan_to_num(scaled[kept, 1:] - scaled[kept, :1]))
@@ -538,7 +518,13 @@ def fit_response(
 
 
 def _basis(fields: Fields, terms: np.ndarray, scores: np.ndarray) -> np.ndarray:
-    return _products(_legendre(2.0 * fields.fractions_of(scores) - 1.0, 2), terms)
+    """Return products of Legendre polynomials of unit variance of the fields, of these degrees, shape (m, j)."""
+    positions = 2.0 * fields.fractions_of(scores) - 1.0
+    table = np.stack([np.ones_like(positions), positions, (3.0 * positions * positions - 1.0) / 2.0], axis=-1) * np.sqrt([1.0, 3.0, 5.0])
+    found = np.ones((len(scores), len(terms)))
+    for column, degrees in enumerate(terms.T):
+        found *= table[:, column, degrees]
+    return found
 
 
 def _widths(departures: np.ndarray) -> np.ndarray:
@@ -590,31 +576,21 @@ def _best_metrics(centres: np.ndarray, domain: Domain, values: np.ndarray, chang
     distances along these lines count for less takes a sum of speed, load and temperature, not only each by its own scale.  The parameters are
     those of `_departures_left_out` for all answers.
     """
-    columns = 3 if domain.temperatures[1] > domain.temperatures[0] else 2
-    axes = [_SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES][:columns]
-    starts = [np.concatenate([np.log(chosen), np.zeros(columns * (columns - 1) // 2)]) for chosen in itertools.product(*axes)]
-    widths = np.exp(values[:, :, 1])
-    missed = [_missed(metric_of(start, centres.shape[1], columns), centres, values, change, departures, widths) for start in starts]
-    metrics = []
-    for answer, best in enumerate(np.argmin(missed, axis=0)):
-        start, one = starts[best], [answer]
-        if missed[best][answer] > _GOOD:
-            start = searched(
-                start,
-                lambda logarithms: _missed(
-                    metric_of(logarithms, centres.shape[1], columns), centres, values[:, one], change, departures[:, :, one], widths[:, one]
-                )[0],
-            )
-        metrics.append(metric_of(start, centres.shape[1], columns))
+    starts, size = metric_starts(_SCALES[: 2 + domain.varies_in_temperature]), centres.shape[1]
+
+    def missed(parameters: np.ndarray, one: Sequence[int]) -> np.ndarray:
+        """Return the mean error of departures at operating points left out over the widths of bands there, each counted as 1 at most."""
+        errors = _departures_left_out(centres @ metric_of(parameters, size), values[:, one], change, departures[:, :, one])
+        return np.minimum(np.abs(errors) / np.exp(values[:, None, one, 1]), 1.0).mean(axis=(0, 1))
+
+    every = list(range(values.shape[1]))
+    at_starts, metrics = [missed(start, every) for start in starts], []
+    for answer, best in enumerate(np.argmin(at_starts, axis=0)):
+        start = starts[best]
+        if at_starts[best][answer] > _GOOD:
+            start = searched(start, lambda parameters: missed(parameters, [answer])[0])
+        metrics.append(metric_of(start, size))
     return np.array(metrics)
-
-
-def _missed(
-    metric: np.ndarray, centres: np.ndarray, values: np.ndarray, change: np.ndarray, departures: np.ndarray, widths: np.ndarray
-) -> np.ndarray:  # fmt: skip
-    """Return the mean error of departures at operating points left out over the widths of bands there, each counted as 1 at most, shape (a,)."""
-    errors = np.abs(_departures_left_out(centres @ metric, values, change, departures)) / widths[:, None]
-    return np.minimum(errors, 1.0).mean(axis=(0, 1))
 
 
 def response_digest(scene: Scene) -> str:
@@ -623,7 +599,11 @@ def response_digest(scene: Scene) -> str:
 
 
 def _digest(code: str, scene: Scene) -> str:
-    parts = (scene.bearing, scene.mounting, scene.lubricant, scene.heat, scene.life, uncertain_ranges(scene), domain_of(scene), VERSION)
+    return digest_of(code, scene.bearing, scene.mounting, scene.lubricant, scene.heat, scene.life, uncertain_ranges(scene), domain_of(scene), VERSION)
+
+
+def digest_of(code: str, *parts: object) -> str:
+    """Return a hash of the code and of all else that something kept depends on."""
     return hashlib.sha256("\n".join([code, *map(repr, parts)]).encode()).hexdigest()[:24]
 
 
@@ -695,7 +675,7 @@ def kept_response(scene: Scene) -> ResponseModel | None:
     """Return the response of a scene that is on disk or comes with the package, or None: `bearing-sim table SCENE --bands` builds it."""
     belonging = repr((uncertain_ranges(scene), domain_of(scene)))
     found = filter(None, (read_response(path_of(scene)) for path_of in (response_path, bundled_path)))
-    return next((each for each in found if repr((each.ranges, each.domain)) == belonging), None)
+    return next((each for each in found if repr((each.fields.ranges, each.domain)) == belonging), None)
 
 
 def scene_fields(scene: Scene) -> Fields:

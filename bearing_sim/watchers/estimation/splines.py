@@ -1,8 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Polyharmonic splines through scattered points, their errors where a point is left out, and the metric in which distances count best."""
 
+import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -71,8 +72,21 @@ def searched(start: np.ndarray, missed: Callable[[np.ndarray], float]) -> np.nda
     return found.x
 
 
-def metric_of(parameters: np.ndarray, size: int, columns: int) -> np.ndarray:
-    """Return a metric by the logarithms of the scales of its first columns and the slopes between these, shape (size, size)."""
+def metric_starts(scales: Sequence[Sequence[float]]) -> list[np.ndarray]:
+    """Return the parameters of `metric_of` for all combinations of scales of the first columns, without slopes."""
+    slopes = np.zeros(len(scales) * (len(scales) - 1) // 2)
+    return [np.concatenate([np.log(chosen), slopes]) for chosen in itertools.product(*scales)]
+
+
+def metric_of(parameters: np.ndarray, size: int) -> np.ndarray:
+    """Return a metric by the logarithms of the scales of its first columns and the slopes between these, shape (size, size).
+
+    Parameters
+    ----------
+    parameters : c scales and c (c - 1)/2 slopes of c columns.
+    size : number of all columns.
+    """
+    columns = math.isqrt(2 * len(parameters))
     found = np.eye(size)
     scales = np.exp(parameters[:columns])
     found[range(columns), range(columns)] = scales

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The stretches of wall time whose running a bearing's totals contain, so that a recording fills what is missing once and only once."""
+"""Time intervals that are already included in a bearing's totals, so that a recording fills what is missing once and only once."""
 
 from bisect import bisect_left, bisect_right
 
@@ -38,8 +38,6 @@ class Covered:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Covered) and self.stretches == other.stretches
 
-    __hash__ = None
-
     def __contains__(self, time_ns: int) -> bool:
         """Whether an instant [ns since the epoch] is covered."""
         place = bisect_right(self._begins, time_ns) - 1
@@ -57,9 +55,7 @@ class Covered:
 
     def copy(self) -> "Covered":
         """Return independent stretches with the same times."""
-        other = Covered()
-        other._begins, other._ends = self._begins.copy(), self._ends.copy()
-        return other
+        return Covered(self.stretches)
 
     def add(self, begin: int, end: int) -> None:
         """Cover the time from ``begin`` to ``end`` [ns since the epoch] as well; nothing if it is empty."""

@@ -10,6 +10,7 @@ import hashlib
 import importlib.util
 import io
 import json
+import operator
 import os
 import subprocess
 import sys
@@ -45,6 +46,7 @@ CLASSES = {
     "load_seconds": _class_names("load_ratio", LOAD_BOUNDS),
 }
 """Columns of the hours by regime, by field of the totals."""
+_EXTREMES = {"largest_slip": max, "lowest_clearance": min}
 
 
 def row_of(totals: Totals) -> dict[str, float | int | None]:
@@ -53,7 +55,7 @@ def row_of(totals: Totals) -> dict[str, float | int | None]:
     row |= {f"{name}_hours": getattr(totals, f"{name}_seconds") / _HOUR for name in ("monitored", "running")}
     for name, columns in CLASSES.items():
         row |= {column: seconds / _HOUR for column, seconds in zip(columns, getattr(totals, name))}
-    extremes = {"largest_slip": totals.largest_slip, "lowest_clearance": totals.lowest_clearance}
+    extremes = {name: getattr(totals, name) for name in _EXTREMES}
     return row | {name: None if extreme is None else extreme.value for name, extreme in extremes.items()}
 
 
@@ -61,14 +63,10 @@ def added(one: Mapping[str, object], other: Mapping[str, object]) -> dict[str, o
     """Return the row of two stretches of one day together."""
     together = dict(one)
     for name, value in other.items():
-        if value is None or together.get(name) is None:
-            together[name] = value if together.get(name) is None else together[name]
-        elif name == "largest_slip":
-            together[name] = max(together[name], value)
-        elif name == "lowest_clearance":
-            together[name] = min(together[name], value)
-        elif name != "day":
-            together[name] = together[name] + value
+        if together.get(name) is None:
+            together[name] = value
+        elif value is not None and name != "day":
+            together[name] = _EXTREMES.get(name, operator.add)(together[name], value)
     return together
 
 
@@ -213,10 +211,9 @@ def _write_parquet(path: Path, rows: list[dict[str, object]], metadata: dict[byt
     import pyarrow
     from pyarrow import parquet
 
-    columns = {name: [row.get(name) for row in rows] for name in rows[0]} if rows else {"day": []}
     kinds = {"day": pyarrow.string(), "starts": pyarrow.int64()}
-    schema = pyarrow.schema([(name, kinds.get(name, pyarrow.float64())) for name in columns], metadata)
-    parquet.write_table(pyarrow.table(columns, schema=schema), path)
+    schema = pyarrow.schema([(name, kinds.get(name, pyarrow.float64())) for name in (rows[0] if rows else ["day"])], metadata)
+    parquet.write_table(pyarrow.Table.from_pylist(rows, schema), path)
 
 
 def _write_rows(text: TextIO, rows: list[dict[str, object]]) -> None:

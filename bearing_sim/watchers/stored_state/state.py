@@ -7,21 +7,21 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
+from pydantic import AfterValidator, FiniteFloat, PlainValidator, TypeAdapter, ValidationError
 
 from bearing_sim.files.kept import Damaged
 from bearing_sim.files.provenance import package_version
 from bearing_sim.scene.scene import OPERATING_POINT, Scene
 from bearing_sim.scene.uncertainty import value_at
 from bearing_sim.watchers.stored_state.covered import Covered
-from bearing_sim.watchers.stored_state.totals import Criteria, Totals, totals_of
+from bearing_sim.watchers.stored_state.totals import Criteria, Instant, Totals, totals_of
 
 VERSION = 2
 """Of the contents of a state file; `migrated` brings older ones to it."""
 
-_END_OF_TIMES = 2**63  # [ns since the epoch]
 _LONGEST_REASON = 300  # characters
 _DAY, _HOUR = 86_400_000_000_000, 3_600_000_000_000  # [ns]
 _MOST_ESTIMATES = 400  # entries of the history of calibrated fields; a longer one is kept at wider intervals
@@ -51,9 +51,9 @@ class Thermal:
     rings : of inner and outer ring without what measured temperatures have corrected [K].
     """
 
-    time_ns: int
-    nodes: list[float]
-    rings: list[float]
+    time_ns: Instant
+    nodes: list[FiniteFloat]
+    rings: list[FiniteFloat]
 
 
 class PastEstimates(NamedTuple):
@@ -65,8 +65,17 @@ class PastEstimates(NamedTuple):
     fields : value, 5 and 95 % quantile [SI] by dotted path.
     """
 
-    time_ns: int
-    fields: dict[str, tuple[float, float, float]]
+    time_ns: Instant
+    fields: dict[str, tuple[FiniteFloat, FiniteFloat, FiniteFloat]]
+
+
+def _printable(text: str) -> str:
+    if not text.isprintable():
+        raise ValueError("expected printable characters")
+    return text
+
+
+_STRETCHES = TypeAdapter(list[tuple[Instant, Instant]])
 
 
 @dataclass
@@ -93,22 +102,22 @@ class StoredState:
     retired_ns : when the bearing was taken out (``~/replace_bearing``); None while it is in service.
     """
 
-    serial: str
+    serial: Annotated[str, AfterValidator(_printable)]
     identity: dict[str, object]
     totals: Totals = field(default_factory=Totals)
-    covered: Covered = field(default_factory=Covered)
-    until_ns: int = 0
+    covered: Annotated[Covered, PlainValidator(lambda stretches: Covered(_STRETCHES.validate_python(stretches)))] = field(default_factory=Covered)
+    until_ns: Instant = 0
     days: dict[str, Totals] = field(default_factory=dict)
-    folds: int = 0
+    folds: Instant = 0
     is_turning: bool = False
-    calibration: dict[str, float] = field(default_factory=dict)
+    calibration: dict[str, FiniteFloat] = field(default_factory=dict)
     thermal: Thermal | None = None
     learned: dict[str, dict] = field(default_factory=dict)
     estimates: list[PastEstimates] = field(default_factory=list)
-    writes: int = 0
-    created_ns: int = 0
-    written_ns: int = 0
-    retired_ns: int | None = None
+    writes: Instant = 0
+    created_ns: Instant = 0
+    written_ns: Instant = 0
+    retired_ns: Instant | None = None
 
     def take(self, block: np.ndarray, times_ns: np.ndarray, seconds: np.ndarray, by: Criteria, counted: np.ndarray | None = None) -> None:
         """Count samples.
@@ -181,13 +190,12 @@ class StoredState:
 
     def as_mapping(self) -> dict[str, object]:
         """Return the contents of a state file."""
-        fields = {each.name: getattr(self, each.name) for each in dataclasses.fields(self)}
-        return fields | {
-            "totals": self.totals.as_mapping(),
+        return {
+            **vars(self),  # not copied: what was learned and the estimates of years may be long, and this is called every few seconds
+            "totals": dataclasses.asdict(self.totals),
             "covered": self.covered.stretches,
-            "days": {day: totals.as_mapping() for day, totals in self.days.items()},
-            "thermal": None if self.thermal is None else dataclasses.asdict(self.thermal),
-            "estimates": [[past.time_ns, past.fields] for past in self.estimates],
+            "days": {day: dataclasses.asdict(totals) for day, totals in self.days.items()},
+            "thermal": self.thermal and dataclasses.asdict(self.thermal),
             "package_version": package_version(),
         }
 
@@ -200,52 +208,17 @@ class StoredState:
         Damaged
             They are not a state's.
         """
+        if "totals" not in mapping:
+            raise Damaged("it is not a bearing's state: it has no totals")
         try:
-            fields = {each.name: mapping[each.name] for each in dataclasses.fields(cls) if each.name in mapping}
-            for name in ("until_ns", "folds", "writes", "created_ns", "written_ns"):
-                fields[name] = _counted(name, fields.get(name, 0))
-            if fields.get("retired_ns") is not None:
-                fields["retired_ns"] = _counted("retired_ns", fields["retired_ns"])
-            fields["totals"] = Totals.from_mapping(mapping["totals"])
-            fields["covered"] = Covered(mapping.get("covered", ()))
-            fields["days"] = {day: Totals.from_mapping(each) for day, each in mapping.get("days", {}).items()}
-            fields["thermal"] = _thermal(mapping["thermal"]) if mapping.get("thermal") else None
-            fields["calibration"] = {str(name): float(value) for name, value in mapping.get("calibration", {}).items()}
-            fields["learned"] = {str(name): dict(each) for name, each in mapping.get("learned", {}).items()}
-            fields["estimates"] = [_past_estimates(*each) for each in mapping["estimates"]]
-            serial = str(mapping["serial"])
-            if not serial.isprintable():
-                raise ValueError(f"serial = {serial!r}: expected printable characters")
-            for totals in (fields["totals"], *fields["days"].values()):
-                for extreme in filter(None, (totals.largest_slip, totals.lowest_clearance)):
-                    _counted("the time of an extreme", extreme.time_ns)
-            for edge in (edge for pair in fields["covered"].stretches for edge in pair):
-                _counted("the edge of a stretch", edge)
-            return cls(**{**fields, "serial": serial, "identity": dict(mapping["identity"])})
-        except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
-            raise Damaged(f"it is not a bearing's state: {type(error).__name__}: {str(error)[:_LONGEST_REASON]}") from None
+            return _CONTENTS.validate_python(mapping)
+        except ValidationError as error:
+            first = error.errors()[0]
+            reason = f"{'.'.join(map(str, first['loc']))}: {first['msg']}; found {first['input']!r}"
+            raise Damaged(f"it is not a bearing's state: {reason[:_LONGEST_REASON]}") from None
 
 
-def _counted(name: str, value: object) -> int:
-    """Return a time [ns since the epoch] or a count; raise ValueError for one that no state has."""
-    number = int(value)
-    if not 0 <= number < _END_OF_TIMES:
-        raise ValueError(f"{name}: expected a number from 0 to 2^63")
-    return number
-
-
-def _past_estimates(time_ns: object, fields: Mapping[str, object]) -> PastEstimates:
-    """Return an entry of the history of calibrated fields from the contents of a file."""
-    known = {str(path): tuple(float(number) for number in numbers) for path, numbers in fields.items()}
-    if not all(len(numbers) == 3 and all(map(math.isfinite, numbers)) for numbers in known.values()):
-        raise ValueError("estimates: expected value, 5 and 95 % quantile of each field")
-    return PastEstimates(_counted("the time of estimates", time_ns), known)
-
-
-def _thermal(fields: Mapping[str, object]) -> Thermal:
-    """Return temperatures from the contents of a file."""
-    known = Thermal(**fields)
-    return Thermal(_counted("time_ns", known.time_ns), [float(each) for each in known.nodes], [float(each) for each in known.rings])
+_CONTENTS = TypeAdapter(StoredState)
 
 
 def new_state(scene: Scene, serial: str, now_ns: int) -> StoredState:
@@ -283,34 +256,23 @@ def migrated(version: int, contents: Mapping[str, object]) -> Mapping[str, objec
     Damaged
         The version is unknown, or the contents are not what that version has.
     """
-    while version < VERSION:
-        if version not in _MIGRATIONS:
-            raise Damaged(f"its version {version} is unknown")
-        version, contents = version + 1, _MIGRATIONS[version](contents)
-    return contents
+    if version not in range(VERSION + 1):
+        raise Damaged(f"its version {version} is unknown")
+    return contents if version else _from_books(contents)  # version 1 had no estimates, and nothing else has changed since
 
 
 def _from_books(contents: Mapping[str, object]) -> dict[str, object]:
     """Migrate from version 0, which people write by hand for a bearing whose life so far is in the books of the plant."""
-    known = {"serial", "damage", "running_hours", "revolutions", "starts"}
-    if unknown := sorted(contents.keys() - known):
-        raise Damaged(f"version 0 has no {', '.join(unknown)}; expected some of {', '.join(sorted(known))}")
-    hours = contents.get("running_hours", 0.0)
-    if isinstance(hours, bool) or not isinstance(hours, (int, float)) or not math.isfinite(hours):
-        raise Damaged(f"running_hours = {hours!r}: expected a number of hours")
-    seconds = 3600.0 * hours
-    totals = {name: contents[name] for name in ("damage", "revolutions", "starts") if name in contents}
+    numbers = {name: contents.get(name, 0) for name in ("damage", "running_hours", "revolutions", "starts")}
+    if unknown := sorted(contents.keys() - numbers.keys() - {"serial"}):
+        raise Damaged(f"version 0 has no {', '.join(unknown)}; expected some of {', '.join(sorted({*numbers, 'serial'}))}")
+    for name, value in numbers.items():
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value < math.inf:
+            raise Damaged(f"{name} = {value!r}: expected a finite number, not negative")
+    seconds = 3600.0 * numbers.pop("running_hours")
     unclassed = {"slip_seconds": [0.0, 0.0, 0.0, seconds], "lubrication_seconds": [0.0] * 5 + [seconds]}
-    totals |= {"running_seconds": seconds, "monitored_seconds": seconds, **unclassed}
-    return {"serial": contents.get("serial", ""), "identity": {}, "totals": totals}
-
-
-def _without_estimates(contents: Mapping[str, object]) -> dict[str, object]:
-    """Migrate from version 1, which knew no calibration by measurements."""
-    return {**contents, "estimates": []}
-
-
-_MIGRATIONS = {0: _from_books, 1: _without_estimates}
+    totals = {**numbers, "running_seconds": seconds, "monitored_seconds": seconds, **unclassed}
+    return {"serial": str(contents.get("serial", "")), "identity": {}, "totals": totals}
 
 
 def _is_same(one: object, other: object) -> bool:

@@ -10,11 +10,11 @@ A regime is a class of slip, of lubrication or of load.  The bounds stay as they
 
 import dataclasses
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
+from pydantic import Field, FiniteFloat
 
 from bearing_sim.model.turning import turns
 from bearing_sim.scene.ratings import rate
@@ -27,12 +27,17 @@ _LEAST_OF_OPERATING = 0.01  # of the operating speed: a shaft that is made to tu
 _STOPPED = 0.5  # of the speed from which on the shaft runs: below, it has stopped, and the next running is a start
 _HOUR = 3600.0  # [s]
 
+Amount = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
+"""A sum in a state file."""
+Instant = Annotated[int, Field(ge=0, lt=2**63)]
+"""A time [ns since the epoch] or a count in a state file."""
+
 
 class Extreme(NamedTuple):
     """The largest or the lowest value of a quantity so far."""
 
-    value: float
-    time_ns: int  # [ns since the epoch]
+    value: FiniteFloat
+    time_ns: Instant
 
 
 class Criteria(NamedTuple):
@@ -64,6 +69,10 @@ def _zeros(classes: int):
     return field(default_factory=lambda: [0.0] * classes)
 
 
+def _amounts(classes: int):
+    return Annotated[list[Amount], Field(min_length=classes, max_length=classes)]
+
+
 @dataclass
 class Totals:
     """Sums and extremes over a time.
@@ -81,15 +90,15 @@ class Totals:
     lowest_clearance : the lowest running clearance [m], likewise.
     """
 
-    damage: float = 0.0
-    basic_damage: float = 0.0
-    revolutions: float = 0.0
-    monitored_seconds: float = 0.0
-    running_seconds: float = 0.0
-    starts: int = 0
-    slip_seconds: list[float] = _zeros(len(SLIP_BOUNDS) + 2)
-    lubrication_seconds: list[float] = _zeros(len(KAPPA_BOUNDS) + 2)
-    load_seconds: list[float] = _zeros(len(LOAD_BOUNDS) + 1)
+    damage: Amount = 0.0
+    basic_damage: Amount = 0.0
+    revolutions: Amount = 0.0
+    monitored_seconds: Amount = 0.0
+    running_seconds: Amount = 0.0
+    starts: Instant = 0
+    slip_seconds: _amounts(len(SLIP_BOUNDS) + 2) = _zeros(len(SLIP_BOUNDS) + 2)
+    lubrication_seconds: _amounts(len(KAPPA_BOUNDS) + 2) = _zeros(len(KAPPA_BOUNDS) + 2)
+    load_seconds: _amounts(len(LOAD_BOUNDS) + 1) = _zeros(len(LOAD_BOUNDS) + 1)
     largest_slip: Extreme | None = None
     lowest_clearance: Extreme | None = None
 
@@ -108,36 +117,6 @@ class Totals:
             setattr(self, name, max(getattr(self, name) - getattr(other, name), 0))
         for name in _CLASSES:
             setattr(self, name, [max(own - theirs, 0.0) for own, theirs in zip(getattr(self, name), getattr(other, name))])
-
-    def as_mapping(self) -> dict[str, object]:
-        """Return the numbers by name, as JSON has them."""
-        return dataclasses.asdict(self)
-
-    @classmethod
-    def from_mapping(cls, mapping: Mapping[str, object]) -> "Totals":
-        """Return the totals of `as_mapping`; a name that is absent is zero.
-
-        Raises
-        ------
-        ValueError, TypeError
-            A value is no finite number, or a list has another length.
-        """
-        totals = cls()
-        for name in _NUMBERS:
-            number = mapping.get(name, 0)
-            if isinstance(number, bool) or not isinstance(number, (int, float)) or not 0.0 <= number < math.inf:
-                raise ValueError(f"{name} = {number!r}: expected a finite number, not negative")
-            setattr(totals, name, int(number) if name == "starts" else float(number))
-        for name in _CLASSES:
-            seconds = [float(each) for each in mapping.get(name, getattr(totals, name))]
-            if len(seconds) != len(getattr(totals, name)) or not all(0.0 <= each < math.inf for each in seconds):
-                raise ValueError(f"{name} = {seconds!r}: expected {len(getattr(totals, name))} finite numbers, not negative")
-            setattr(totals, name, seconds)
-        for name in ("largest_slip", "lowest_clearance"):
-            if mapping.get(name) is not None:
-                value, time_ns = mapping[name]
-                setattr(totals, name, Extreme(float(value), int(time_ns)))
-        return totals
 
 
 _CLASSES = ("slip_seconds", "lubrication_seconds", "load_seconds")

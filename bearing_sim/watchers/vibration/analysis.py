@@ -21,16 +21,14 @@ from bearing_sim.watchers.vibration.comb import (
     Prepared,
     Range,
     Spectra,
-    first_line,
     free_train,
-    orders_of,
     prepared,
     promise,
     search,
     spectra,
     train_below,
 )
-from bearing_sim.watchers.vibration.order_tracking import Shaft, constant_shaft, find_shaft, recorded_shaft, shaft_signal_range, wide_range
+from bearing_sim.watchers.vibration.order_tracking import HIGHEST, HIGHEST_OF_MANY, Shaft, constant_shaft, find_shaft, recorded_shaft
 from bearing_sim.watchers.vibration.phase import Rate, Track, follow, mean_rate, smoothed
 from bearing_sim.watchers.vibration.regularity import UNKNOWN, Regularity, regularity
 from bearing_sim.watchers.vibration.signal import Band, Spectrum, Vibration, VibrationError, candidate_bands, narrow_bands, repetition
@@ -125,6 +123,8 @@ class Analysis(NamedTuple):
 
     Attributes
     ----------
+    shaft : frequency, its standard error and where it comes from.
+    reason : in words, why there is no line, or why slip is not claimed.
     found : whether there are lines where this bearing may have them; if not, everything about the cage is NaN.
     is_claim : whether they are the bearing's: nothing else is known that makes them.
     alternatives : what they cannot be told apart from, in words; none of a claim.
@@ -133,7 +133,6 @@ class Analysis(NamedTuple):
     doubt : upper bound of the probability that it is anything else: noise, an exact train, another part, or an irregular train of another machine
         that is in the range of this bearing by chance; 1 where something cannot be told apart.
     jitter : standard deviation of the instants of impacts over their period; NaN where it cannot be told.
-    shaft : frequency, its standard error and where it comes from.
     line, line_error : frequency of the fundamental line over the shaft's, and its standard error.
     ratio, ratio_error : cage over shaft speed, and its standard error.
     cage_speed, cage_speed_error : [rad/s].
@@ -143,31 +142,30 @@ class Analysis(NamedTuple):
     parts : the same by quarters of the record.
     band : in which the lines are.
     lines : orders of the lines that are clear by themselves.
-    reason : in words, why there is no line, or why slip is not claimed.
     """
 
-    found: bool
-    is_claim: bool
-    alternatives: Sequence[str]
-    shows: str
-    false_alarm: float
-    doubt: float
-    jitter: float
     shaft: Shaft
-    line: float
-    line_error: float
-    ratio: float
-    ratio_error: float
-    cage_speed: float
-    cage_speed_error: float
-    passes: float
-    slip: float
-    slip_error: float
-    claims_slip: bool
-    parts: Sequence[Part]
-    band: Band | None
-    lines: Sequence[float]
     reason: str
+    found: bool = False
+    is_claim: bool = False
+    alternatives: Sequence[str] = ()
+    shows: str = ""
+    false_alarm: float = 1.0
+    doubt: float = 1.0
+    jitter: float = math.nan
+    line: float = math.nan
+    line_error: float = math.nan
+    ratio: float = math.nan
+    ratio_error: float = math.nan
+    cage_speed: float = math.nan
+    cage_speed_error: float = math.nan
+    passes: float = math.nan
+    slip: float = math.nan
+    slip_error: float = math.nan
+    claims_slip: bool = False
+    parts: Sequence[Part] = ()
+    band: Band | None = None
+    lines: Sequence[float] = ()
 
 
 def analyse(
@@ -248,13 +246,13 @@ def analyse(
         trains.append(train)
     if train is not None:
         return _nothing(shaft, fit, why)
-    if fit.family.name in ("outer_ring", "inner_ring") and not _shows_its_first(fit):
+    if fit.family.name in ("outer_ring", "inner_ring") and not fit.is_clear(fit.first):  # it is clear unless something else makes the others
         return _nothing(shaft, fit, why or "lines at a harmonic only, without the first one: they may be those of anything else")
     if rate is None or abs(rate.value) > 3.0 * fit.resolution or _is_hidden(fit, range_, len(place.signal) / place.per_turn):
         return _nothing(shaft, fit, why)
     beyond = max(range_.low - fit_there.ratio, fit_there.ratio - range_.high)
     if beyond > 3.0 * _ratio_error(fit_there, rate, shaft):
-        return _nothing(shaft, fit, why or _of_a_train(first_line(fit_there), shaft))
+        return _nothing(shaft, fit, why or _of_a_train(fit_there.first, shaft))
     impacts = _regularity_of(fit_there, place, faded, vibration.duration, shaft)
     if impacts.is_sparse:
         return _nothing(shaft, fit, why or "few periods of the lines hold an impact: they are those of something slower")
@@ -263,7 +261,7 @@ def analyse(
         return _nothing(shaft, fit, f"{why}; what is left beside it {_not_told_apart(alternatives)}")
     course = tuple(_course(fit_there, shaft, place.signal, place.per_turn, parts))
     doubt = _doubt(fit, best.fits, impacts, range_) if not alternatives else 1.0
-    return _completed(fit, rate, shaft, geometry, place.band, course, impacts, alternatives, doubt)
+    return _completed(fit_there, rate, shaft, geometry, place.band, course, impacts, alternatives, doubt)
 
 
 class _Place(NamedTuple):
@@ -337,7 +335,7 @@ def _regularity_of(fit: Fit, place: _Place, faded: Spectrum, duration: float, sh
     duration : of the record [s].
     shaft : by whose angle the signal of ``place`` is.
     """
-    line = first_line(fit)
+    line = fit.first
     numbers = np.arange(1.0, 1.0 + len(fit.family.centres))
     orders = numbers * line
     inside = (orders < 0.48 * place.per_turn) & (np.abs(orders - np.rint(orders)) > 6.0 * place.per_turn / len(place.signal))
@@ -359,7 +357,7 @@ def _regularity_of(fit: Fit, place: _Place, faded: Spectrum, duration: float, sh
 
 def _alternatives(fit: Fit, fits: Sequence[Fit], impacts: Regularity, place: _Place, shaft: Shaft, range_: Range) -> tuple[str, ...]:
     """Return what else has the lines of a fit, in words."""
-    found, line = [], first_line(fit)
+    found, line = [], fit.first
     hertz = line * shaft.frequency
     resolution = place.prepared.of(fit).resolution
     if not impacts.is_irregular:
@@ -389,16 +387,15 @@ def _not_told_apart(alternatives: Sequence[str]) -> str:
 
 def _is_modulated_by_cage(fit: Fit) -> bool:
     """Return whether the first line of a roller has clear sidebands on both sides: it passes through the load zone once in a turn of the cage."""
-    return all(any(abs(order - fit.passes - side * fit.ratio) < 1e-6 for order in fit.clear_lines) for side in (-1.0, 1.0))
+    return all(fit.is_clear(fit.passes + side * fit.ratio) for side in (-1.0, 1.0))
 
 
 def _doubt(fit: Fit, fits: Sequence[Fit], impacts: Regularity, range_: Range) -> float:
     """Return an upper bound of the probability that something else made the lines of a fit."""
     noise = math.exp(-min(fit.false_alarm, 700.0))
     parts = sum(math.exp(max(each.false_alarm - fit.false_alarm, -700.0)) for each in fits if each.family.name != fit.family.name)
-    constant, by_c, by_b = fit.family.centres[0]
-    ends = [abs(constant + by_c * ratio + by_b * passes) for ratio, passes in ((range_.low, range_.passes_low), (range_.high, range_.passes_high))]
-    share = abs(math.log(ends[1] / ends[0])) / math.log(_TRAIN_ORDERS[1] / _TRAIN_ORDERS[0])
+    low, high = fit.family.orders(np.array([range_.low, range_.high]), np.array([range_.passes_low, range_.passes_high]))[0]
+    share = abs(math.log(high / low)) / math.log(_TRAIN_ORDERS[1] / _TRAIN_ORDERS[0])
     return min(1.0, noise + parts + impacts.chance + _FOREIGN_PRIOR * share)
 
 
@@ -439,10 +436,9 @@ def _shaft_of(vibration, raw: Spectrum, envelopes, low: float, high: float, tole
     """Return the shaft: by its own lines, or as recorded or given."""
     about = _about(vibration, low, high, tolerance)
     if follows_lines:
-        highest = shaft_signal_range(high)
-        signals = [raw.low_passed(min(highest, raw.highest))]
-        signals += [_low_passed(envelope, rate, highest) for envelope, rate in envelopes[:2]]
-        wide = raw.low_passed(min(wide_range(high), raw.highest))
+        spectra_of_two = (Spectrum(envelope, rate) for envelope, rate in envelopes[:2])
+        signals = [each.low_passed(HIGHEST * high) for each in (raw, *spectra_of_two)]
+        wide = raw.low_passed(HIGHEST_OF_MANY * high)
         found, by_vibration = (find_shaft(some, about, tolerance, wide) for some in (signals, signals[:1]))
         if found is None or by_vibration is None:
             return found or by_vibration or about
@@ -453,15 +449,11 @@ def _shaft_of(vibration, raw: Spectrum, envelopes, low: float, high: float, tole
     return about
 
 
-def _low_passed(envelope: np.ndarray, rate: float, highest: float) -> tuple[np.ndarray, float]:
-    return Spectrum(envelope, rate).low_passed(min(highest, rate / 2.0))
-
-
 def _rate_of(fit: Fit, signal: np.ndarray, per_turn: float) -> Rate | None:
     """Return by how much the ratio differs from that of a fit, with its standard error; None if the phase of the lines cannot be followed."""
-    orders, multipliers = orders_of(fit.family, fit.ratio, fit.passes)
     if fit.family.name == "roller":
         return _rate_of_roller(fit, signal, per_turn)
+    orders, multipliers = fit.orders, fit.family.lines[:, 1]
     found = spectra(signal, per_turn, 1, per_turn / 2.0)
     inside = (orders > 0.2) & (orders < 0.48 * per_turn) & (np.abs(orders - np.rint(orders)) > 6.0 * per_turn / len(signal))
     averaged = spectra(signal, per_turn, fit.averages, per_turn / 2.0)
@@ -491,19 +483,13 @@ def _is_hidden(fit: Fit, range_: Range, turns: float) -> bool:
     return covered and range_.low <= half / range_.rollers <= range_.high
 
 
-def _shows_its_first(fit: Fit) -> bool:
-    """Return whether the first line of a raceway is clear by itself, as it is unless something else makes the others."""
-    first = orders_of(fit.family, fit.ratio)[0][0]
-    return any(abs(order - first) < 1e-6 for order in fit.clear_lines)
-
-
 def _may_be_a_roller(fit: Fit, found: Spectra, range_: Range) -> bool:
     """Return whether the first line of a raceway may be that of a roller, or a sideband of it.
 
     A roller passes through the load zone once in a turn of the cage, so that its line has sidebands there that are nearly as high; a raceway's has
     not.  It may also be at half the frequency, where a roller meets one raceway only.
     """
-    line = first_line(fit)
+    line = fit.first
     if fit.family.name not in ("outer_ring", "inner_ring") or not any(
         part * range_.passes_low - range_.high <= line <= part * range_.passes_high + range_.high for part in (0.5, 1.0)
     ):
@@ -521,7 +507,7 @@ def _rate_of_roller(fit: Fit, signal: np.ndarray, per_turn: float) -> Rate | Non
         return None
     reach = 2.0 * found.resolution
     ratios, passes = (each.ravel() for each in np.meshgrid(*(np.linspace(at - reach, at + reach, 161) for at in (fit.ratio, fit.passes))))
-    likelihood = sum(found.at(constant + by_c * ratios + by_b * passes) for _, (constant, by_c, by_b) in fit.family.lines())
+    likelihood = found.at(fit.family.orders(ratios, passes)).sum(axis=0)
     weights = np.exp(likelihood - likelihood.max())
     mean = float(weights @ ratios / weights.sum())
     spread = math.sqrt(float(weights @ (ratios - mean) ** 2 / weights.sum()))
@@ -553,7 +539,7 @@ def _ratio_error(fit: Fit, rate: Rate, shaft: Shaft) -> float:
     A line is measured in Hz: where the shaft's own frequency is not known well, its order and the ratio are not either.
     """
     by_c = fit.family.centres[0][1]
-    by_shaft = first_line(fit) / by_c if by_c else fit.ratio
+    by_shaft = fit.first / by_c if by_c else fit.ratio
     return math.hypot(rate.standard_error, by_shaft * shaft.standard_error / shaft.frequency)
 
 
@@ -574,41 +560,34 @@ def _completed(
     alternatives: Sequence[str],
     doubt: float,
 ) -> Analysis:
-    """Return the result with the errors of the shaft in it."""
-    ratio, relative = fit.ratio + rate.value, shaft.standard_error / shaft.frequency
-    constant, by_c, by_b = fit.family.centres[0]
-    spin = 0.0 if math.isnan(fit.passes) else fit.passes
-    line = constant + by_c * ratio + by_b * spin
-    ratio_error = _ratio_error(fit._replace(ratio=ratio), rate, shaft)
-    line_error = math.hypot(by_c * rate.standard_error, line * relative) if by_c else math.nan
-    shaft_speed = 2.0 * math.pi * shaft.frequency
-    cage_error = shaft_speed * math.hypot(rate.standard_error, _of_shaft(fit) * relative)
-    slip = 1.0 - ratio / geometry.ideal_ratio
-    slip_error = ratio_error / geometry.ideal_ratio
+    """Return the result with the errors of the shaft in it; ``fit`` has the ratio as it was measured."""
+    relative, by_c = shaft.standard_error / shaft.frequency, fit.family.centres[0][1]
+    ratio_error, shaft_speed = _ratio_error(fit, rate, shaft), 2.0 * math.pi * shaft.frequency
+    slip, slip_error = 1.0 - fit.ratio / geometry.ideal_ratio, ratio_error / geometry.ideal_ratio
     reason = _why_slip_is_not_claimed(slip, slip_error, geometry, shaft, alternatives)
     return Analysis(
-        True,
-        not alternatives,
-        alternatives,
-        fit.family.name,
-        math.exp(-min(fit.false_alarm, 700.0)),
-        doubt,
-        impacts.jitter,
         shaft,
-        line,
-        line_error,
-        ratio,
-        ratio_error,
-        ratio * shaft_speed,
-        cage_error,
-        fit.passes,
-        slip,
-        slip_error,
-        not reason,
-        course,
-        band,
-        fit.clear_lines,
         reason,
+        found=True,
+        is_claim=not alternatives,
+        alternatives=alternatives,
+        shows=fit.family.name,
+        false_alarm=math.exp(-min(fit.false_alarm, 700.0)),
+        doubt=doubt,
+        jitter=impacts.jitter,
+        line=fit.first,
+        line_error=math.hypot(by_c * rate.standard_error, fit.first * relative) if by_c else math.nan,
+        ratio=fit.ratio,
+        ratio_error=ratio_error,
+        cage_speed=fit.ratio * shaft_speed,
+        cage_speed_error=shaft_speed * math.hypot(rate.standard_error, _of_shaft(fit) * relative),
+        passes=fit.passes or math.nan,
+        slip=slip,
+        slip_error=slip_error,
+        claims_slip=not reason,
+        parts=course,
+        band=band,
+        lines=fit.clear_lines,
     )
 
 
@@ -638,7 +617,6 @@ def rarity(chance: float) -> str:
 
 def _nothing(shaft: Shaft, fit: Fit | None, doubt: str = "") -> Analysis:
     """Return the result for a record without lines of the bearing; ``fit`` is the clearest comb, if any has enough lines, ``doubt`` why not that."""
-    nan = math.nan
     chance = 1.0 if fit is None else math.exp(-max(0.0, min(fit.false_alarm, 700.0)))
     if doubt:
         why = doubt
@@ -649,5 +627,4 @@ def _nothing(shaft: Shaft, fit: Fit | None, doubt: str = "") -> Analysis:
         why = f"noise alone gives a comb as clear as the best {often}"
     else:
         why = "the lines do not keep together over the record, or may be the harmonics of a line that coincides with one of the shaft's"
-    reason = f"no line of this bearing: {why}"
-    return Analysis(False, False, (), "", chance, 1.0, nan, shaft, nan, nan, nan, nan, nan, nan, nan, nan, nan, False, (), None, (), reason)
+    return Analysis(shaft, f"no line of this bearing: {why}", false_alarm=chance)

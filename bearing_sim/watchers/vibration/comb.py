@@ -20,6 +20,8 @@ import numpy as np
 import scipy.fft
 import scipy.special
 
+from bearing_sim.watchers.vibration.phase import half_overlapping
+
 _HARMONICS = 3
 _AVERAGES = (1, 4, 16, 64, 256)
 _QUICK_AVERAGES = (1, 4, 16)
@@ -51,13 +53,16 @@ class Family(NamedTuple):
     centres: tuple[tuple[float, float, float], ...]
     sidebands: tuple[tuple[float, float, float], ...]
 
-    def lines(self) -> list[tuple[int, tuple[float, float, float]]]:
-        """Return all lines: index of the centre, and order as (constant, factor of c, factor of 2 b); each centre before its sidebands."""
-        found = []
-        for index, centre in enumerate(self.centres):
-            found.append((index, centre))
-            found += [(index, tuple(a + sign * b for a, b in zip(centre, side))) for side in self.sidebands for sign in (-1.0, 1.0)]
-        return found
+    @property
+    def lines(self) -> np.ndarray:
+        """All lines, each centre before its sidebands: columns constant, factor of c, factor of 2 b, shape (l, 3)."""
+        beside = [sign * np.array(side) for side in self.sidebands for sign in (-1.0, 1.0)]
+        return np.array([np.array(centre) + shift for centre in self.centres for shift in (np.zeros(3), *beside)])
+
+    def orders(self, ratio: np.ndarray | float, passes: np.ndarray | float = 0.0) -> np.ndarray:
+        """Return the orders of all lines at c and 2 b, shape (l, *shape of these)."""
+        constant, by_c, by_b = self.lines.T.reshape(3, -1, *[1] * np.ndim(ratio))
+        return constant + by_c * ratio + by_b * passes
 
 
 def families(rollers: int) -> tuple[Family, ...]:
@@ -121,12 +126,11 @@ def spectra(signal: np.ndarray, per_turn: float, averages: int, highest: float, 
     highest : order up to which it is wanted.
     excludes_shaft : leave out the shaft's own lines at whole orders, and everything below half the lowest cage order.
     """
-    length = int(2 * len(signal) / (averages + 1))
+    begins, length = half_overlapping(len(signal), averages)
     turns = length / per_turn
     resolution = 2.0 / turns  # of a Hann window, half of its main lobe
     if resolution * _EXCLUDED > 0.3 or length < 64:
         return None
-    begins = (np.arange(averages) * (len(signal) - length) / max(averages - 1, 1)).astype(int)
     window = np.hanning(length)
     window /= window.sum()
     count = scipy.fft.next_fast_len(2 * length, real=True)
@@ -178,7 +182,7 @@ class Fit(NamedTuple):
     ----------
     family : its kind.
     ratio : cage over shaft speed c.
-    passes : meetings of a spot on a roller with the raceways in a turn of the shaft, 2 b; NaN for other families.
+    passes : meetings of a spot on a roller with the raceways in a turn of the shaft, 2 b; 0 for other families.
     false_alarm : -ln of the probability that noise has a comb as clear anywhere in the range that was searched.
     clear_lines : orders of the lines that are clear by themselves.
     score : the likelihood ratio [nat].
@@ -194,6 +198,20 @@ class Fit(NamedTuple):
     score: float
     averages: int
     resolution: float
+
+    @property
+    def orders(self) -> np.ndarray:
+        """Orders of its lines, as of `Family.lines`."""
+        return self.family.orders(self.ratio, self.passes)
+
+    @property
+    def first(self) -> float:
+        """Order of its first centre line."""
+        return float(self.orders[0])
+
+    def is_clear(self, order: float) -> bool:
+        """Whether its line at an order is clear by itself."""
+        return any(abs(each - order) < 1e-6 for each in self.clear_lines)
 
 
 class Range(NamedTuple):
@@ -261,21 +279,15 @@ def search(where: Prepared, looks: int = 1) -> list[Fit]:
     where : the signal's periodograms.
     looks : how many such signals of one record are searched, which counts in the probability of a false alarm.
     """
-    fits = []
-    for family in families(where.range.rollers):
-        tried = [_search_family(family, found, count, where.range) for count, found in where.spectra if family.name != "roller" or count >= 4]
-        tried = [fit for fit in tried if fit is not None]
-        if tried:
-            best = max(tried, key=lambda fit: fit.false_alarm)
-            fits.append(best._replace(false_alarm=best.false_alarm - math.log(looks * len(families(2)) * len(where.spectra))))
-    return sorted(fits, key=lambda fit: -fit.false_alarm)
+    every = families(where.range.rollers)
+    fits = (_search_spectra(family, where, looks * len(every)) for family in every)
+    return sorted((fit for fit in fits if fit is not None), key=lambda fit: -fit.false_alarm)
 
 
 def promise(signal: np.ndarray, per_turn: float, range_: Range) -> float:
     """Return how clear the best comb of a raceway or of the cage is in a signal [nat], from few spectra: a quick look before `search`."""
     where = prepared(signal, per_turn, range_, _QUICK_AVERAGES)
-    quick = [family for family in families(range_.rollers) if family.name != "roller"]
-    fits = [_search_family(family, found, count, range_) for family in quick for count, found in where.spectra]
+    fits = [_search_spectra(family, where, 1) for family in families(range_.rollers) if family.name != "roller"]
     return max((fit.false_alarm for fit in fits if fit is not None), default=-math.inf)
 
 
@@ -283,11 +295,7 @@ def free_train(where: Prepared, looks: int = 1) -> Fit | None:
     """Return the clearest comb of a train of impacts of any frequency, whatever makes it; its ``ratio`` is the order of its first line."""
     family = Family("train", tuple((0.0, float(k), 0.0) for k in _HARMONICS_OF_TRAINS), ())
     range_ = where.range._replace(low=_LOWEST_TRAIN, high=float(where.range.rollers))
-    fits = [fit for count, found in where.spectra if (fit := _search_family(family, found, count, range_)) is not None]
-    if not fits:
-        return None
-    best = max(fits, key=lambda fit: fit.false_alarm)
-    return best._replace(false_alarm=best.false_alarm - math.log(looks * len(where.spectra)))
+    return _search_spectra(family, where._replace(range=range_), looks)
 
 
 def train_below(fit: Fit, found: Spectra) -> float | None:
@@ -301,8 +309,7 @@ def train_below(fit: Fit, found: Spectra) -> float | None:
     fit : of a family of the bearing.
     found : a periodogram of the signal in which it was found.
     """
-    first = first_line(fit)
-    own = orders_of(fit.family, fit.ratio, fit.passes)[0]
+    first, own = fit.first, fit.orders
     least = max(_TRAIN, _LIKE_THE_HIGHER * min(float(found.at(np.array([first]))[0]), _LARGEST))
     for parts in range(int(first / max(_LOWEST_TRAIN, 2.0 * found.resolution)), 1, -1):
         numbers = np.arange(1, 2 * parts + 2)
@@ -315,15 +322,19 @@ def train_below(fit: Fit, found: Spectra) -> float | None:
     return None
 
 
-def first_line(fit: Fit) -> float:
-    """Return the order of the first centre line of a fit."""
-    return float(orders_of(fit.family, fit.ratio, fit.passes)[0][0])
+def _search_spectra(family: Family, where: Prepared, trials: int) -> Fit | None:
+    """Return the best fit of one family in all spectra of a signal, with the trials in its probability of a false alarm."""
+    counted = [each for each in where.spectra if family.name != "roller" or each[0] >= 4]
+    fits = [fit for count, found in counted if (fit := _search_family(family, found, count, where.range)) is not None]
+    if not fits:
+        return None
+    best = max(fits, key=lambda fit: fit.false_alarm)
+    return best._replace(false_alarm=best.false_alarm - math.log(trials * len(where.spectra)))
 
 
 def _search_family(family: Family, found: Spectra, count: int, range_: Range) -> Fit | None:
     """Return the best fit of one family in one spectrum."""
-    lines = family.lines()
-    steepest = max(abs(factor) for _, (_, factor, _) in lines) or 1.0
+    steepest = float(np.abs(family.lines[:, 1]).max()) or 1.0
     candidates = int((range_.high - range_.low) * steepest / (0.5 * found.resolution)) + 2
     if family.name == "roller":
         passes_count = int((range_.passes_high - range_.passes_low) * len(family.centres) / (0.5 * found.resolution)) + 2
@@ -338,47 +349,40 @@ def _search_family(family: Family, found: Spectra, count: int, range_: Range) ->
     else:
         ratios = np.linspace(range_.low, range_.high, min(candidates, _MOST_CANDIDATES))
         passes = np.zeros(1)
-    scores, lines_at = _scores(family, found, ratios, passes)
-    trials = math.log(len(ratios))
-    best = None
+    surprises = found.at(family.orders(ratios, passes))
+    scores, best = _scores(surprises, len(family.centres)), None
     for used, score in scores:
         at = int(np.argmax(score))
-        chance = -float(_log_gamma_tail(used, score[at])) - trials - math.log(len(scores))
+        chance = -float(_log_gamma_tail(used, score[at])) - math.log(len(ratios)) - math.log(len(scores))
         if best is None or chance > best[0]:
             best = chance, at, float(score[at])
     chance, at, score = best
     ratio, spin = float(ratios[at]), float(passes[at if len(passes) > 1 else 0])
-    surprises = np.array([line[at] for line in lines_at])
-    orders = np.array([constant + by_c * ratio + by_b * spin for _, (constant, by_c, by_b) in lines])
-    clear = tuple(float(order) for order, each in zip(orders, surprises) if each >= _CLEAR)
-    return Fit(family, ratio, spin if family.name == "roller" else math.nan, chance, clear, score, count, found.resolution / steepest)
+    clear = tuple(family.orders(ratio, spin)[surprises[:, at] >= _CLEAR].tolist())
+    return Fit(family, ratio, spin, chance, clear, score, count, found.resolution / steepest)
 
 
-def _scores(family: Family, found: Spectra, ratios: np.ndarray, passes: np.ndarray) -> tuple[list[tuple[int, np.ndarray]], list[np.ndarray]]:
-    """Return (number of lines, likelihood ratio of each candidate) of nested parts of a comb, and the surprise of each line.
+def _scores(surprises: np.ndarray, centres: int) -> list[tuple[int, np.ndarray]]:
+    """Return (number of lines, likelihood ratio of each candidate) of nested parts of a comb.
 
     The parts are the first one, two, ... centres, without and with sidebands; more lines are only surprising together.
+
+    Parameters
+    ----------
+    surprises : of each line and candidate, shape (l, n).
+    centres : number of centre lines.
     """
-    lines = family.lines()
-    surprises = [found.at(constant + by_c * ratios + by_b * passes) for _, (constant, by_c, by_b) in lines]
-    without, with_sidebands = np.zeros(len(ratios)), np.zeros(len(ratios))
-    scores, used, centre = [], 0, surprises[0]
-    per_centre = 1 + 2 * len(family.sidebands)
-    for number, each in enumerate(surprises):
-        is_centre = number % per_centre == 0
-        used += 1
-        if is_centre:
-            centre = each
-            without = without + each
-            with_sidebands = with_sidebands + each
-        else:
-            with_sidebands = with_sidebands + np.minimum(each, centre)
-        if (number + 1) % per_centre == 0:
-            index = number // per_centre + 1
-            scores.append((index, without))
-            if family.sidebands:
-                scores.append((used, with_sidebands))
-    return scores, surprises
+    by_centre = surprises.reshape(centres, -1, surprises.shape[1])
+    per_centre = by_centre.shape[1]
+    without = np.cumsum(by_centre[:, 0], axis=0)
+    limited = np.minimum(by_centre, by_centre[:, :1]).reshape(surprises.shape)  # a sideband counts for no more than its centre
+    with_sidebands = np.cumsum(limited, axis=0)[per_centre - 1 :: per_centre]
+    scores = []
+    for number, parts in enumerate(zip(without, with_sidebands), 1):
+        scores.append((number, parts[0]))
+        if per_centre > 1:
+            scores.append((number * per_centre, parts[1]))
+    return scores
 
 
 def _log_gamma_tail(count: int, total: float) -> float:
@@ -387,10 +391,3 @@ def _log_gamma_tail(count: int, total: float) -> float:
     terms = numbers * math.log(max(total, 1e-300)) - scipy.special.gammaln(numbers + 1.0)
     largest = float(terms.max())
     return largest + math.log(float(np.exp(terms - largest).sum())) - total
-
-
-def orders_of(family: Family, ratio: float, passes: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Return the orders of a family's lines at a ratio, and by how much each moves with the ratio."""
-    lines: Sequence[tuple[float, float, float]] = [line for _, line in family.lines()]
-    spin = 0.0 if math.isnan(passes) else passes
-    return (np.array([constant + by_c * ratio + by_b * spin for constant, by_c, by_b in lines]), np.array([by_c for _, by_c, _ in lines]))

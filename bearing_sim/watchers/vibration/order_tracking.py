@@ -17,12 +17,14 @@ import scipy.interpolate
 import scipy.ndimage
 
 from bearing_sim.watchers.vibration.comb import Spectra, spectra
-from bearing_sim.watchers.vibration.phase import follow, mean_rate, smoothed
+from bearing_sim.watchers.vibration.phase import follow, mean_rate, smoothed, vertex
 
 _HARMONICS = np.arange(1.0, 6.0)
-_HIGHEST = 6.0  # orders that are kept for the shaft's lines
-_MANY_HARMONICS = np.arange(1.0, 21.0)  # by which a shaft that is found is sharpened
-_HIGHEST_OF_MANY = 22.0
+HIGHEST = 6.0
+"""Orders that the signals of `find_shaft` need for the shaft's lines."""
+HIGHEST_OF_MANY = 22.0
+"""Orders that the signal needs by which `find_shaft` sharpens a shaft."""
+_MANY_HARMONICS = np.arange(1.0, 21.0)  # by which it does
 _SEGMENT_TURNS = 24.0
 _MOST_SEGMENTS = 128
 _PER_TURN = 16  # samples in a turn, for the shaft's own lines
@@ -117,7 +119,7 @@ def find_shaft(signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance:
     signals : with the shaft's lines, and their rates [Hz]: the low-passed vibration first, then envelopes.
     about : the shaft as it is known beforehand, constant or recorded.
     tolerance : within which its speed is known, relative.
-    wide : the vibration low-passed at `wide_range`, and its rate [Hz]; its higher lines sharpen a shaft that is found.
+    wide : the vibration low-passed at `HIGHEST_OF_MANY`, and its rate [Hz]; its higher lines sharpen a shaft that is found.
     """
     turns = float(about.turns[-1])
     per_turn = _PER_TURN * (1.0 + tolerance)
@@ -162,16 +164,6 @@ def find_shaft(signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance:
     own = scipy.interpolate.PchipInterpolator(shaft.times, shaft.turns)(np.interp(times, about.times, about.turns))
     mean = float(own[-1] / duration)
     return Shaft(times, own, mean, mean * shaft.standard_error / shaft.frequency, "lines", shaft.angle_error)
-
-
-def shaft_signal_range(high: float) -> float:
-    """Return the highest frequency [Hz] of the signals of `find_shaft`."""
-    return _HIGHEST * high
-
-
-def wide_range(high: float) -> float:
-    """Return the highest frequency [Hz] of the signal by which `find_shaft` sharpens a shaft."""
-    return _HIGHEST_OF_MANY * high
 
 
 class _Lines(NamedTuple):
@@ -230,7 +222,7 @@ def _surprise_of_lines(signals, shaft: Shaft) -> np.ndarray:
     """Return -ln of the probability that noise is as high as each of the shaft's lines over the whole record, (signal, line)."""
     found = np.zeros((len(signals), len(_HARMONICS)))
     for row, (signal, rate) in zip(found, signals):
-        whole = spectra(shaft.resampled(signal, rate, _PER_TURN), _PER_TURN, 1, _HIGHEST, excludes_shaft=False)
+        whole = spectra(shaft.resampled(signal, rate, _PER_TURN), _PER_TURN, 1, HIGHEST, excludes_shaft=False)
         if whole is not None:
             row[:] = whole.at(_HARMONICS)
     return found
@@ -292,9 +284,9 @@ def _refined(signals, shaft: Shaft) -> Shaft:
     for most in _MOST_FOLLOWED:
         followed = 0
         while followed < 2:
-            changed = _phase_followed(signals, shaft, most)
-            after = before if changed is shaft else _clearness(signals, changed)
-            if changed is shaft or after < (1.0 if followed else _LESS_CLEAR) * before:
+            clearest = _clearest(signals, shaft)
+            changed = None if clearest is None else _followed(shaft, clearest[0], _PER_TURN, *clearest[1:], most)
+            if changed is None or (after := _clearness(signals, changed)) < (1.0 if followed else _LESS_CLEAR) * before:
                 break
             shaft, before, followed = changed, after, followed + 1
         if followed:
@@ -316,27 +308,16 @@ def _sharpened(signal: np.ndarray, per_turn: float, highest: float, shaft: Shaft
     sharpened, used = shaft._replace(angle_error=0.0), orders[:0]
     for _ in range(2):
         resampled = sharpened.resampled(signal, per_turn, _PER_TURN_OF_MANY)
-        found = spectra(resampled, _PER_TURN_OF_MANY, 1, _HIGHEST_OF_MANY, excludes_shaft=False)
-        if found is None:
+        near, kept, noise = _clear_lines(resampled, _PER_TURN_OF_MANY, HIGHEST_OF_MANY, orders)
+        if len(kept) < _FEWEST_OF_MANY:
             break
-        near, kept = _agreeing(found, orders)
-        if kept.sum() < _FEWEST_OF_MANY:
-            break
-        noise = found.noise_at(orders[kept]) * np.maximum(1.0, near[kept] / _MOST_OF_A_LINE)
-        changed = _followed(sharpened, resampled, _PER_TURN_OF_MANY, orders[kept], noise)
+        changed = _followed(sharpened, resampled, _PER_TURN_OF_MANY, kept, noise)
         if changed is None:
             break
         error = max(changed.angle_error, sharpened.angle_error)  # a phase that has been followed once deviates less than it errs
         of_ends = math.sqrt(2.0) * error / changed.turns[-1] * changed.frequency
-        sharpened, used = changed._replace(angle_error=error, standard_error=max(changed.standard_error, of_ends)), orders[kept]
+        sharpened, used = changed._replace(angle_error=error, standard_error=max(changed.standard_error, of_ends)), kept
     return sharpened if len(used) else shaft, used
-
-
-def _phase_followed(signals, shaft: Shaft, most: int) -> Shaft:
-    """Return the shaft with the phase of its clearest lines followed once."""
-    clearest = _clearest(signals, shaft)
-    changed = None if clearest is None else _followed(shaft, clearest[0], _PER_TURN, *clearest[1:], most)
-    return shaft if changed is None else changed
 
 
 def _disagreement(signal: np.ndarray, per_turn: float, orders: np.ndarray) -> float:
@@ -354,9 +335,7 @@ def _disagreement(signal: np.ndarray, per_turn: float, orders: np.ndarray) -> fl
     around = np.log(np.maximum(found.at(orders[:, None] + np.arange(-_NEAR, _NEAR + 1) * found.step), 1e-300))  # (order, shift)
     best = np.clip(np.argmax(around, axis=1), 1, 2 * _NEAR - 1)
     before, peak, after = (around[np.arange(len(orders)), best + shift] for shift in (-1, 0, 1))
-    bend = before - 2.0 * peak + after
-    fine = np.where(bend < 0.0, 0.5 * (before - after) / np.where(bend < 0.0, bend, 1.0), 0.0)
-    rates = (best - _NEAR + np.clip(fine, -1.0, 1.0)) * found.step / orders
+    rates = (best - _NEAR + np.clip(vertex(before, peak, after), -1.0, 1.0)) * found.step / orders
     weights = np.exp(peak) * orders**2
     left_out = (weights @ rates - weights * rates) / (weights.sum() - weights)
     return math.sqrt((len(rates) - 1) * float(np.var(left_out)))
@@ -364,19 +343,23 @@ def _disagreement(signal: np.ndarray, per_turn: float, orders: np.ndarray) -> fl
 
 def _clearest(signals, shaft: Shaft) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
     """Return the signal in which the shaft's lines are clearest, by its angle, the orders of these lines and the noise around them."""
-    orders = _HARMONICS
-    resampled = [shaft.resampled(signal, rate, _PER_TURN) for signal, rate in signals]
-    best = None
-    for signal in resampled:
-        found = spectra(signal, _PER_TURN, 1, _HIGHEST, excludes_shaft=False)
-        if found is None:
-            continue
-        near, kept = _agreeing(found, orders)
-        if kept.any() and (best is None or near[kept].sum() > best[0]):
-            # No line counts for more than several others, since it may be another machine's.
-            noise = found.noise_at(orders[kept]) * np.maximum(1.0, near[kept] / _MOST_OF_A_LINE)
-            best = near[kept].sum(), signal, orders[kept], noise
-    return None if best is None else best[1:]
+    found = []
+    for signal, rate in signals:
+        resampled = shaft.resampled(signal, rate, _PER_TURN)
+        near, orders, noise = _clear_lines(resampled, _PER_TURN, HIGHEST, _HARMONICS)
+        if len(orders):
+            found.append((near.sum(), resampled, orders, noise))
+    return max(found, key=lambda each: each[0])[1:] if found else None
+
+
+def _clear_lines(signal: np.ndarray, per_turn: float, highest: float, orders: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return how clear each of the lines is that are clear and agree, their orders, and the noise around them; empty if there is none."""
+    found = spectra(signal, per_turn, 1, highest, excludes_shaft=False)
+    if found is None:
+        return (orders[:0],) * 3
+    near, kept = _agreeing(found, orders)
+    # No line counts for more than several others, since it may be another machine's.
+    return near[kept], orders[kept], found.noise_at(orders[kept]) * np.maximum(1.0, near[kept] / _MOST_OF_A_LINE)
 
 
 def _followed(shaft: Shaft, signal: np.ndarray, per_turn: float, orders: np.ndarray, noise: np.ndarray, most: int = 64) -> Shaft | None:

@@ -7,6 +7,7 @@ because rollers slip a little differently at every pass; both are estimated, so 
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -54,6 +55,18 @@ class Rate(NamedTuple):
     standard_error: float
 
 
+def half_overlapping(count: int, parts: int) -> tuple[np.ndarray, int]:
+    """Return where half overlapping parts of so many samples begin, shape (parts,), and how long each is."""
+    length = int(2 * count / (parts + 1))
+    return (np.arange(parts) * (count - length) / max(parts - 1, 1)).astype(int), length
+
+
+def vertex(before: np.ndarray, peak: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Return how far from the middle of three equally spaced values the highest point of their parabola is, in their distance; 0 if it has none."""
+    bend = before - 2.0 * peak + after
+    return np.where(bend < 0.0, 0.5 * (before - after) / np.where(bend < 0.0, bend, 1.0), 0.0)
+
+
 def follow(signal: np.ndarray, per_turn: float, orders: np.ndarray, multipliers: np.ndarray, noise: np.ndarray, segments: int) -> Track:
     """Follow the common phase of lines.
 
@@ -66,8 +79,7 @@ def follow(signal: np.ndarray, per_turn: float, orders: np.ndarray, multipliers:
     noise : density of the noise around each line, |amplitude|^2 per order, shape (j,).
     segments : into how many the record is cut, half overlapping.
     """
-    length = int(2 * len(signal) / (segments + 1))
-    begins = (np.arange(segments) * (len(signal) - length) / max(segments - 1, 1)).astype(int)
+    begins, length = half_overlapping(len(signal), segments)
     window = np.hanning(length)
     window /= window.sum()
     turns = length / per_turn
@@ -82,9 +94,7 @@ def follow(signal: np.ndarray, per_turn: float, orders: np.ndarray, multipliers:
         aligned = amplitudes * np.exp(-2j * np.pi * np.outer(phases, multipliers))
         gains = ((weights * np.conj(aligned.mean(0)) * aligned) @ np.exp(-2j * np.pi * np.outer(multipliers, trial))).real  # (i, trial)
         best = np.argmax(gains, axis=1)
-        before, here, after = (gains[rows, (best + shift) % _CANDIDATES] for shift in (-1, 0, 1))
-        bend = before - 2.0 * here + after
-        fine = np.where(bend < 0.0, 0.5 * (before - after) / np.where(bend < 0.0, bend, 1.0), 0.0)
+        fine = vertex(*(gains[rows, (best + shift) % _CANDIDATES] for shift in (-1, 0, 1)))
         phases = phases + trial[best] + np.clip(fine, -0.5, 0.5) * (trial[1] - trial[0])
     aligned = amplitudes * np.exp(-2j * np.pi * np.outer(phases, multipliers))
     return Track((begins + length / 2.0) / per_turn, phases, float(np.mean(np.abs(aligned) ** 2 @ weights)))
@@ -108,23 +118,12 @@ def mean_rate(track: Track) -> Rate:
     """
     at = (track.places - track.places.mean()) / np.ptp(track.places)
     count = len(at)
-    design = np.stack((np.ones(count), at), axis=1)
     step = np.min(np.diff(at))
     overlap = _overlap(count)
     walk = np.minimum.outer(at - at[0], at - at[0]) / step
-    fits = []
-    for ratio in _WALKS:
-        lower = np.linalg.cholesky(overlap + ratio * walk)
-        white_design, white = np.linalg.solve(lower, design), np.linalg.solve(lower, track.phases)
-        information = white_design.T @ white_design
-        fitted = np.linalg.solve(information, white_design.T @ white)
-        remainder = max(float(np.sum((white - white_design @ fitted) ** 2)), 1e-300)
-        freedom = count - 2
-        likelihood = -np.log(np.diag(lower)).sum() - 0.5 * np.linalg.slogdet(information)[1] - 0.5 * freedom * np.log(remainder)
-        fits.append((likelihood, fitted[1], np.linalg.inv(information)[1, 1] * remainder / freedom))
-    likelihoods, slopes, variances = np.array(fits).T
-    weights = np.exp(likelihoods - likelihoods.max())
-    weights /= weights.sum()
+    fits = [_fitted(overlap + ratio * walk, at, track.phases) for ratio in _WALKS]
+    weights = _weights(fits)
+    slopes, variances = np.array([(fit.line[1], np.linalg.inv(fit.information)[1, 1] * fit.remainder / (count - 2)) for fit in fits]).T
     slope = float(weights @ slopes)
     variance = float(weights @ (variances + (slopes - slope) ** 2))
     widened = scipy.special.stdtrit(max(2, count // 2 - 2), 0.8413)  # one standard deviation of a normal distribution
@@ -146,29 +145,65 @@ def smoothed(track: Track) -> Course:
     for _ in range(2):
         inside = np.ix_(kept, kept)
         freedom = int(kept.sum()) - 2
-        fits = []
-        for ratio in _BENDS:
-            lower = np.linalg.cholesky(overlap[inside] + ratio * integrated[inside])
-            white_design, white = np.linalg.solve(lower, design[kept]), np.linalg.solve(lower, track.phases[kept])
-            information = white_design.T @ white_design
-            fitted = np.linalg.solve(information, white_design.T @ white)
-            remainder = max(float(np.sum((white - white_design @ fitted) ** 2)), 1e-300)
-            likelihood = -np.log(np.diag(lower)).sum() - 0.5 * np.linalg.slogdet(information)[1] - 0.5 * freedom * np.log(remainder)
-            gain = ratio * np.linalg.solve(lower, integrated[kept]).T  # covariance with the white data, (n, kept)
-            phases = design @ fitted + gain @ (white - white_design @ fitted)
-            rest = design - gain @ white_design
-            variances = ratio * np.diag(integrated) - np.sum(gain**2, axis=1) + np.sum(rest @ np.linalg.inv(information) * rest, axis=1)
-            fits.append((likelihood, phases, variances * remainder / freedom))
-        weights = np.exp(np.array([fit[0] for fit in fits]) - max(fit[0] for fit in fits))
-        weights /= weights.sum()
-        phases = weights @ np.array([fit[1] for fit in fits])
-        error = math.sqrt(float(np.mean(weights @ np.maximum([fit[2] for fit in fits], 0.0))))
+        fits = [_fitted(overlap[inside] + ratio * integrated[inside], at[kept], track.phases[kept]) for ratio in _BENDS]
+        courses, variances = [], []
+        for ratio, fit in zip(_BENDS, fits):
+            gain = ratio * np.linalg.solve(fit.lower, integrated[kept]).T  # covariance with the white data, (n, kept)
+            courses.append(design @ fit.line + gain @ fit.left)
+            rest = design - gain @ fit.design
+            variance = ratio * np.diag(integrated) - np.sum(gain**2, axis=1) + np.sum(rest @ np.linalg.inv(fit.information) * rest, axis=1)
+            variances.append(variance * fit.remainder / freedom)
+        weights = _weights(fits)
+        phases = weights @ np.array(courses)
+        error = math.sqrt(float(np.mean(weights @ np.maximum(variances, 0.0))))
         deviations = np.abs(track.phases - phases)
         nearby = deviations <= _ASTRAY * 1.4826 * np.median(deviations) + 1e-12
         if nearby.sum() < max(6, len(at) // 2):
             break
         kept = nearby
     return Course(phases, error)
+
+
+class _Fitted(NamedTuple):
+    """A straight line through data by generalised least squares.
+
+    Attributes
+    ----------
+    lower : Cholesky factor of the covariance, which makes data white.
+    design : of the line, whitened, shape (n, 2).
+    left : whitened data less the line, shape (n,).
+    line : its height and slope.
+    information : of these, shape (2, 2).
+    remainder : sum of squares that are left.
+    likelihood : logarithm of the restricted likelihood.
+    """
+
+    lower: np.ndarray
+    design: np.ndarray
+    left: np.ndarray
+    line: np.ndarray
+    information: np.ndarray
+    remainder: float
+    likelihood: float
+
+
+def _fitted(covariance: np.ndarray, at: np.ndarray, data: np.ndarray) -> _Fitted:
+    """Return the straight line through data at places, both of shape (n,), whose covariance is known but for a factor."""
+    lower = np.linalg.cholesky(covariance)
+    design, white = np.linalg.solve(lower, np.stack((np.ones(len(at)), at), axis=1)), np.linalg.solve(lower, data)
+    information = design.T @ design
+    line = np.linalg.solve(information, design.T @ white)
+    left = white - design @ line
+    remainder = max(float(np.sum(left**2)), 1e-300)
+    likelihood = -np.log(np.diag(lower)).sum() - 0.5 * np.linalg.slogdet(information)[1] - 0.5 * (len(at) - 2) * np.log(remainder)
+    return _Fitted(lower, design, left, line, information, remainder, likelihood)
+
+
+def _weights(fits: Sequence[_Fitted]) -> np.ndarray:
+    """Return the weights of fits by their likelihoods."""
+    likelihoods = np.array([fit.likelihood for fit in fits])
+    weights = np.exp(likelihoods - likelihoods.max())
+    return weights / weights.sum()
 
 
 def _overlap(count: int) -> np.ndarray:

@@ -15,7 +15,6 @@ import zlib
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import BinaryIO, NamedTuple
 
 import numpy as np
@@ -30,28 +29,12 @@ from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.scene.quantity import to_si
 from bearing_sim.watchers.vibration.signal import FEWEST_SAMPLES, Vibration, VibrationError
 
-FORMATS = {
-    **dict.fromkeys((".csv", ".txt", ".tsv", ".dat", ".lvm"), "text"),
-    ".parquet": "parquet",
-    ".mat": "matlab",
-    ".npz": "numpy",
-    ".npy": "numpy",
-    ".wav": "wave",
-    ".h5": "hdf5",
-    ".hdf5": "hdf5",
-    ".hdf": "hdf5",
-    ".tdms": "tdms",
-    **dict.fromkeys((".uff", ".unv", ".u58", ".uf"), "universal"),
-    **dict.fromkeys((".mcap", ".active", ".db3", ".bag", ".zstd", ".zst", ".lz4"), "bag"),
-}
-"""Formats by the suffix of a file; a folder is a bag."""
-
 _RATE_NAMES = re.compile(r"(?:^|[^a-z])(?:fs|sr|rate|sampling_?rate|sample_?rate|sampling_?frequency|samples_per_second)(?:_?hz)?$", re.IGNORECASE)
 _TIME_NAMES = re.compile(r"(?:^|[^a-z])(?:t|time|times|timestamp|seconds|x_value)(?:_?s)?(?:\s*[\[(].*)?$", re.IGNORECASE)
 _UNIT = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 _FIRST_LINES = 200
 _MOST_SHOWN = 12
-_MOST_TOLD = 3
+_MOST_DESCRIBED = 3
 _DEEPEST = 8  # levels of structures in a MAT or HDF5 file
 _MOST_CHANNELS = 2000
 _UNEVEN = 0.01  # of the spacing of times
@@ -86,30 +69,81 @@ class Unusable(NamedTuple):
     holds: str
     may_be_meant: bool
 
-    def told(self, name: str) -> str:
+    def describe(self, name: str) -> str:
         """Return what is wrong with it, and what was expected."""
         return f"{printable(name)} holds {self.holds}; {_EXPECTED.get(self.holds, 'expected real numbers')}"
 
 
-class Channels(NamedTuple):
+class Channels:
     """The numbers in a file.
 
     Attributes
     ----------
+    path : of the file.
+    form : name of its format, for messages.
     arrays : by name, shape (n,) each.
     numbers : single numbers by name, among them perhaps the rate.
     rate : of the samples [Hz], if the format has one.
-    start : time of the first sample [s since the epoch], if the format has one.
     unusable : arrays that do not hold real numbers, by name.
     tally : what of a bag was read; None of other formats, which are read whole or not at all.
     """
 
-    arrays: Mapping[str, np.ndarray]
-    numbers: Mapping[str, float]
-    rate: float | None = None
-    start: float = 0.0
-    unusable: Mapping[str, Unusable] = MappingProxyType({})
-    tally: Tally | None = None
+    def __init__(self, path: Path, form: str):
+        self.path, self.form = path, form
+        self.arrays: dict[str, np.ndarray] = {}
+        self.numbers: dict[str, float] = {}
+        self.unusable: dict[str, Unusable] = {}
+        self.rate: float | None = None
+        self.tally, self._values = None, 0
+
+    def add(self, name: str, value, depth: int = 0) -> None:
+        """Add an array of any shape, a number, or what a structure holds; of anything else only its name and what it holds."""
+        if depth > _DEEPEST or len(self.arrays) >= _MOST_CHANNELS:
+            return
+        value = np.asarray(value)
+        if value.dtype.names:
+            for field in value.dtype.names:
+                self.add(f"{name}.{field}", value[field], depth + 1)
+        elif value.dtype == object:
+            if value.size >= FEWEST_SAMPLES:
+                self.pass_over(name, _CELLS, value.size)
+            for index, item in enumerate(value.ravel()[:_MOST_CHANNELS]):
+                self.add(name if value.size == 1 else f"{name}[{index}]", item, depth + 1)
+        elif value.dtype.kind not in "iufb":
+            self.pass_over(name, _KINDS.get(value.dtype.kind, f"values of the type {value.dtype}"), value.size)
+        elif (value := np.squeeze(value)).ndim > 2:
+            self.pass_over(name, f"numbers in {value.ndim} dimensions", value.size)
+        elif value.ndim == 0:
+            self.numbers[name] = float(value)
+        else:
+            self.count(value.size)
+            if value.ndim == 1:
+                self.arrays[name] = value
+                return
+            columns = value if value.shape[1] <= value.shape[0] else value.T
+            for index, column in enumerate(columns.T[:_MOST_CHANNELS]):
+                self.arrays[f"{name}[{index}]"] = column
+
+    def add_loaded(self, name: str, load: Callable[[], np.ndarray]) -> None:
+        """Add what ``load`` returns; Python objects, which NumPy refuses to read, are passed over."""
+        try:
+            value = load()
+        except ValueError as error:
+            if "allow_pickle" not in str(error):
+                raise
+            self.pass_over(name, _OBJECTS, FEWEST_SAMPLES)  # how many they are is not known without reading them
+        else:
+            self.add(name, value)
+
+    def pass_over(self, name: str, holds: str, count: int) -> None:
+        """Keep the name of an array that cannot be used, with what it holds and how many."""
+        if len(self.unusable) < _MOST_CHANNELS:
+            self.unusable[name] = Unusable(holds, count >= FEWEST_SAMPLES and holds in _EXPECTED)
+
+    def count(self, values: int) -> None:
+        """Refuse more numbers than the limit; raise LimitError."""
+        self._values += values
+        VIBRATION_SAMPLES.check(self._values, str(self.path))
 
 
 def read_vibration(
@@ -140,28 +174,28 @@ def read_vibration(
         It has no such channel, or no rate; the message lists what it has.
     """
     path = Path(path)
-    kind = "bag" if path.is_dir() else FORMATS.get(path.suffix.lower())
-    if kind is None:
+    form, reader = ("bag", _bag) if path.is_dir() else FORMATS.get(path.suffix.lower(), ("", None))
+    if reader is None:
         raise VibrationError(f"{path}: no format is known by this name; expected one that ends in {', '.join(FORMATS)}, or the folder of a bag")
-    if kind == "bag":
-        found = _bag(path, tuple(name for name in (channel, speed_channel) if name))
+    found = Channels(path, form)
+    if reader is _bag:
+        _bag(found, tuple(name for name in (channel, speed_channel) if name))
     else:
-        found = _READERS[kind](path)
-    name = channel or _only_channel(path, found, time_channel, speed_channel)
-    samples = _array(path, found, name, "--channel")
+        _read(found, reader)
+    name = channel or _only_channel(found, time_channel, speed_channel)
+    samples = _array(found, name, "--channel")
     speeds = None
     if speed_channel is not None:
-        speeds = _array(path, found, speed_channel, "--speed-channel")
+        speeds = _array(found, speed_channel, "--speed-channel")
         if len(speeds) != len(samples):
             raise VibrationError(f"{path}: {speed_channel} has {len(speeds)} values and {name} {len(samples)}; expected as many of each")
         speeds = speeds * _factor(speed_unit)
-    rate, note = (rate, "") if rate is not None else _rate(path, found, time_channel, len(samples))
+    rate, note = (rate, "") if rate is not None else _rate(found, time_channel, len(samples))
     if rate > _HIGHEST_RATE:
         raise VibrationError(
             f"{path}: a sampling rate of {rate:.4g} Hz; expected at most {_HIGHEST_RATE:g} Hz: check --rate, or the unit of the times"
         )
-    unit = _UNIT.search(name)
-    return Vibration(samples, rate, unit[1] if unit else "", found.start, f"{path.name}, {printable(name)}{note}", speeds, found.tally)
+    return Vibration(samples, rate, f"{path.name}, {printable(name)}{note}", speeds, found.tally)
 
 
 def _factor(unit: str) -> float:
@@ -176,19 +210,19 @@ def _listed(names) -> str:
     return ", ".join(shown[:_MOST_SHOWN]) + (f", and {len(shown) - _MOST_SHOWN} more" if len(shown) > _MOST_SHOWN else "") if shown else "none"
 
 
-def _array(path: Path, found: Channels, name: str, option: str) -> np.ndarray:
+def _array(found: Channels, name: str, option: str) -> np.ndarray:
     if name in found.arrays:
         with np.errstate(invalid="ignore"):  # of numbers that are none, which the record refuses
             return np.asarray(found.arrays[name], float)
     for whole in (name, name.rpartition("[")[0]):
         if whole in found.unusable:
-            raise VibrationError(f"{path}: {found.unusable[whole].told(whole)}")
+            raise VibrationError(f"{found.path}: {found.unusable[whole].describe(whole)}")
     raise VibrationError(
-        f"{path}: no channel {name!r}{did_you_mean(name, list(found.arrays))}; there are {_listed(found.arrays)}; choose one with {option}"
+        f"{found.path}: no channel {name!r}{did_you_mean(name, list(found.arrays))}; there are {_listed(found.arrays)}; choose one with {option}"
     )
 
 
-def _only_channel(path: Path, found: Channels, time_channel: str | None, speed_channel: str | None) -> str:
+def _only_channel(found: Channels, time_channel: str | None, speed_channel: str | None) -> str:
     """Return the name of the channel that must be the vibration, because no other is long enough."""
     given = {time_channel, speed_channel}
     names = [name for name in found.arrays if name not in given and not _TIME_NAMES.search(name) and len(found.arrays[name]) >= FEWEST_SAMPLES]
@@ -196,15 +230,16 @@ def _only_channel(path: Path, found: Channels, time_channel: str | None, speed_c
     if len(names) == 1 and not doubtful:
         return names[0]
     others = doubtful or list(found.unusable)
-    told = "".join(f"; {found.unusable[name].told(name)}" for name in others[:_MOST_TOLD])
-    told += f"; {len(others) - _MOST_TOLD} more are not of real numbers" if len(others) > _MOST_TOLD else ""
+    beside = "".join(f"; {found.unusable[name].describe(name)}" for name in others[:_MOST_DESCRIBED])
+    beside += f"; {len(others) - _MOST_DESCRIBED} more are not of real numbers" if len(others) > _MOST_DESCRIBED else ""
     if not names:
-        raise VibrationError(f"{path}: no channel of at least {FEWEST_SAMPLES} numbers; it has {_listed(found.arrays)}{told}")
-    told = told if doubtful else ""
-    raise VibrationError(f"{path}: which channel is the vibration? there are {_listed(names)}; choose one with --channel{told}")
+        raise VibrationError(f"{found.path}: no channel of at least {FEWEST_SAMPLES} numbers; it has {_listed(found.arrays)}{beside}")
+    raise VibrationError(
+        f"{found.path}: which channel is the vibration? there are {_listed(names)}; choose one with --channel{beside if doubtful else ''}"
+    )
 
 
-def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> tuple[float, str]:
+def _rate(found: Channels, time_channel: str | None, count: int) -> tuple[float, str]:
     """Return the rate of the samples by the file, and what is to be said about it."""
     note = ""
     if time_channel is None and found.rate is not None:
@@ -214,15 +249,16 @@ def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> 
         if len(set(rates.values())) == 1:
             return next(iter(rates.values())), note
         if rates:
-            raise VibrationError(f"{path}: {', '.join(f'{printable(name)} = {value:g}' for name, value in rates.items())}; choose one with --rate")
+            listed = ", ".join(f"{printable(name)} = {value:g}" for name, value in rates.items())
+            raise VibrationError(f"{found.path}: {listed}; choose one with --rate")
     names = [time_channel] if time_channel else [name for name, array in found.arrays.items() if _TIME_NAMES.search(name) and len(array) == count]
     if len(names) != 1:
-        raise VibrationError(f"{path}: the file does not say its sampling rate; give it with --rate, such as --rate 50kHz")
-    times = _array(path, found, names[0], "--time-channel")
+        raise VibrationError(f"{found.path}: the file does not say its sampling rate; give it with --rate, such as --rate 50kHz")
+    times = _array(found, names[0], "--time-channel")
     steps = np.diff(times)
     changes = np.flatnonzero(steps) + 1
     if len(times) != count or len(changes) < 2 or not steps.min() >= 0.0:
-        raise VibrationError(f"{path}: {names[0]} is no column of increasing times; give the sampling rate with --rate")
+        raise VibrationError(f"{found.path}: {names[0]} is no column of increasing times; give the sampling rate with --rate")
     mean, usual = float(times[-1] - times[0]) / (count - 1), float(np.median(steps))
     if abs(mean - usual) > _UNEVEN * usual:  # times with fewer digits than their steps need, or a gap
         mean = float(times[changes[-1]] - times[changes[0]]) / float(changes[-1] - changes[0])
@@ -230,7 +266,8 @@ def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> 
         if off.max() > _ROUNDINGS * float(np.median(steps[steps > 0.0])):
             worst = int(np.argmax(np.abs(steps - mean)))
             raise VibrationError(
-                f"{path}: {names[0]} has a gap: {times[worst]:g} is followed by {times[worst + 1]:g}; expected equal steps: cut the record there"
+                f"{found.path}: {names[0]} has a gap: {times[worst]:g} is followed by {times[worst + 1]:g}; expected equal steps:"
+                " cut the record there"
             )
         note = f"; {printable(names[0])} has rounded times, so the rate is the mean one"
     unit = _UNIT.search(names[0])
@@ -238,12 +275,18 @@ def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> 
     return 1.0 / (mean * seconds), note
 
 
-def _cannot_be_read(path: Path, form: str, error: Exception) -> FileError:
-    """Return the refusal of a file whose reader raised an exception, which damaged files make of any kind."""
-    if isinstance(error, FileError):
-        return error
-    reason = "it asks for more memory than there is" if isinstance(error, MemoryError) else printable(" ".join(str(error).split()))
-    return FileError(f"cannot be read as {form}: {reason or type(error).__name__}", str(path))
+def _read(found: Channels, reader: Callable[[BinaryIO, Channels], None]) -> None:
+    """Read a file; a damaged one makes its reader raise exceptions of any kind."""
+    with open_regular(found.path, VIBRATION_FILE) as stream:
+        try:
+            reader(stream, found)
+        except (FileError, VibrationError):
+            raise
+        except ModuleNotFoundError as error:
+            raise VibrationError(f"{found.path}: {what_is_missing(error)}") from None
+        except Exception as error:
+            reason = "it asks for more memory than there is" if isinstance(error, MemoryError) else printable(" ".join(str(error).split()))
+            raise FileError(f"cannot be read as {found.form}: {reason or type(error).__name__}", str(found.path)) from None
 
 
 def _lines(path: Path) -> Iterator[str]:
@@ -264,37 +307,40 @@ def _lines(path: Path) -> Iterator[str]:
             raise FileError(f"no {encoding.upper()} text from about line {number + 1} on; save the file as UTF-8", str(path)) from None
 
 
-def _rows(path: Path, begin: int, width: int, decimal: str) -> Iterator[str]:
-    """Yield the lines of numbers of a text from the line with the index ``begin`` on."""
-    count, most = 0, VIBRATION_TEXT.value
-    for line in itertools.islice(plain_lines(_lines(path)), begin, None):
-        if not line.strip() or line.lstrip().startswith(_COMMENTS):
-            continue
-        count += width
-        if count > most:
-            raise LimitError(VIBRATION_TEXT.refusal(), str(path))
-        yield line.replace(",", ".") if decimal == "," else line
+def _rows(path: Path, begin: int) -> Iterator[tuple[int, str]]:
+    """Yield the lines of numbers of a text, with their numbers, from the line with the index ``begin`` on."""
+    for number, line in enumerate(itertools.islice(plain_lines(_lines(path)), begin, None), begin + 1):
+        if line.strip() and not line.lstrip().startswith(_COMMENTS):
+            yield number, line
 
 
-def _text(path: Path) -> Channels:
-    """Return the columns of a text: numbers between commas, semicolons, tabs or blanks, under headings or none."""
+def _text(_, found: Channels) -> None:
+    """Read the columns of a text: numbers between commas, semicolons, tabs or blanks, under headings or none."""
+    path = found.path
     first_lines = list(itertools.islice(plain_lines(_lines(path)), _FIRST_LINES))
     begin, delimiter, decimal = _first_row(path, first_lines)
     heading = first_lines[begin - 1] if begin else ""
-    names = [cell.strip().strip('"').lstrip("#% ") for cell in (heading.split(delimiter) if delimiter else heading.split())]
+    names = [cell.strip().strip('"').lstrip("#% ") for cell in _cells(heading, delimiter)]
     width = len(_cells(first_lines[begin], delimiter))
     VIBRATION_PARTS.check(width, f"{path}, line {begin + 1}")
     if len(names) != width or any(_is_number(name, decimal) for name in names):
         names = [f"column {number}" for number in range(1, width + 1)]
     elif len(set(names)) < width:
         names = [f"{name} ({number})" for number, name in enumerate(names, 1)]
+
+    def rows() -> Iterator[str]:
+        for count, (_, line) in enumerate(_rows(path, begin), 1):
+            if count * width > VIBRATION_TEXT.value:
+                raise LimitError(VIBRATION_TEXT.refusal(), str(path))
+            yield line.replace(",", ".") if decimal == "," else line
+
     try:
-        table = np.loadtxt(_rows(path, begin, width, decimal), delimiter=delimiter, ndmin=2, comments=None)
+        table = np.loadtxt(rows(), delimiter=delimiter, ndmin=2, comments=None)
     except FileError:
         raise
     except ValueError:
         raise VibrationError(_first_fault(path, begin, delimiter, decimal, width)) from None
-    return Channels(dict(zip(names, table.T)), {})
+    found.arrays.update(zip(names, table.T))
 
 
 def _cells(line: str, delimiter: str | None) -> list[str]:
@@ -324,9 +370,7 @@ def _first_row(path: Path, lines: list[str]) -> tuple[int, str | None, str]:
 
 def _first_fault(path: Path, begin: int, delimiter: str | None, decimal: str, width: int) -> str:
     """Return what is wrong with the first row that cannot be read."""
-    for number, line in enumerate(itertools.islice(plain_lines(_lines(path)), begin, None), begin + 1):
-        if not line.strip() or line.lstrip().startswith(_COMMENTS):
-            continue
+    for number, line in _rows(path, begin):
         cells = _cells(line, delimiter)
         if len(cells) != width:
             return f"{path}, line {number}: {len(cells)} columns; expected {width}, as in line {begin + 1}"
@@ -336,32 +380,25 @@ def _first_fault(path: Path, begin: int, delimiter: str | None, decimal: str, wi
     return f"{path}: cannot be read as columns of numbers"
 
 
-def _parquet(path: Path) -> Channels:
+def _parquet(stream: BinaryIO, found: Channels) -> None:
     import pyarrow
     import pyarrow.parquet
 
-    types = pyarrow.types
-    with open_regular(path, VIBRATION_FILE) as stream:
-        try:
-            file = pyarrow.parquet.ParquetFile(stream)
-            VIBRATION_PARTS.check(len(file.schema_arrow), str(path))
-            fields = [
-                each for each in file.schema_arrow if types.is_floating(each.type) or types.is_integer(each.type) or types.is_timestamp(each.type)
-            ]
-            unusable = {
-                each.name: Unusable(f"values of the type {printable(str(each.type), 60)}", types.is_nested(each.type) or types.is_decimal(each.type))
-                for each in file.schema_arrow
-                if each not in fields
-            }
-            batches, values = [], 0
-            for batch in file.iter_batches(columns=[each.name for each in fields]):  # what the file says about its length need not be true
-                values += batch.num_rows * batch.num_columns
-                VIBRATION_SAMPLES.check(values, str(path))
-                batches.append(batch)
-            table = pyarrow.Table.from_batches(batches, pyarrow.schema(fields)) if batches else pyarrow.table({})
-            return Channels({name: _numbers_of(column) for name, column in zip(table.column_names, table.columns)}, {}, unusable=unusable)
-        except Exception as error:
-            raise _cannot_be_read(path, "Parquet", error) from None
+    types, file = pyarrow.types, pyarrow.parquet.ParquetFile(stream)
+    VIBRATION_PARTS.check(len(file.schema_arrow), str(found.path))
+    fields = []
+    for each in file.schema_arrow:
+        if types.is_floating(each.type) or types.is_integer(each.type) or types.is_timestamp(each.type):
+            fields.append(each)
+        else:
+            is_meant = types.is_nested(each.type) or types.is_decimal(each.type)
+            found.unusable[each.name] = Unusable(f"values of the type {printable(str(each.type), 60)}", is_meant)
+    batches = []
+    for batch in file.iter_batches(columns=[each.name for each in fields]):  # what the file says about its length need not be true
+        found.count(batch.num_rows * batch.num_columns)
+        batches.append(batch)
+    table = pyarrow.Table.from_batches(batches, pyarrow.schema(fields)) if batches else pyarrow.table({})
+    found.arrays |= {name: _numbers_of(column) for name, column in zip(table.column_names, table.columns)}
 
 
 def _numbers_of(column) -> np.ndarray:
@@ -373,86 +410,18 @@ def _numbers_of(column) -> np.ndarray:
     return column.to_numpy()
 
 
-class _Collector:
-    """Channels and single numbers, collected from arrays of any shape and structures within structures."""
+class _Content:
+    """The content of a matrix of a MAT file, compressed or not, read once from its beginning and not kept."""
 
-    def __init__(self, path: Path):
-        self._path, self.arrays, self.numbers, self.unusable, self._values = path, {}, {}, {}, 0
-
-    def add(self, name: str, value, depth: int = 0) -> None:
-        """Add an array, a number, or what a structure holds; of anything else only its name and what it holds."""
-        if depth > _DEEPEST or len(self.arrays) >= _MOST_CHANNELS:
-            return
-        value = np.asarray(value)
-        if value.dtype.names:
-            for field in value.dtype.names:
-                self.add(f"{name}.{field}", value[field], depth + 1)
-        elif value.dtype == object:
-            if value.size >= FEWEST_SAMPLES:
-                self.pass_over(name, _CELLS, value.size)
-            for index, item in enumerate(value.ravel()[:_MOST_CHANNELS]):
-                self.add(name if value.size == 1 else f"{name}[{index}]", item, depth + 1)
-        elif value.dtype.kind in "iufb":
-            value = np.squeeze(value)
-            if value.ndim == 0:
-                self.numbers[name] = float(value)
-            elif value.ndim == 1:
-                self._count(value)
-                self.arrays[name] = value
-            elif value.ndim == 2:
-                self._count(value)
-                columns = value if value.shape[1] <= value.shape[0] else value.T
-                for index, column in enumerate(columns.T[:_MOST_CHANNELS]):
-                    self.arrays[f"{name}[{index}]"] = column
-            else:
-                self.pass_over(name, f"numbers in {value.ndim} dimensions", value.size)
-        else:
-            self.pass_over(name, _KINDS.get(value.dtype.kind, f"values of the type {value.dtype}"), value.size)
-
-    def add_loaded(self, name: str, load: Callable[[], np.ndarray]) -> None:
-        """Add what ``load`` returns; Python objects, which NumPy refuses to read, are passed over."""
-        try:
-            value = load()
-        except ValueError as error:
-            if "allow_pickle" not in str(error):
-                raise
-            self.pass_over(name, _OBJECTS, FEWEST_SAMPLES)  # how many they are is not known without reading them
-        else:
-            self.add(name, value)
-
-    def pass_over(self, name: str, holds: str, count: int) -> None:
-        """Keep the name of an array that cannot be used, with what it holds and how many."""
-        if len(self.unusable) < _MOST_CHANNELS:
-            self.unusable[name] = Unusable(holds, count >= FEWEST_SAMPLES and holds in _EXPECTED)
-
-    def _count(self, value: np.ndarray) -> None:
-        self._values += value.size
-        VIBRATION_SAMPLES.check(self._values, str(self._path))
-
-    @property
-    def channels(self) -> Channels:
-        """What was collected."""
-        return Channels(self.arrays, self.numbers, unusable=self.unusable)
-
-
-class _Unpacked:
-    """The content of a compressed element of a MAT file, read once from its beginning and not kept."""
-
-    def __init__(self, stream: BinaryIO, packed: int):
-        self._stream, self._packed, self._unpacker, self._ready = stream, packed, zlib.decompressobj(), io.BytesIO()
-        self.position = 0
+    def __init__(self, stream: BinaryIO, size: int, is_packed: bool):
+        self._pieces = _unpacked(stream, size) if is_packed else _pieces(stream, size)
+        self._ready, self.position = io.BytesIO(), 0
 
     def read(self, count: int) -> bytes:
-        """Return the next bytes, fewer where it ends; at most `_PIECE` of them."""
+        """Return the next bytes, fewer where it ends."""
         found = self._ready.read(count)
-        while len(found) < count and not self._unpacker.eof:
-            source = self._unpacker.unconsumed_tail
-            if not source:
-                source = self._stream.read(min(self._packed, _PIECE))
-                self._packed -= len(source)
-            if not source:
-                break
-            self._ready = io.BytesIO(self._unpacker.decompress(source, _PIECE))
+        while len(found) < count and (piece := next(self._pieces, None)) is not None:
+            self._ready = io.BytesIO(piece)
             found += self._ready.read(count - len(found))
         self.position += len(found)
         return found
@@ -463,21 +432,18 @@ class _Unpacked:
             count -= len(found)
 
 
-class _Stored:
-    """An element of a MAT file that is not compressed."""
+def _pieces(stream: BinaryIO, size: int) -> Iterator[bytes]:
+    while size > 0 and (piece := stream.read(min(size, _PIECE))):
+        size -= len(piece)
+        yield piece
 
-    def __init__(self, stream: BinaryIO):
-        self._stream = stream
 
-    @property
-    def position(self) -> int:
-        return self._stream.tell()
-
-    def read(self, count: int) -> bytes:
-        return self._stream.read(count)
-
-    def skip(self, count: int) -> None:
-        self._stream.seek(count, io.SEEK_CUR)
+def _unpacked(stream: BinaryIO, size: int) -> Iterator[bytes]:
+    unpacker = zlib.decompressobj()
+    for piece in _pieces(stream, size):
+        while piece and not unpacker.eof:
+            yield unpacker.decompress(piece, _PIECE)
+            piece = unpacker.unconsumed_tail
 
 
 def _check_matlab(path: Path, stream: BinaryIO) -> None:
@@ -498,8 +464,8 @@ def _check_matlab(path: Path, stream: BinaryIO) -> None:
         kind, size = struct.unpack(f"{order}II", tag)
         begin = stream.tell()
         if kind in (_MAT_COMPRESSED, _MAT_MATRIX):
-            element = _Unpacked(stream, size) if kind == _MAT_COMPRESSED else _Stored(stream)
-            ends = [element.position + (8 if kind == _MAT_COMPRESSED else size)]
+            element = _Content(stream, size, kind == _MAT_COMPRESSED)
+            ends = [8 if kind == _MAT_COMPRESSED else size]  # a compressed one begins with the tag of the matrix
             while ends:
                 if element.position >= ends[-1] or len(inner := element.read(8)) < 8:
                     ends.pop()
@@ -518,44 +484,36 @@ def _check_matlab(path: Path, stream: BinaryIO) -> None:
         stream.seek(begin + size)
 
 
-def _matlab(path: Path) -> Channels:
+def _matlab(stream: BinaryIO, found: Channels) -> None:
     import scipy.io
     import scipy.sparse
 
-    with open_regular(path, VIBRATION_FILE) as stream:
-        head = stream.read(128)
+    head, path = stream.read(128), str(found.path)
+    stream.seek(0)
+    if b"MATLAB 7.3" in head or head.startswith(b"\x89HDF"):
+        found.form = "HDF5"
+        return _hdf5(stream, found)
+    if 0 not in head[:4]:  # version 4 begins with a number, and holds neither cells nor anything compressed
+        _check_matlab(found.path, stream)
         stream.seek(0)
-        if b"MATLAB 7.3" in head or head.startswith(b"\x89HDF"):
-            return _hdf5(path)
-        collector = _Collector(path)
-        try:
-            if 0 not in head[:4]:  # version 4 begins with a number, and holds neither cells nor anything compressed
-                _check_matlab(path, stream)
-                stream.seek(0)
-            shapes = scipy.io.whosmat(stream)
-            VIBRATION_SAMPLES.check(sum(math.prod(shape) for _, shape, kind in shapes if kind not in ("struct", "cell")), str(path))
-            stream.seek(0)
-            found = scipy.io.loadmat(stream)
-        except Exception as error:
-            raise _cannot_be_read(path, "MAT", error) from None
-    for name, value in found.items():
+    shapes = scipy.io.whosmat(stream)
+    VIBRATION_SAMPLES.check(sum(math.prod(shape) for _, shape, kind in shapes if kind not in ("struct", "cell")), path)
+    stream.seek(0)
+    for name, value in scipy.io.loadmat(stream).items():
         if name.startswith("__"):
             continue
         if scipy.sparse.issparse(value):
-            collector.pass_over(name, _SPARSE, math.prod(value.shape))
+            found.pass_over(name, _SPARSE, math.prod(value.shape))
         elif isinstance(value, (scipy.io.matlab.MatlabOpaque, scipy.io.matlab.MatlabFunction)):
-            collector.pass_over(name, _CELLS, FEWEST_SAMPLES)  # of an object only its class is known
+            found.pass_over(name, _CELLS, FEWEST_SAMPLES)  # of an object only its class is known
         else:
-            collector.add(name, value)
-    return collector.channels
+            found.add(name, value)
 
 
-def _hdf5(path: Path) -> Channels:
-    try:
-        import h5py
-    except ModuleNotFoundError as error:
-        raise VibrationError(f"{path}: {what_is_missing(error)}") from None
-    collector, parts, values = _Collector(path), 0, 0
+def _hdf5(stream: BinaryIO, found: Channels) -> None:
+    import h5py
+
+    parts, values, path = 0, 0, str(found.path)
 
     def held(kind: np.dtype) -> str:
         """Return what a data set holds that does not hold numbers."""
@@ -570,30 +528,25 @@ def _hdf5(path: Path) -> Channels:
     def visit(name: str, item) -> None:
         nonlocal parts, values
         parts += 1 + len(item.attrs)
-        VIBRATION_PARTS.check(parts, str(path))
+        VIBRATION_PARTS.check(parts, path)
         for key in item.attrs:
             attribute = item.attrs.get_id(key)
             if attribute.shape == () and attribute.dtype.kind in "iuf":
-                collector.numbers[f"{name}.{key}"] = float(item.attrs[key])
-        if not isinstance(item, h5py.Dataset) or name.startswith("#refs#"):
+                found.numbers[f"{name}.{key}"] = float(item.attrs[key])
+        if not isinstance(item, h5py.Dataset) or name.startswith("#refs#") or item.shape is None:  # a data set without a shape is empty
             return
         if item.dtype.kind not in "iuf":
-            collector.pass_over(name, held(item.dtype), item.size or 0)
+            found.pass_over(name, held(item.dtype), item.size)
             return
         if item.external or item.is_virtual:
-            raise FileError(f"the numbers of {printable(name)} are in another file; expected them in this one", str(path))
+            raise FileError(f"the numbers of {printable(name)} are in another file; expected them in this one", path)
         values += max(item.size, math.prod(item.chunks or (0,)))  # a piece is unpacked as a whole, however little of it counts
-        VIBRATION_SAMPLES.check(values, str(path))
-        collector.add(name, item[()])
+        VIBRATION_SAMPLES.check(values, path)
+        found.add(name, item[()])
 
-    with open_regular(path, VIBRATION_FILE) as stream:
-        try:
-            with h5py.File(stream, "r") as file:
-                visit("", file)
-                file.visititems(visit)
-        except Exception as error:
-            raise _cannot_be_read(path, "HDF5", error) from None
-    return collector.channels
+    with h5py.File(stream, "r") as file:
+        visit("", file)
+        file.visititems(visit)
 
 
 def _check_archive(path: Path, stream: BinaryIO) -> None:
@@ -614,23 +567,18 @@ def _check_archive(path: Path, stream: BinaryIO) -> None:
     stream.seek(0)
 
 
-def _numpy(path: Path) -> Channels:
-    collector, is_archive = _Collector(path), path.suffix.lower() == ".npz"
-    with open_regular(path, VIBRATION_FILE) as stream:
-        try:
-            if is_archive:
-                _check_archive(path, stream)
-                with np.load(stream, allow_pickle=False) as found:
-                    for name in found.files:
-                        collector.add_loaded(name, lambda: found[name])
-            elif stream.read(6) != b"\x93NUMPY":
-                raise FileError("cannot be read as NPY: it does not begin as one; the name of an archive of arrays ends in .npz", str(path))
-            else:
-                stream.seek(0)
-                collector.add_loaded("samples", lambda: np.load(stream, allow_pickle=False))
-        except Exception as error:
-            raise _cannot_be_read(path, "NPZ" if is_archive else "NPY", error) from None
-    return collector.channels
+def _archive(stream: BinaryIO, found: Channels) -> None:
+    _check_archive(found.path, stream)
+    with np.load(stream, allow_pickle=False) as arrays:
+        for name in arrays.files:
+            found.add_loaded(name, lambda: arrays[name])
+
+
+def _single_array(stream: BinaryIO, found: Channels) -> None:
+    if stream.read(6) != b"\x93NUMPY":
+        raise ValueError("it does not begin as one; the name of an archive of arrays ends in .npz")
+    stream.seek(0)
+    found.add_loaded("samples", lambda: np.load(stream, allow_pickle=False))
 
 
 def _check_wave(path: Path, stream: BinaryIO) -> None:
@@ -643,85 +591,56 @@ def _check_wave(path: Path, stream: BinaryIO) -> None:
     stream.seek(0)
 
 
-def _wave(path: Path) -> Channels:
+def _wave(stream: BinaryIO, found: Channels) -> None:
     import warnings
 
     import scipy.io.wavfile
 
-    with open_regular(path, VIBRATION_FILE) as stream:
-        try:
-            _check_wave(path, stream)
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", scipy.io.wavfile.WavFileWarning)  # chunks of loggers that are not known
-                rate, samples = scipy.io.wavfile.read(stream)
-        except Exception as error:
-            raise _cannot_be_read(path, "WAV", error) from None
-    collector = _Collector(path)
-    collector.add("samples", samples)
-    return collector.channels._replace(rate=float(rate))
+    _check_wave(found.path, stream)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", scipy.io.wavfile.WavFileWarning)  # chunks of loggers that are not known
+        rate, samples = scipy.io.wavfile.read(stream)
+    found.add("samples", samples)
+    found.rate = float(rate)
 
 
-def _tdms(path: Path) -> Channels:
-    """Return the channels of a file of LabVIEW and other programs of National Instruments."""
-    try:
-        import nptdms
-    except ModuleNotFoundError as error:
-        raise VibrationError(f"{path}: {what_is_missing(error)}") from None
-    collector, start, values = _Collector(path), 0.0, 0
-    with open_regular(path, VIBRATION_FILE) as stream:
-        try:
-            with nptdms.TdmsFile.open(stream) as file:
-                for channel in (each for group in file.groups() for each in group.channels()):
-                    values += len(channel)
-                    VIBRATION_SAMPLES.check(values, str(path))
-                    told = channel.properties
-                    name = f"{channel.group_name}/{channel.name}" + (f" [{told['unit_string']}]" if told.get("unit_string") else "")
-                    collector.add(name, channel[:] if len(channel) else np.zeros(0))
-                    if float(told.get("wf_increment", 0.0)) > 0.0:
-                        collector.numbers[f"{name}.rate"] = 1.0 / float(told["wf_increment"])
-                    if isinstance(told.get("wf_start_time"), np.datetime64):
-                        start = float(told["wf_start_time"].astype("datetime64[us]").astype(np.int64)) * 1e-6
-        except Exception as error:
-            raise _cannot_be_read(path, "TDMS", error) from None
-    return collector.channels._replace(start=start)
+def _tdms(stream: BinaryIO, found: Channels) -> None:
+    """Read the channels of a file of LabVIEW and other programs of National Instruments."""
+    import nptdms
+
+    values = 0
+    with nptdms.TdmsFile.open(stream) as file:
+        for channel in (each for group in file.groups() for each in group.channels()):
+            values += len(channel)
+            VIBRATION_SAMPLES.check(values, str(found.path))
+            properties = channel.properties
+            name = f"{channel.group_name}/{channel.name}" + (f" [{properties['unit_string']}]" if properties.get("unit_string") else "")
+            found.add(name, channel[:] if len(channel) else np.zeros(0))
+            _note_rate(found, name, properties.get("wf_increment", 0.0))
 
 
-def _universal(path: Path) -> Channels:
-    """Return the functions of time of a universal file: its data sets 58, as text or binary."""
-    try:
-        import pyuff
-    except ModuleNotFoundError as error:
-        raise VibrationError(f"{path}: {what_is_missing(error)}") from None
-    open_regular(path, VIBRATION_FILE).close()
-    collector = _Collector(path)
-    try:
-        file = pyuff.UFF(str(path))
-        kinds = list(file.get_set_types())
-        VIBRATION_PARTS.check(len(kinds), str(path))
-        for number in (number for number, kind in enumerate(kinds) if int(kind) == 58):
-            found = file.read_sets([number])
-            unit, title = str(found.get("ordinate_axis_units_lab", "")).strip(), str(found.get("id1", "")).strip()
-            name = f"{number + 1} {title}".replace(" NONE", "") + (f" [{unit}]" if unit not in ("", "NONE") else "")
-            collector.add(name, found["data"])
-            if int(found.get("abscissa_spacing", 0)) and float(found.get("abscissa_inc", 0.0)) > 0.0:
-                collector.numbers[f"{name}.rate"] = 1.0 / float(found["abscissa_inc"])
-            elif "x" in found:
-                collector.add(f"{name} time", np.real(found["x"]))
-    except Exception as error:
-        raise _cannot_be_read(path, "universal file", error) from None
-    return collector.channels
+def _note_rate(found: Channels, name: str, step: float) -> None:
+    """Take the step of a channel's times [s], if there is one."""
+    if float(step) > 0.0:
+        found.numbers[f"{name}.rate"] = 1.0 / float(step)
 
 
-_READERS: Mapping[str, Callable[[Path], Channels]] = {
-    "text": _text,
-    "parquet": _parquet,
-    "matlab": _matlab,
-    "hdf5": _hdf5,
-    "numpy": _numpy,
-    "wave": _wave,
-    "tdms": _tdms,
-    "universal": _universal,
-}
+def _universal(_, found: Channels) -> None:
+    """Read the functions of time of a universal file: its data sets 58, as text or binary."""
+    import pyuff
+
+    file = pyuff.UFF(str(found.path))
+    kinds = list(file.get_set_types())
+    VIBRATION_PARTS.check(len(kinds), str(found.path))
+    for number in (number for number, kind in enumerate(kinds) if int(kind) == 58):
+        data = file.read_sets([number])
+        unit, title = str(data.get("ordinate_axis_units_lab", "")).strip(), str(data.get("id1", "")).strip()
+        name = f"{number + 1} {title}".replace(" NONE", "") + (f" [{unit}]" if unit not in ("", "NONE") else "")
+        found.add(name, data["data"])
+        step = data.get("abscissa_inc", 0.0) if int(data.get("abscissa_spacing", 0)) else 0.0
+        _note_rate(found, name, step)
+        if not float(step) > 0.0 and "x" in data:
+            found.add(f"{name} time", np.real(data["x"]))
 
 
 class Block(NamedTuple):
@@ -766,18 +685,18 @@ def block_of(message, field: str = "data") -> Block:
         raise ValueError(f"{field} holds no numbers") from None
     if samples.ndim != 1:
         raise ValueError(f"{field} holds no row of numbers")
-    told = {str(each.label): int(each.size) for each in getattr(getattr(message, "layout", None), "dim", ())}
-    return Block(samples, float(told["rate"]) if told.get("rate", 0) > 0 else math.nan, told.get("sequence"))
+    sizes = {str(each.label): int(each.size) for each in getattr(getattr(message, "layout", None), "dim", ())}
+    return Block(samples, float(sizes["rate"]) if sizes.get("rate", 0) > 0 else math.nan, sizes.get("sequence"))
 
 
-def _bag(path: Path, wanted: tuple[str, ...]) -> Channels:
-    """Return the channels of a recording: those that are named, or all topics of arrays of numbers."""
+def _bag(found: Channels, wanted: tuple[str, ...]) -> None:
+    """Read the channels of a recording: those that are named, or all topics of arrays of numbers."""
+    path = found.path
     bag, topics = BagReader(path), {}
     named = {name: _topic_and_field(name) for name in wanted}
     unreadable: Counter[str] = Counter()
     pieces: dict[str, list[Block]] = {}
     times: dict[str, list[int]] = {}
-    total = 0
     for item in bag:
         if isinstance(item, BagTopic):
             topics[item.name] = item.ros_type
@@ -791,8 +710,7 @@ def _bag(path: Path, wanted: tuple[str, ...]) -> Channels:
                     raise VibrationError(f"{path}, {name}: a message cannot be used: {printable(str(error))}") from None
                 unreadable[name] += 1
                 continue
-            total += len(block.samples)
-            VIBRATION_SAMPLES.check(total, str(path))
+            found.count(len(block.samples))
             pieces.setdefault(name, []).append(block)
             times.setdefault(name, []).append(time)
     missing = [name for name in wanted if name not in pieces]
@@ -811,14 +729,14 @@ def _bag(path: Path, wanted: tuple[str, ...]) -> Channels:
     elif tally.used < tally.there:
         raise VibrationError(f"{path}, {name}: blocks are missing ({tally.counts}); expected a record without gaps where a speed goes with it")
     stamps, blocks = times[name], pieces[name]
-    arrays = {each: np.concatenate([block.samples for block in found]) for each, found in pieces.items()}
+    found.arrays |= {each: np.concatenate([block.samples for block in parts]) for each, parts in pieces.items()}
     rates = {block.rate for block in blocks if math.isfinite(block.rate)}
     if len(rates) > 1:
         raise VibrationError(f"{path}, {name}: blocks of {' and '.join(f'{rate:g} Hz' for rate in sorted(rates)[:4])}; expected one rate")
     rate = next(iter(rates), None)
     if rate is None and len(stamps) > 1 and stamps[-1] > stamps[0]:
         rate = sum(len(block.samples) for block in blocks[1:]) / ((stamps[-1] - stamps[0]) * 1e-9)
-    return Channels(arrays, {}, rate, stamps[0] * 1e-9, tally=tally)
+    found.rate, found.tally = rate, tally
 
 
 def _longest_stretch(blocks: list[Block]) -> tuple[int, int]:
@@ -838,3 +756,18 @@ def _channels_of(topic: BagTopic, named: Mapping[str, tuple[str, str]]) -> Itera
     for name, (wanted, field) in named.items():
         if wanted == topic.name:
             yield name, field
+
+
+FORMATS = {
+    **dict.fromkeys((".csv", ".txt", ".tsv", ".dat", ".lvm"), ("text", _text)),
+    ".parquet": ("Parquet", _parquet),
+    ".mat": ("MAT", _matlab),
+    ".npz": ("NPZ", _archive),
+    ".npy": ("NPY", _single_array),
+    ".wav": ("WAV", _wave),
+    **dict.fromkeys((".h5", ".hdf5", ".hdf"), ("HDF5", _hdf5)),
+    ".tdms": ("TDMS", _tdms),
+    **dict.fromkeys((".uff", ".unv", ".u58", ".uf"), ("universal file", _universal)),
+    **dict.fromkeys((".mcap", ".active", ".db3", ".bag", ".zstd", ".zst", ".lz4"), ("bag", _bag)),
+}
+"""Names of formats and their readers, by the suffix of a file; a folder is a bag."""

@@ -4,6 +4,8 @@
 Every filter works on the spectrum of the whole record, so that none has a phase and each can change the sampling rate at once.
 """
 
+import copy
+import dataclasses
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -54,9 +56,7 @@ class Vibration:
     ----------
     samples : shape (n,), in any unit: no result depends on it.
     rate : of the samples [Hz].
-    unit : of the samples as a text; empty if unknown.
-    start : time of the first sample [s], on whatever clock the record has.
-    name : of the channel, for messages.
+    name : of the file and the channel, for messages.
     shaft_speed : shape (n,) [rad/s] at every sample, where a speed was recorded beside the vibration; None where not.
     tally : what of a recording was read; None of other files, which are read whole or not at all.
 
@@ -68,8 +68,6 @@ class Vibration:
 
     samples: np.ndarray
     rate: float
-    unit: str = ""
-    start: float = 0.0
     name: str = "vibration"
     shaft_speed: np.ndarray | None = None
     tally: Tally | None = None
@@ -101,7 +99,7 @@ class Vibration:
     def part(self, begin: int, end: int) -> "Vibration":
         """Return the samples from ``begin`` to before ``end`` as a record."""
         speed = None if self.shaft_speed is None else self.shaft_speed[begin:end]
-        return Vibration(self.samples[begin:end], self.rate, self.unit, self.start + begin / self.rate, self.name, speed, self.tally)
+        return dataclasses.replace(self, samples=self.samples[begin:end], shaft_speed=speed)
 
 
 class Spectrum:
@@ -153,13 +151,13 @@ class Spectrum:
             places = np.arange(len(magnitude)) * (self._step / spared)
             is_line &= np.abs(places - np.rint(places)) * spared > reach
         gain = np.where(is_line, 0.0, 1.0) / floor
-        found = object.__new__(Spectrum)
-        found._count, found._step, found.highest, found.rate = self._count, self._step, self.highest, self.rate
+        found = copy.copy(self)
         found._lines = self._lines * gain
         return found
 
     def low_passed(self, highest: float) -> tuple[np.ndarray, float]:
-        """Return the signal below a frequency [Hz], and its rate [Hz]."""
+        """Return the signal below a frequency [Hz], or below half its rate, and its rate [Hz]."""
+        highest = min(highest, self.highest)
         rate = min(2.0 * _OVERSAMPLED * highest, self.rate)
         count = max(16, scipy.fft.next_fast_len(int(self._count * rate / self.rate), real=True))
         count = min(count, self._count)
