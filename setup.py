@@ -45,6 +45,7 @@ setup(
             "scene/catalog/*/*.csv",
             "scene/scenes/*.bands.npz",
             "scene/scenes/*.yaml",
+            "inputs/headings.toml",
             "physics/limits.toml",
             "ros/dds/*.xml",
             "ros/profiles/*.yaml",

@@ -7,8 +7,8 @@ asked for, with the option that decides.
 
 import datetime
 import re
+from collections.abc import Iterable, Sequence
 from collections.abc import Mapping as AnyMapping
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -20,7 +20,9 @@ from bearing_sim.files.labview_text import start_of
 from bearing_sim.inputs.csv_import import TimeColumn, time_reader
 from bearing_sim.inputs.csv_text import (
     DELIMITERS,
+    HEADINGS,
     NAMES,
+    QUANTITIES,
     Layout,
     Marks,
     TableError,
@@ -32,6 +34,7 @@ from bearing_sim.inputs.csv_text import (
     is_comment,
     is_relative,
     is_unit_of,
+    may_be_relative,
     number_marks,
     percentage_question,
     records,
@@ -54,62 +57,18 @@ class Role(NamedTuple):
     not_words: str = ""
 
 
-_TEMPERATURE = r"temp|^t_|theta|°c|degc"
-ROLES = (
-    Role("cage_speed", "rad/s", r"(cage|k[aä]fig).*(speed|rpm|n$|drehzahl|omega)|^n_?(cage|k[aä]fig|k)\b|(speed|rpm|drehzahl).*(cage|k[aä]fig)"),
-    Role("running_clearance", "m", r"clearance|lagerluft|radialluft|betriebsspiel|lagerspiel", r"initial|nominal|cold|kalt|einbau|axial"),
-    Role(
-        "shaft_speed",
-        "rad/s",
-        r"speed|rpm|drehzahl|\bn\b|^n_|omega|rotation|revolution|umdrehung|vitesse|velocidad",
-        r"wind|cage|k[aä]fig|air|luft|vehicle|fahr",
-    ),
-    Role("power", "W", r"power|leistung|puissance|\bp_?(el|mech)?\b|kw\b", r"factor|faktor|reactive|blind"),
-    Role("torque", "N*m", r"torque|drehmoment|moment|\bm_?d\b|couple"),
-    Role("radial_load", "N", r"load|force|last|kraft|^f_?[rxyz]?\b|fradial|radial|charge|carga", r"axial|workload|auslast|current|strom"),
-    Role("inner_ring_temperature", "K", rf"(inner|innen|\bi\.?r|\bir\b).*({_TEMPERATURE})|({_TEMPERATURE}).*(inner|innen|_ir\b|\bir\b|_i\b)"),
-    Role(
-        "outer_ring_temperature",
-        "K",
-        rf"(outer|aussen|außen|\bor\b).*({_TEMPERATURE})|({_TEMPERATURE}).*(outer|aussen|außen|_or\b|\bor\b|_e\b|_ar\b)",
-    ),
-    Role(
-        "oil_temperature",
-        "K",
-        rf"(oil|öl|oel|lub|sump|huile).*({_TEMPERATURE})?|({_TEMPERATURE}).*(oil|öl|oel|lub|sump|huile)",
-        r"pressure|druck|level",
-    ),
-)
-_MAY_BE_RELATIVE = ("shaft_speed", "radial_load", "cage_speed", "power", "torque")  # columns in per cent, of a value that is asked for
-_TIME_WORDS = re.compile(r"time|zeit|date|datum|stamp|uhr|utc|heure|fecha|hora|^t$|^t[ _\[(/]|^ts$|^x_value", re.IGNORECASE)
-_CLOCK_WORDS = re.compile(r"^(time|zeit|uhrzeit|clock|hora|heure)", re.IGNORECASE)
+ROLES = tuple(Role(**role) for role in HEADINGS["roles"])
+_TIME_WORDS = re.compile(HEADINGS["time"]["words"], re.IGNORECASE)
+_DATES, _CLOCKS = HEADINGS["time"]["dates"], HEADINGS["time"]["clocks"]
 _SUFFIX = re.compile(r"(.+?)[ _.]+(?:in[ _]+)?([A-Za-z°%µ/0-9^-]+)$")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
-_DATES = (
-    (r"\d{4}-\d\d?-\d\d?", "%Y-%m-%d", ""),
-    (r"\d{4}/\d\d?/\d\d?", "%Y/%m/%d", ""),
-    (r"\d{4}\.\d\d?\.\d\d?", "%Y.%m.%d", ""),
-    (r"\d\d?\.\d\d?\.\d{4}", "%d.%m.%Y", ""),
-    (r"\d\d?\.\d\d?\.\d\d", "%d.%m.%y", ""),
-    (r"\d\d?/\d\d?/\d{4}", "%d/%m/%Y", "%m/%d/%Y"),
-    (r"\d\d?-\d\d?-\d{4}", "%d-%m-%Y", "%m-%d-%Y"),
-)
-"""Dates as patterns, their format, and the other format that they may have as well."""
-
-_CLOCKS = (
-    (r"\d\d?:\d\d", "%H:%M"),
-    (r"\d\d?:\d\d:\d\d", "%H:%M:%S"),
-    (r"\d\d?:\d\d:\d\d\.\d{1,6}", "%H:%M:%S.%f"),
-    (r"\d\d?:\d\d:\d\d,\d{1,6}", "%H:%M:%S,%f"),
-    (r"\d\d?:\d\d:\d\d [AaPp][Mm]", "%I:%M:%S %p"),
-    (r"\d\d?:\d\d [AaPp][Mm]", "%I:%M %p"),
-)
 _EPOCHS = ((1e8, 4e9, "s"), (1e11, 4e12, "ms"), (1e14, 4e15, "us"), (1e17, 4e18, "ns"))
 """Numbers that count from 1970, 1973 to 2096, by unit."""
 
 _SPREADSHEET_DAYS = (30_000.0, 60_000.0)  # of dates from 1982 to 2064, counted from 1899-12-30
 _SPREADSHEET_STEP = 0.01  # between rows: 14 minutes; that seconds of the same size stand so close is an assumption against them
 _DAYS = ("day", "days", "d")
+_ROWS_TRIED = 3  # for the formats that times may have
 _CELLS_LOOKED_AT = 500
 _LONGEST_LIST = 10_000  # characters of headings
 _LONGEST_LABEL, _LONGEST_HEADING = 100, 300  # characters
@@ -350,8 +309,7 @@ def _is_time(cells: Cells, layout: Layout, heading: str) -> bool:
 
 def _date_and_clock(cells: Cells, likely: Sequence[str]) -> tuple[str, str] | None:
     """Return the headings of a date and of a time of day, if the table has them in two columns."""
-    dates = [name for name in likely if any(re.fullmatch(pattern, (cells[name] or [""])[0]) for pattern, _, _ in _DATES)]
-    clocks = [name for name in likely if any(re.fullmatch(pattern, (cells[name] or [""])[0]) for pattern, _ in _CLOCKS)]
+    dates, clocks = ([name for name in likely if _formats_of(cells[name][:1], formats)] for formats in (_DATES, _CLOCKS))
     return (dates[0], clocks[0]) if dates and clocks else None
 
 
@@ -368,19 +326,27 @@ def _time_of(
         return _time_of_numbers(numbers, layout, lines, heading, unit)
     if all(_is_iso(value) for value in values):
         return {"format": "iso"}, f"ISO 8601, as in {values[0]}", ""
-    for date, format_, other in _DATES:
-        for clock, clock_format in (*_CLOCKS, ("", "")):
-            pattern = re.compile(f"({date})([ T]+)({clock})" if clock else f"({date})()()")
-            match = pattern.fullmatch(values[0])
-            if match is None:
-                continue
-            formats = [f"{each}{'T' if 'T' in match[2] else ' ' * bool(match[2])}{clock_format}" for each in (format_, other) if each]
-            if other:
-                formats, question = _day_or_month(values, *formats)
-                if question:
-                    return {}, "", question
-            return {"format": formats[0]}, f"as in {values[0]}", ""
+    formats = _formats_of(values, [*_DATES, *(f"{date}{between}{clock}" for date in _DATES for between in " T" for clock in _CLOCKS)])
+    if len(formats) > 1:
+        return {}, "", f"{values[0]!r} has the day or the month first; say which: " + " or ".join(f"--time-format '{each}'" for each in formats)
+    if formats:
+        return {"format": formats[0]}, f"as in {values[0]}", ""
     return {}, "", f"the times in {heading!r} are not understood, such as {values[0]!r}; say how they are written: --time-format '%d.%m.%Y %H:%M:%S'"
+
+
+def _formats_of(texts: Sequence[str], formats: Iterable[str]) -> list[str]:
+    """Return the formats of strptime that fit the most of some texts, as far as they fit one of the first."""
+    likely = [format_ for format_ in formats if any(_is_written(text, format_) for text in texts[:_ROWS_TRIED])]
+    counts = [sum(_is_written(text, format_) for text in texts) for format_ in likely]
+    return [format_ for format_, count in zip(likely, counts) if count == max(counts)]
+
+
+def _is_written(text: str, format_: str) -> bool:
+    try:
+        datetime.datetime.strptime(text, format_)
+    except ValueError:
+        return False
+    return True
 
 
 def _is_iso(text: str) -> bool:
@@ -389,16 +355,6 @@ def _is_iso(text: str) -> bool:
     except ValueError:
         return False
     return re.match(r"\d{4}-?\d\d-?\d\d", text) is not None
-
-
-def _day_or_month(values: Sequence[str], day_first: str, month_first: str) -> tuple[list[str], str]:
-    """Return the format of dates such as 03/04/2026, or a question if all of them may be read both ways."""
-    firsts, seconds = zip(*(map(int, re.split(r"[/-]", value)[:2]) for value in values))
-    if max(firsts) > 12:
-        return [day_first], ""
-    if max(seconds) > 12:
-        return [month_first], ""
-    return [], f"{values[0]!r} has the day or the month first; say which: --time-format '{day_first}' or --time-format '{month_first}'"
 
 
 def _time_of_numbers(numbers: Sequence[float], layout: Layout, lines: Sequence[str], heading: str, unit: str | None) -> tuple[dict, str, str]:
@@ -484,7 +440,7 @@ def _role_of(heading: str, layout: Layout, columns: AnyMapping[str, str], roles:
     for role in roles:
         says = any(re.search(role.words, text) for text in texts)
         denies = bool(role.not_words) and any(re.search(role.not_words, text) for text in texts)
-        may_be = not role.si_unit or is_unit_of(unit, role.si_unit) or not _is_a_unit(unit) or is_relative(unit) and role.field in _MAY_BE_RELATIVE
+        may_be = not role.si_unit or is_unit_of(unit, role.si_unit) or not _is_a_unit(unit) or is_relative(unit) and may_be_relative(role.si_unit)
         if says and not denies and may_be:
             return role
     return None
@@ -550,13 +506,10 @@ def _column_of(found: Guess, name: str, headings: list[str], columns, units) -> 
         found.questions[name] = f"{heading!r} is a percentage; give {example}"
         return None, ""
     if unit is None:
-        found.questions[name] = f"the heading {heading!r} has no unit; say which: --unit {name}={_UNIT_EXAMPLES[role.si_unit]}"
+        found.questions[name] = f"the heading {heading!r} has no unit; say which: --unit {name}={QUANTITIES[role.si_unit]['unit']}"
         return None, ""
     if not is_unit_of(unit, role.si_unit):
-        found.questions[name] = f"--unit {name}={unit}: no unit of this quantity; expected for example {_UNIT_EXAMPLES[role.si_unit]}"
+        found.questions[name] = f"--unit {name}={unit}: no unit of this quantity; expected for example {QUANTITIES[role.si_unit]['unit']}"
         return None, ""
     reason = ("as given" if given else "by its heading") + f", in {unit} " + ("as given" if name in units else "as it says")
     return {"column": heading, "unit": unit}, reason
-
-
-_UNIT_EXAMPLES = {"rad/s": "rpm", "N": "kN", "K": "degC", "m": "um"}

@@ -28,7 +28,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from bearing_sim.files.provenance import git_hash, package_version
 from bearing_sim.files.tally import Tally
 from bearing_sim.inputs.csv_text import (
-    AT_FULL_SCALE,
+    QUANTITIES,
     Layout,
     Marks,
     TableError,
@@ -38,6 +38,7 @@ from bearing_sim.inputs.csv_text import (
     first_lines,
     is_relative,
     is_unit_of,
+    may_be_relative,
     number_marks,
     percentage_question,
     records,
@@ -95,7 +96,7 @@ def _column(si_unit: str, meaning: str) -> type:
         @check
         def _converts(self) -> list[str]:
             if (not self.column) == (self.constant is None):
-                return ["expected either a column, or a constant such as " + _EXAMPLES[si_unit]]
+                return [f"expected either a column, or a constant such as {QUANTITIES[si_unit]['constant']}"]
             if self.constant is not None:
                 return self._errors_of_constant()
             if self.unit is not None and self.scale is not None:
@@ -103,7 +104,7 @@ def _column(si_unit: str, meaning: str) -> type:
             if self.unit is None and self.scale is None and not unit_in(self.column)[1]:
                 return [f"expected either unit, or scale (and offset), since the heading {self.column!r} has no unit"]
             if self.unit is not None and is_relative(self.column) and not is_relative(self.unit):
-                example = f"expected {percentage_question(self.unit, si_unit)}; or" if si_unit in AT_FULL_SCALE else "expected"
+                example = f"expected {percentage_question(self.unit, si_unit)}; or" if may_be_relative(si_unit) else "expected"
                 return [f"unit = {self.unit!r}: the heading {self.column!r} is a percentage; {example}, if it is wrong, scale: 1 {self.unit}"]
             if self.scale is None and self.offset is not None:
                 return ["offset does not go with unit; give scale and offset instead"]
@@ -144,8 +145,6 @@ def _column(si_unit: str, meaning: str) -> type:
 
     return Column
 
-
-_EXAMPLES = {"rad/s": "1500 rpm", "N": "800 N", "m/s^2": "9.81 m/s^2", "K": "60 degC", "W": "2 kW", "N*m": "50 N*m", "m": "20 um"}
 
 SpeedColumn = _column("rad/s", "shaft speed")
 ForceColumn = _column("N", "force")

@@ -11,6 +11,7 @@ import io
 import itertools
 import math
 import re
+import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -46,27 +47,16 @@ _MINUS = "\N{MINUS SIGN}"
 _UNIT_LIKE = re.compile(r"(?=.*[^\W\d_]|.*[%°-])(?:\D*|[^\d:]*\d[^\d:]*)")
 _WITH_UNIT = re.compile(r"[-+\N{MINUS SIGN}]?\d[\d.,' ]*\s?([^\W\d_]{1,5}(?:/[^\W\d_]{1,3})?|[%\N{PER MILLE SIGN}]|[°][CF])")
 _HEADED = (re.compile(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*"), re.compile(r"(.+?)\s*/\s*([^/\s]+(?:/[^/\s]+)?)"))
-_SPELLED = {
-    **dict.fromkeys(("°C", "℃", "C", "deg C", "Grad C", "Celsius", "deg_C", "degc", "DegC", "grdC"), "degC"),
-    **dict.fromkeys(("°F", "℉", "F", "deg F"), "degF"),
-    **dict.fromkeys(("RPM", "Rpm", "U/min", "U/Min", "Umdr./min", "min-1", "1/min", "r/min", "rev/min"), "rpm"),
-    **dict.fromkeys(("Nm", "N m", "N·m", "N.m"), "N*m"),
-    **dict.fromkeys(("kNm", "kN m", "kN·m", "kN.m"), "kN*m"),
-    **dict.fromkeys(("m/s²", "m/s2"), "m/s^2"),
-    **dict.fromkeys(("sec", "seconds", "Sek", "Sekunden", "Sec"), "s"),
-    **dict.fromkeys(("msec", "millis"), "ms"),
-    **dict.fromkeys(("KN",), "kN"),
-    **dict.fromkeys(("KW", "Kw"), "kW"),
-}
+HEADINGS = tomllib.loads(Path(__file__).with_name("headings.toml").read_text("utf-8"))
+"""What people write in headings: what columns are, times, and units (see there)."""
+QUANTITIES = HEADINGS["quantities"]
+_SPELLED = {written: unit for unit, texts in HEADINGS["spelled"].items() for written in texts}
 """What people write in a heading, in the spelling of `bearing_sim.scene.quantity`."""
-
 
 _PER_CENT, _PER_MILLE = r"%|per ?cent|pct|prozent", r"\N{PER MILLE SIGN}|per ?mille?|promille|permil"
 _RELATIVE = re.compile(rf"(?:({_PER_CENT})|({_PER_MILLE}))\s*(?:(?:of|von)\s+)?(.*)", re.IGNORECASE)
 _OF_SOMETHING = re.compile(rf".*(?:{_PER_CENT}|{_PER_MILLE})\s+(?:of|von)\b.*", re.IGNORECASE)
 _ENDS_RELATIVE = re.compile(rf"(?:{_PER_CENT}|{_PER_MILLE})\W*", re.IGNORECASE)
-AT_FULL_SCALE = {"rad/s": "1500 rpm", "N": "5 kN", "m/s^2": "9.81 m/s^2", "W": "2 MW", "N*m": "50 N*m", "m": "100 um"}
-"""By SI unit, an example of a quantity of which something may be a percentage; a temperature is none."""
 
 
 class TableError(ValueError):
@@ -521,9 +511,13 @@ def is_relative(text: str) -> bool:
 
 def percentage_question(unit: str, si_unit: str) -> str:
     """Return what to say instead of a unit that is a percentage of nothing that is named."""
-    what = {"rad/s": "speed", "N": "force", "W": "power", "N*m": "torque"}.get(si_unit, "value")
-    found = _RELATIVE.match(unit.strip())
-    return f"the {what} at 100 %, such as '{'%' if found is None or found[1] else chr(0x2030)} of {AT_FULL_SCALE[si_unit]}'"
+    found, quantity = _RELATIVE.match(unit.strip()), QUANTITIES[si_unit]
+    return f"the {quantity['name']} at 100 %, such as '{'%' if found is None or found[1] else chr(0x2030)} of {quantity['full_scale']}'"
+
+
+def may_be_relative(si_unit: str) -> bool:
+    """Return whether something in a unit may be a percentage; a temperature is none."""
+    return "full_scale" in QUANTITIES.get(si_unit, ())
 
 
 def unit_line(unit: str, si_unit: str) -> tuple[float, float]:
@@ -542,7 +536,7 @@ def unit_line(unit: str, si_unit: str) -> tuple[float, float]:
     found = _RELATIVE.fullmatch(unit.strip())
     if found is None:
         return conversion(spelled(unit), si_unit)
-    if si_unit not in AT_FULL_SCALE:
+    if not may_be_relative(si_unit):
         raise ValueError(f"unit = {unit!r}: expected a unit of this quantity, which is no percentage")
     try:
         reference = to_si(found[3], si_unit)
