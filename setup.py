@@ -46,6 +46,7 @@ setup(
             "scene/scenes/*.bands.npz",
             "scene/scenes/*.yaml",
             "inputs/headings.toml",
+            "messages/*.toml",
             "physics/limits.toml",
             "ros/dds/*.xml",
             "ros/profiles/*.yaml",
