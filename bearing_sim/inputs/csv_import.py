@@ -33,9 +33,8 @@ from bearing_sim.inputs.csv_text import (
     Marks,
     TableError,
     cells_in,
-    encoding_of,
     find_header,
-    first_lines,
+    first_look,
     is_relative,
     is_unit_of,
     may_be_relative,
@@ -307,6 +306,7 @@ class Mapping:
     delimiter: str | None = None  # between cells: one character, or tab; by default found in the header
     decimal: Literal[".", ","] | None = None  # mark of numbers; by default found in the cells, and asked for where they may mean both
     thousands: Literal[".", ",", "apostrophe", "space"] | None = None  # between groups of three digits; by default found in the cells, likewise
+    sheet: str = ""  # of a workbook; by default the only one
     encoding: str | None = None  # of the file, such as utf-8 or latin-1; by default that of its byte-order mark, UTF-8, or Latin-1
     only: dict[str, str] = field(default_factory=dict)  # column: text that its cell must have; other rows are left out
     time: TimeColumn  # of each row
@@ -565,7 +565,7 @@ def _rows_of(path: Path, mapping: Mapping) -> tuple[Layout, Iterable[tuple[int, 
     """Return how a table is laid out and its rows, (number, cells)."""
     if not is_parquet(path):
         layout = layout_of(path, mapping)
-        return layout, records(path, layout)
+        return layout, records(layout)
     layout = parquet_layout(path, mapping.column_names(), Marks(mapping.decimal or ".", mapping.thousands or ""))
     takes_timestamps = mapping.time.format == "iso" and not mapping.time.time_of_day
     return layout, parquet_records(path, layout, mapping.only, mapping.time.column, takes_timestamps)
@@ -601,17 +601,15 @@ def layout_of(path: Path, mapping: Mapping) -> Layout:
     TableError
         See `read_table`.
     """
-    layout = Layout(encoding_of(path, mapping.encoding))
-    if mapping.encoding is None and not layout.encoding.startswith("utf-8"):
+    layout = first_look(path, mapping.encoding, mapping.sheet)
+    if mapping.encoding is None and layout.encoding not in ("utf-8", "utf-8-sig", "workbook"):
         layout.found.append(f"encoding: {layout.encoding}, since it is not UTF-8")
-    lines = first_lines(path, layout.encoding)
-    delimiter = "\t" if mapping.delimiter == "tab" else mapping.delimiter
-    find_header(path, lines, mapping.column_names(), delimiter, layout)
+    find_header(layout, mapping.column_names(), "\t" if mapping.delimiter == "tab" else mapping.delimiter)
     numbers = [one.column for _, one in mapping.columns()] + [mapping.time.column] * (mapping.time.format is None)
     try:
         for _, one in mapping.columns():
             one.contradiction(layout.cell_units.get(one.column, ""))
-        layout.marks = number_marks(cells_in(lines, layout, numbers), layout.delimiter, mapping.decimal, mapping.thousands)
+        layout.marks = number_marks(cells_in(layout, numbers), layout.delimiter, mapping.decimal, mapping.thousands)
     except TableError as error:
         raise TableError(f"{path}, {error}") from None
     layout.found += layout.marks._replace(

@@ -48,7 +48,7 @@ def parquet_layout(path: Path, wanted: Sequence[tuple[str, str]], marks: Marks) 
     errors = [f"  {where}: no column {name!r}{did_you_mean(name, names)}" for where, name in wanted if name not in names]
     if errors:
         raise TableError("\n".join([f"{path}: the table has {', '.join(names) or 'no columns'}", *errors]))
-    return Layout("parquet", marks=marks, names=tuple(dict.fromkeys(name for _, name in wanted)))
+    return Layout(path, "parquet", marks=marks, names=tuple(dict.fromkeys(name for _, name in wanted)))
 
 
 def parquet_records(path: Path, layout: Layout, only: Mapping[str, str], time: str, takes_timestamps: bool) -> Iterator[tuple[int, list[str]]]:
