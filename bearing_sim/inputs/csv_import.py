@@ -237,6 +237,16 @@ class SumLoad:
     columns: tuple[ForceColumn, ...]  # of forces
     negative: Literal["refuse", "magnitude", "direction"] = "refuse"  # what a sum below 0 is: no load, one of that magnitude, or one along -y
 
+    def load(self, speed: float, forces: Sequence[float]) -> float:
+        """Return the load [N] at a shaft speed [rad/s] for the values of `columns` [N]; raise `_BadCell` where there is none."""
+        load = math.fsum(forces)
+        if load >= 0.0 or self.negative == "direction":
+            return load
+        if self.negative == "magnitude":
+            return -load
+        choice = "a radial load is a magnitude; --set radial_load.negative=magnitude takes it without its sign, =direction as a load along -y"
+        raise _BadCell("negative", f"{load:.6g} N is negative: {choice}")
+
 
 @record
 class NormLoad:
@@ -244,6 +254,10 @@ class NormLoad:
 
     law: Literal["norm"] = "norm"
     columns: tuple[ForceColumn, ...]  # of forces
+
+    def load(self, speed: float, forces: Sequence[float]) -> float:
+        """Return the load [N]; see `SumLoad.load`."""
+        return math.hypot(*forces)
 
 
 @record
@@ -253,6 +267,15 @@ class MassTimesAcceleration:
     law: Literal["mass_times_acceleration"] = "mass_times_acceleration"
     mass: quantity("kg", "mass that the bearing supports", 1e-6, 1e6)
     accelerations: tuple[AccelerationColumn, ...]  # columns
+
+    @property
+    def columns(self) -> tuple:
+        """The columns that the load is computed from."""
+        return self.accelerations
+
+    def load(self, speed: float, accelerations: Sequence[float]) -> float:
+        """Return the load [N] for the values of `columns` [m/s^2]."""
+        return self.mass * math.hypot(*accelerations)
 
 
 @record
@@ -287,6 +310,20 @@ class GearForce:
         across = math.hypot(1.0, math.tan(self.pressure_angle) / math.cos(self.helix_angle))
         return math.hypot(self.share * across * 2 * torque / self.pitch_diameter, self.dead_weight)
 
+    @property
+    def columns(self) -> tuple:
+        """The columns that the load is computed from."""
+        return (self.power or self.torque,)
+
+    def load(self, speed: float, measured: Sequence[float]) -> float:
+        """Return the load [N] at a shaft speed [rad/s] for a power [W] or a torque [N m]; raise `_BadCell` where there is none."""
+        (number,) = measured
+        if self.torque is not None or number == 0.0:
+            return self.force(number)
+        if not abs(speed) > 0.0:  # also NaN, where the row's speed could not be read
+            raise _BadCell("no_speed", "power without a shaft speed other than zero gives no force")
+        return self.force(number / (self.efficiency * abs(speed)))
+
 
 @record
 class ConstantLoad:
@@ -294,6 +331,15 @@ class ConstantLoad:
 
     law: Literal["constant"] = "constant"
     value: quantity("N", "radial load throughout", 0.0, 1e8)
+
+    @property
+    def columns(self) -> tuple:
+        """There are none."""
+        return ()
+
+    def load(self, speed: float, measured: Sequence[float]) -> float:
+        """Return the load [N]."""
+        return self.value
 
 
 @record
@@ -332,24 +378,15 @@ class Mapping:
         for name in _RESULTS.values():
             if getattr(self, name) is not None and getattr(self, name).constant is not None:
                 return [f"{name}: expected a column; a constant is no measurement"]
-        if any(one.constant is not None for one in self.load_columns()):
+        if any(one.constant is not None for one in self.radial_load.columns):
             return ["radial_load: expected columns; a load that was not measured has law: constant and a value"]
-        if isinstance(self.radial_load, ConstantLoad) or self.load_columns():
+        if isinstance(self.radial_load, ConstantLoad) or self.radial_load.columns:
             return []
         return [f"radial_load: the law {self.radial_load.law} needs at least one column"]
 
-    def load_columns(self) -> tuple:
-        """Return the columns that the load is computed from."""
-        load = self.radial_load
-        if isinstance(load, ConstantLoad):
-            return ()
-        if isinstance(load, MassTimesAcceleration):
-            return load.accelerations
-        return (load.power or load.torque,) if isinstance(load, GearForce) else load.columns
-
     def columns(self) -> list[tuple[str, object]]:
         """Return (path in the mapping, record) of every column of numbers."""
-        named = [("shaft_speed", self.shaft_speed), *(("radial_load", one) for one in self.load_columns())]
+        named = [("shaft_speed", self.shaft_speed), *(("radial_load", one) for one in self.radial_load.columns)]
         named += [(name, getattr(self, name)) for name in (*topics.TEMPERATURES, *_RESULTS.values())]
         return [(where, one) for where, one in named if one is not None and one.constant is None]
 
@@ -629,8 +666,8 @@ class _RowReader:
         self._time = time_reader(mapping.time, self._marks)
         self._units = {columns[name]: unit for name, unit in layout.cell_units.items()}
         self._time_columns = [columns[name] for name in (mapping.time.column, mapping.time.time_of_day) if name]
-        self._load_columns = [(columns[one.column], one.column, *one.line()) for one in mapping.load_columns()]
-        self._load = _load_law(mapping)
+        self._load_columns = [(columns[one.column], one.column, *one.line()) for one in mapping.radial_load.columns]
+        self._load = mapping.radial_load.load
         self._speed = self._value_reader(mapping.shaft_speed, columns)
         optional = {channel: getattr(mapping, name) for channel, name in (*zip(topics.TEMPERATURES, topics.TEMPERATURES), *_RESULTS.items())}
         self._optional = {channel: self._value_reader(one, columns) for channel, one in optional.items() if one}
@@ -772,40 +809,6 @@ def _stamp(time_ns: int) -> int:
     if not 0 <= time_ns < _TIMES_END:
         raise _TimeOutOfRange
     return time_ns
-
-
-def _load_law(mapping: Mapping) -> Callable[[float, list[float]], float]:
-    """Return the function load(speed, column values), in SI."""
-    law = mapping.radial_load
-    if isinstance(law, MassTimesAcceleration):
-        return lambda speed, values: law.mass * math.hypot(*values)
-    if isinstance(law, NormLoad):
-        return lambda speed, values: math.hypot(*values)
-    if isinstance(law, ConstantLoad):
-        return lambda speed, values: law.value
-    if isinstance(law, GearForce):
-        return lambda speed, values: _gear_force(law, speed, values[0])
-    return lambda speed, values: _signed(law, math.fsum(values))
-
-
-def _signed(law: SumLoad, load: float) -> float:
-    """Return the load [N] that a sum stands for."""
-    if load >= 0.0 or law.negative == "direction":
-        return load
-    if law.negative == "magnitude":
-        return -load
-    choice = "a radial load is a magnitude; --set radial_load.negative=magnitude takes it without its sign, =direction as a load along -y"
-    raise _BadCell("negative", f"{load:.6g} N is negative: {choice}")
-
-
-def _gear_force(law: GearForce, speed: float, measured: float) -> float:
-    if law.torque is not None:
-        return law.force(measured)
-    if measured == 0.0:
-        return law.force(0.0)
-    if not abs(speed) > 0.0:  # also NaN, where the row's speed could not be read
-        raise _BadCell("no_speed", "power without a shaft speed other than zero gives no force")
-    return law.force(measured / (law.efficiency * abs(speed)))
 
 
 def _find_gaps(table: Table, mapping: Mapping, row_spacings: np.ndarray) -> None:

@@ -16,12 +16,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import BinaryIO, NamedTuple, TextIO
+from typing import NamedTuple, TextIO
 
 from bearing_sim.files.labview_text import plain_lines
-from bearing_sim.files.limits import TABLE_COLUMNS, TABLE_FILE, TABLE_LINE, TABLE_ROWS, FileError, Limit, LimitError
+from bearing_sim.files.limits import TABLE_COLUMNS, TABLE_FILE, TABLE_LINE, TABLE_ROWS, FileError
 from bearing_sim.files.reading import open_regular
-from bearing_sim.inputs.workbook import WorkbookError, sheet_lines
+from bearing_sim.inputs.workbook import sheet_lines
 from bearing_sim.scene.errors import did_you_mean, shortened
 from bearing_sim.scene.quantity import conversion, to_si
 
@@ -59,8 +59,8 @@ _OF_SOMETHING = re.compile(rf".*(?:{_PER_CENT}|{_PER_MILLE})\s+(?:of|von)\b.*", 
 _ENDS_RELATIVE = re.compile(rf"(?:{_PER_CENT}|{_PER_MILLE})\W*", re.IGNORECASE)
 
 
-class TableError(ValueError):
-    """A table that cannot be imported."""
+TableError = FileError
+"""A table that cannot be imported: a file that cannot be read, or that exceeds a limit."""
 
 
 class Marks(NamedTuple):
@@ -155,7 +155,7 @@ def encoding_of(path: Path, given: str | None = None) -> str:
     TableError
         The file is missing, is no text, or cannot be read in the encoding given.
     """
-    with opened(path) as stream:
+    with open_regular(path, TABLE_FILE) as stream:
         begin = stream.read(4)
         if begin == _WORKBOOK:
             return "workbook"
@@ -174,35 +174,13 @@ def encoding_of(path: Path, given: str | None = None) -> str:
             if b"\0" in piece:
                 raise TableError(f"{path}: no text, it has bytes of zero; expected a CSV table")
             lines += piece.count(b"\n")
-            within(TABLE_ROWS, lines, path)
+            TABLE_ROWS.check(lines, str(path))
             if is_utf8:
                 try:
                     decoder.decode(piece)
                 except UnicodeDecodeError:
                     is_utf8 = False
     return "utf-8" if is_utf8 else "cp1252"
-
-
-def opened(path: Path) -> BinaryIO:
-    """Return a table's file, opened for reading bytes.
-
-    Raises
-    ------
-    TableError
-        It cannot be opened, or is too large.
-    """
-    try:
-        return open_regular(path, TABLE_FILE)
-    except FileError as error:
-        raise TableError(str(error)) from None
-
-
-def within(limit: Limit, found: int, where: str | Path) -> None:
-    """Raise `TableError` if what was found exceeds a limit; ``where`` opens the message."""
-    try:
-        limit.check(found, str(where))
-    except LimitError as error:
-        raise TableError(str(error)) from None
 
 
 def table_lines(path: Path, encoding: str, sheet: str = "", errors: str = "strict") -> Iterator[str]:
@@ -214,10 +192,7 @@ def table_lines(path: Path, encoding: str, sheet: str = "", errors: str = "stric
         It cannot be opened, the encoding is unknown or not one of texts, or a line is longer than the limit.
     """
     if encoding == "workbook":
-        try:
-            yield from sheet_lines(path, sheet)
-        except (WorkbookError, FileError) as error:
-            raise TableError(str(error)) from None
+        yield from sheet_lines(path, sheet)
         return
     if sheet:
         raise TableError(f"{path}: sheet {sheet!r}: it is no workbook")
@@ -227,7 +202,7 @@ def table_lines(path: Path, encoding: str, sheet: str = "", errors: str = "stric
         raise TableError(f"{path}: encoding {encoding!r}: {error}") from None
     if not getattr(found, "_is_text_encoding", True):
         raise TableError(f"{path}: encoding {encoding!r}: no encoding of texts; expected such as utf-8 or latin-1")
-    with opened(path) as stream, io.TextIOWrapper(stream, encoding=encoding, errors=errors, newline="") as text:
+    with open_regular(path, TABLE_FILE) as stream, io.TextIOWrapper(stream, encoding=encoding, errors=errors, newline="") as text:
         yield from plain_lines(_within_limit(text, path))
 
 
@@ -321,7 +296,7 @@ def _enter_header(wanted, layout, delimiter, cells, number, commented, was_searc
     errors = [f"  {where}: {cells.count(name)} columns are called {name!r}" for where, name in wanted if cells.count(name) > 1]
     if errors:
         raise TableError("\n".join([f"{layout.path}, line {number}: the header has {_shown(cells)}", *errors]))
-    within(TABLE_COLUMNS, len(cells), f"{layout.path}, line {number}")
+    TABLE_COLUMNS.check(len(cells), f"{layout.path}, line {number}")
     if odd := next((cell for cell in cells if _CONTROL.search(cell)), None):
         raise TableError(f"{layout.path}, line {number}: the heading {odd[:_SHOWN]!r} has control characters; expected text")
     layout.delimiter, layout.names, layout.header_line, layout.is_comment = delimiter, tuple(cells), number, commented
@@ -441,7 +416,7 @@ def records(layout: Layout) -> Iterator[tuple[int, list[str]]]:
         while len(cells) > width and not cells[-1].strip():
             cells.pop()
         if lines.began - layout.header_line > most_rows:
-            within(TABLE_ROWS, lines.began - layout.header_line, path)
+            TABLE_ROWS.check(lines.began - layout.header_line, str(path))
         if named <= len(cells) < width:
             cells += [""] * (width - len(cells))
         yield lines.began, cells
@@ -483,7 +458,7 @@ class _Lines:
                 self.at_start, self.began, self._length = False, number, 0
             self._length += len(line)
             if self._length > len(line):
-                within(TABLE_LINE, self._length, f"the row that begins in line {self.began}")
+                TABLE_LINE.check(self._length, f"the row that begins in line {self.began}")
             return line
         raise StopIteration
 

@@ -11,14 +11,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from bearing_sim.files.extras import what_is_missing
-from bearing_sim.files.limits import TABLE_COLUMNS, WORKBOOK_BYTES, LimitError
+from bearing_sim.files.limits import TABLE_COLUMNS, WORKBOOK_BYTES, FileError
 from bearing_sim.scene.errors import did_you_mean, shortened
 
 _SHOWN = 300  # characters in a message
-
-
-class WorkbookError(ValueError):
-    """A workbook that cannot be read; the message says which file, why and what to do."""
 
 
 def sheet_lines(path: Path, sheet: str = "") -> Iterator[str]:
@@ -31,26 +27,25 @@ def sheet_lines(path: Path, sheet: str = "") -> Iterator[str]:
 
     Raises
     ------
-    WorkbookError
-        It is damaged, has no such sheet, or has several and none is named; or the package that reads it is missing.
-    LimitError
-        It unpacks to more than the limit, or a row is too wide.
+    FileError
+        It is damaged, has no such sheet, or has several and none is named; it unpacks to more than the limit, or a row is too wide; or the package
+        that reads it is missing.
     """
     try:
         from openpyxl import load_workbook
     except ModuleNotFoundError as error:
-        raise WorkbookError(f"{path}: a workbook; {what_is_missing(error)}, or save the sheet as CSV") from None
+        raise FileError(f"{path}: a workbook; {what_is_missing(error)}, or save the sheet as CSV") from None
     try:
         with zipfile.ZipFile(path) as archive:
             WORKBOOK_BYTES.check(sum(member.file_size for member in archive.infolist()), str(path))
             if damaged := archive.testzip():  # it also has another length than it says
-                raise WorkbookError(f"{path}: damaged: the checksum of its part {damaged[:_SHOWN]!r} is wrong")
+                raise FileError(f"{path}: damaged: the checksum of its part {damaged[:_SHOWN]!r} is wrong")
         book = load_workbook(path, read_only=True, data_only=True)
         names = [each.title for each in book.worksheets]
         if not sheet and len(names) > 1:
-            raise WorkbookError(f"{path}: it has the sheets {shortened(', '.join(names), _SHOWN)}; say which: sheet: NAME in the mapping, or --sheet")
+            raise FileError(f"{path}: it has the sheets {shortened(', '.join(names), _SHOWN)}; say which: sheet: NAME in the mapping, or --sheet")
         if sheet and sheet not in names:
-            raise WorkbookError(f"{path}: no sheet {sheet!r}{did_you_mean(sheet, names)}; it has {shortened(', '.join(names), _SHOWN)}")
+            raise FileError(f"{path}: no sheet {sheet!r}{did_you_mean(sheet, names)}; it has {shortened(', '.join(names), _SHOWN)}")
         rows = book[sheet or names[0]]
         rows.reset_dimensions()  # those that it states may be wrong
         widest = 0
@@ -59,13 +54,13 @@ def sheet_lines(path: Path, sheet: str = "") -> Iterator[str]:
             line, widest = io.StringIO(), max(widest, len(row))
             csv.writer(line, lineterminator="\n").writerow([*map(_text, row), *[""] * (widest - len(row))])  # empty cells at the end are left out
             yield line.getvalue()
-    except (WorkbookError, LimitError):
+    except FileError:
         raise
     except MemoryError:
-        raise WorkbookError(f"{path}: it does not fit into the memory of this machine; save the sheet as CSV") from None
+        raise FileError(f"{path}: it does not fit into the memory of this machine; save the sheet as CSV") from None
     except Exception as error:  # a workbook of another program, or a damaged one, makes its reader raise exceptions of any kind
         why = shortened(" ".join(f"{type(error).__name__}: {error}".split()), _SHOWN)
-        raise WorkbookError(f"{path}: cannot be read as a workbook ({why}); open it and save the sheet as CSV") from None
+        raise FileError(f"{path}: cannot be read as a workbook ({why}); open it and save the sheet as CSV") from None
 
 
 def _text(cell: object) -> str:

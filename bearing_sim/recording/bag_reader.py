@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Messages of recordings of any origin: MCAP files, SQLite databases of rosbag2 and bags of ROS 1, also unfinished or damaged ones."""
 
+import io
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -155,24 +156,35 @@ class BagReader:
             return
         self.tally.notes.append(f"{file.name}: compressed by {how}")
         with TemporaryDirectory(prefix="bearing_sim-") as folder:
-            target, left = Path(folder) / (plain_name(file) or "bag"), _most_unpacked(file)
-            size, end = 0, ""
+            target = Path(folder) / (plain_name(file) or "bag")
             with open_regular(file) as packed, open(target, "wb") as stream:
-                try:
-                    for piece in _pieces(packed, how):
-                        size += stream.write(piece)
-                        if size > left:
-                            raise RecordingError(f"{file}: it unpacks to {RECORDING_EXPANSION.refusal()}")
-                except (zstandard.ZstdError, RuntimeError, EOFError) as error:  # lz4 raises RuntimeError
-                    end = f"it cannot be unpacked to its end: {error}"
-            if not size:
-                raise RecordingError(f"{file}: nothing of it can be unpacked, so it is cut short or damaged")
+                end = _unpack(packed, how, stream, _most_unpacked(file), f"{file}: it unpacks")
+                if not stream.tell():
+                    raise RecordingError(f"{file}: nothing of it can be unpacked, so it is cut short or damaged")
             try:
                 yield target
             except RecordingError as error:
                 raise RecordingError(str(error).replace(str(target), str(file))) from None
             if end:
                 self._note_end(file, end)
+
+
+def _unpack(packed: BinaryIO, how: str, target: BinaryIO, most: int, what: str) -> str:
+    """Unpack a stream into another; return why it cannot be unpacked to its end, or ``""``.
+
+    Raises
+    ------
+    RecordingError
+        ``what`` unpacks to more than so many bytes.
+    """
+    try:
+        for piece in _pieces(packed, how):
+            target.write(piece)
+            if target.tell() > most:
+                raise RecordingError(f"{what} to {RECORDING_EXPANSION.refusal()}")
+    except (zstandard.ZstdError, RuntimeError, EOFError) as error:  # lz4 raises RuntimeError
+        return f"it cannot be unpacked to its end: {error}"
+    return ""
 
 
 def _pieces(packed: BinaryIO, how: str) -> Iterator[bytes]:
@@ -211,19 +223,9 @@ def _most_unpacked(file: Path) -> int:
 
 def _unpacked_message(file: Path, data: bytes, how: str, left: int) -> bytes:
     """Return a compressed message of at most ``left`` bytes; an empty one if it cannot be unpacked."""
-    most = min(left, RECORDING_RECORD.value)
-    try:
-        if how == "lz4":
-            unpacked = lz4.frame.LZ4FrameDecompressor().decompress(data, most + 1)
-            length = len(unpacked)
-        else:
-            length = zstandard.frame_content_size(data)
-            unpacked = zstandard.ZstdDecompressor().decompress(data, max_output_size=most if length < 0 else length) if length <= most else b""
-    except (zstandard.ZstdError, RuntimeError, EOFError):
-        return b""
-    if length > most:
-        raise RecordingError(f"{file}: its messages unpack to {RECORDING_EXPANSION.refusal()}")
-    return unpacked
+    target = io.BytesIO()
+    end = _unpack(io.BytesIO(data), how, target, min(left, RECORDING_RECORD.value), f"{file}: its messages unpack")
+    return b"" if end else target.getvalue()
 
 
 class _Type:

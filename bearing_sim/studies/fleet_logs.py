@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from bearing_sim.files.limits import BEARINGS_ROWS
 from bearing_sim.inputs.csv_import import Mapping, input_log, mapping_from_yaml, read_table
-from bearing_sim.inputs.csv_text import DELIMITERS, TableError, encoding_of, find_header, first_look, records, table_lines, within
+from bearing_sim.inputs.csv_text import DELIMITERS, TableError, encoding_of, find_header, first_look, records, table_lines
 from bearing_sim.inputs.log import InputLog, Source, read_input_log
 from bearing_sim.inputs.parquet_table import checksum, files_of, is_parquet, rows_of, values_of
 from bearing_sim.messages import topics
@@ -304,7 +304,7 @@ def _text_rows(path: Path) -> list[dict[str, str]]:
         lines = [line for line in islice(rows, BEARINGS_ROWS.value + 2) if any(cell.strip() for cell in line)]
     except (csv.Error, UnicodeDecodeError) as error:
         raise TableError(f"{path}: cannot be read as a table: {error}") from None
-    within(BEARINGS_ROWS, len(lines) - 1, path)
+    BEARINGS_ROWS.check(len(lines) - 1, str(path))
     if len(lines) < 2:
         raise TableError(f"{path}: expected a heading and a line for each bearing")
     names = [name.strip() for name in lines[0]]

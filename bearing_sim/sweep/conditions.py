@@ -178,7 +178,7 @@ def read_spectrum(path: Path) -> Spectrum:
         The file cannot be read, or is too long; a column is missing or unknown, a value is not the quantity expected, or there are no points.
     """
     from bearing_sim.inputs.csv_guess import ROLES, Role, headed_columns  # takes a while
-    from bearing_sim.inputs.csv_text import TableError, first_look, is_unit_of, records
+    from bearing_sim.inputs.csv_text import first_look, is_unit_of, records
 
     roles = (Role("axial_load", "N", _AXIAL, r"clearance|spiel"), *(role for role in ROLES if role.field in _KNOWN), Role("weight", "", _WEIGHT))
     try:
@@ -191,7 +191,7 @@ def read_spectrum(path: Path) -> Spectrum:
         POINTS_ROWS.check(len(rows), str(path))
     except LimitError as error:
         raise PointError(f"{error}; {_OVER_TIME}") from None
-    except (FileError, TableError) as error:
+    except FileError as error:
         raise PointError(str(error)) from None
     names = [name for name, _ in columns]
     for name, heading in zip(names, layout.names):
