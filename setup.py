@@ -46,6 +46,7 @@ setup(
             "scene/scenes/*.bands.npz",
             "scene/scenes/*.yaml",
             "inputs/headings.toml",
+            "inputs/mission.csv",
             "messages/*.toml",
             "physics/limits.toml",
             "ros/dds/*.xml",
