@@ -398,11 +398,10 @@ def _date(number: float, unit: str) -> str:
 
 def _ask_for_rows(found: Guess) -> None:
     """Ask which rows are meant where the times go back, because the table holds several machines one below the other or in turn."""
-    layout = found.layout
-    place, before, line_of_return = layout.names.index(found.tree["time"]["column"]), None, 0
-    read = time_reader(TypeAdapter(TimeColumn).validate_python(found.tree["time"]), layout.marks)
-    clock = layout.names.index(found.tree["time"]["time_of_day"]) if "time_of_day" in found.tree["time"] else None
-    labels: dict[int, set[str]] = {k: set() for k, name in enumerate(layout.names) if name and k not in (place, clock)}
+    layout, before, line_of_return = found.layout, None, 0
+    time = TypeAdapter(TimeColumn).validate_python(found.tree["time"])
+    read, places = time_reader(time, layout.marks), [layout.names.index(name) for name in (time.column, time.time_of_day) if name]
+    labels: dict[int, set[str]] = {k: set() for k, name in enumerate(layout.names) if name and k not in places}
     for number, cells in records(replace(layout)):
         if len(cells) != len(layout.names):
             continue
@@ -411,7 +410,7 @@ def _ask_for_rows(found: Guess) -> None:
             if not cells[k].isprintable() or len(labels[k]) > _MOST_LABELS or re.fullmatch(r"[-+]?[.,]?\d.*|", cells[k].strip()):
                 del labels[k]
         try:
-            now = read(" ".join([cells[place], *([cells[clock]] if clock is not None else [])]).strip(), None)
+            now = read(" ".join(cells[k] for k in places).strip(), None)
         except (ValueError, ArithmeticError):
             continue
         line_of_return = line_of_return or (number if before is not None and now < before else 0)
