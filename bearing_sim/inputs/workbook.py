@@ -15,6 +15,7 @@ from bearing_sim.files.limits import TABLE_COLUMNS, WORKBOOK_BYTES, FileError
 from bearing_sim.scene.errors import did_you_mean, shortened
 
 _SHOWN = 300  # characters in a message
+_MOST_ROWS = 2**20  # that a sheet can have
 
 
 def sheet_lines(path: Path, sheet: str = "") -> Iterator[str]:
@@ -51,6 +52,8 @@ def sheet_lines(path: Path, sheet: str = "") -> Iterator[str]:
         widest = 0
         for number, row in enumerate(rows.iter_rows(values_only=True), 1):
             TABLE_COLUMNS.check(len(row), f"{path}, row {number}")
+            if number > _MOST_ROWS:
+                raise FileError(f"{path}: row {number}: no sheet has more than {_MOST_ROWS:,} rows")
             line, widest = io.StringIO(), max(widest, len(row))
             csv.writer(line, lineterminator="\n").writerow([*map(_text, row), *[""] * (widest - len(row))])  # empty cells at the end are left out
             yield line.getvalue()
