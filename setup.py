@@ -24,7 +24,7 @@ optional = {
     "dask": ["distributed>=2024.8"],
     "plot": ["matplotlib>=3.9"],
     "ros": ros_wheels,
-    "tables": ["pandas>=2.2", "pyarrow>=18", "xarray>=2024.6"],
+    "tables": ["openpyxl>=3.1", "pandas>=2.2", "pyarrow>=18", "xarray>=2024.6"],
     "terminal": ["rich>=13"],
     "tdms": ["npTDMS>=1.10"],  # under the LGPL, so in no other extra
     "vibration": ["h5py>=3.11", "pyuff>=2.5"],
@@ -45,6 +45,9 @@ setup(
             "scene/catalog/*/*.csv",
             "scene/scenes/*.bands.npz",
             "scene/scenes/*.yaml",
+            "inputs/headings.toml",
+            "inputs/mission.csv",
+            "messages/*.toml",
             "physics/limits.toml",
             "ros/*.toml",
             "ros/dds/*.xml",

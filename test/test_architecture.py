@@ -32,7 +32,7 @@ ROOMS = {
     "messages": ("numpy rosbags", "files model"),
     "recording": ("lz4 mcap numpy pyarrow rosbags yaml zstandard", "files scene model messages"),
     "watchers": ("numpy pyarrow pydantic h5py matplotlib nptdms pyuff scipy", "files scene model messages recording physics numerics levels"),
-    "inputs": ("numpy pyarrow pydantic yaml", "files scene simulation messages recording"),
+    "inputs": ("numpy openpyxl pyarrow pydantic yaml", "files scene simulation messages recording"),
     "runtime": ("numpy", "files scene numerics model levels simulation messages recording watchers inputs"),
     "view": ("PIL numpy rerun rerun_cli", "files scene messages recording"),
     "sweep": ("numpy pandas pyarrow matplotlib distributed xarray scipy", "files scene numerics physics model levels simulation inputs"),

@@ -24,7 +24,7 @@ def faults_of(text):
 def test_units_become_scale_and_offset_in_si():
     mapping = mapping_from_yaml(GOOD)
     assert mapping.shaft_speed.line() == pytest.approx((0.10471975511965977, 0.0))
-    assert mapping.load_columns()[0].line() == pytest.approx((1000.0, 0.0))
+    assert mapping.radial_load.columns[0].line() == pytest.approx((1000.0, 0.0))
     assert mapping.oil_temperature.line() == pytest.approx((1.0, 273.15))
     assert mapping.time.nanoseconds_per_unit() == pytest.approx(1e6)
     assert mapping.time.epoch_ns() == 1_577_836_800_000_000_000
@@ -89,7 +89,7 @@ def test_flight_mapping_is_full_speed_32760_rpm_and_one_g_of_12_kg_at_rest():
     scale, offset = mapping.shaft_speed.line()
     assert (100 * scale + offset) * 30 / 3.141592653589793 == pytest.approx(32760.0)
     assert mapping.radial_load.mass == 12.0
-    assert [record.line() for record in mapping.load_columns()] == [pytest.approx((9.80665, 9.80665)), pytest.approx((9.80665, 0.0))]
+    assert [record.line() for record in mapping.radial_load.columns] == [pytest.approx((9.80665, 9.80665)), pytest.approx((9.80665, 0.0))]
 
 
 def test_unknown_mapping_is_told_with_those_there_are(tmp_path):

@@ -10,7 +10,8 @@ from rosbags.typesys.base import normalize_fieldname
 from test_cdr import STORE, random_message
 
 from bearing_sim.files.limits import VARIABLE
-from bearing_sim.messages.definitions import DefinitionError, MessageError, decoder
+from bearing_sim.messages.cdr import CdrError
+from bearing_sim.messages.definitions import DefinitionError, decoder
 
 SPLIT = "=" * 80 + "\n"
 
@@ -96,13 +97,13 @@ def test_a_definition_that_cannot_be_used_is_refused_with_the_reason(text, words
     ids=["numbers", "text", "messages of bytes", "arrays of arrays", "fixed array", "encoding"],
 )
 def test_no_item_of_a_message_is_made_before_its_bytes_are_known_to_be_there(text, data, words):
-    with pytest.raises(MessageError, match=words):
+    with pytest.raises(CdrError, match=words):
         decoder("p/msg/Type", "ros2msg", text.encode())(b"\0\1\0\0" + data)
 
 
 def test_types_within_types_that_double_at_each_level_end_with_the_message():
     text = "N0 a\nN0 b\n" + "".join(f"{SPLIT}MSG: p/N{k}\nN{k + 1} a\nN{k + 1} b\n" for k in range(29)) + f"{SPLIT}MSG: p/N29\nbyte a\n"
-    with pytest.raises(MessageError, match="end within"):
+    with pytest.raises(CdrError, match="end within"):
         decoder("p/msg/Type", "ros2msg", text.encode())(bytes([0, 1, *[0] * 100]))
 
 
@@ -114,7 +115,7 @@ def test_a_limit_is_raised_by_its_name(monkeypatch):
 
 @pytest.mark.parametrize("head", [b"", b"\0", b"\0\2\0\0", b"\xff\xff\xff\xff"])
 def test_bytes_in_another_representation_are_no_message(head):
-    with pytest.raises(MessageError, match="CDR version 1"):
+    with pytest.raises(CdrError, match="CDR version 1"):
         decoder("std_msgs/msg/Float64", "ros2msg", b"float64 data")(head)
 
 

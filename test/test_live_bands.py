@@ -23,7 +23,7 @@ from bearing_sim.messages.bands import BANDS, ESTIMATES, Bands, bands_of_message
 from bearing_sim.messages.cdr import typestore
 from bearing_sim.messages.diagnostics import report
 from bearing_sim.messages.events import Level, MeasuredClearance, Received
-from bearing_sim.messages.sample_messages import BandMessages
+from bearing_sim.messages.sample_messages import FilledMessages
 from bearing_sim.messages.topics import MEASURED_CHANNELS
 from bearing_sim.model.sample import RING_TEMPERATURES
 from bearing_sim.recording.bag import RecordingError
@@ -71,7 +71,7 @@ def test_a_message_names_every_quantity_with_its_unit_and_both_edges():
 
 def test_messages_filled_from_a_template_are_those_of_the_topic():
     bands, topic = some_bands(), topics.ESTIMATED[BANDS]
-    for k, data in enumerate(BandMessages("m1").each(bands, [START + k for k in range(3)])):
+    for k, data in enumerate(FilledMessages().of_bands(bands, [START + k for k in range(3)], "m1")):
         found = typestore().deserialize_cdr(data, topic.ros_type)
         assert (found.header.frame_id, found.header.stamp.nanosec) == ("m1", k)
         assert tuple(found.name) == bands.message_names and found.position.tolist() == bands.numbers[k].ravel().tolist()
@@ -111,7 +111,8 @@ def test_a_recording_with_another_message_on_the_topic_says_so(tmp_path):
     path = tmp_path / "run.mcap"
     with McapSink(path, SCENE, START) as sink:
         sink.write(synthetic_block(SCENE, 0.02 * np.arange(5)))
-        sink.write(Received("/bands", "sensor_msgs/msg/JointState", START, START, BandMessages().each(some_bands(), [0, 0, 0])[0][:-100]))
+        cut = FilledMessages().of_bands(some_bands(), [0, 0, 0], "bearing")[0][:-100]
+        sink.write(Received("/bands", "sensor_msgs/msg/JointState", START, START, cut))
     with pytest.raises(RecordingError, match="a message on /bands cannot be read"):
         list(Recording(path).bands())
     assert sum(len(item) for item in Recording(path)) == 5, "samples can be read all the same"

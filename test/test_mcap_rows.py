@@ -12,7 +12,7 @@ from mcap.records import Chunk, MessageIndex
 from mcap.stream_reader import StreamReader
 
 from bearing_sim.messages.cdr import message_type
-from bearing_sim.messages.sample_messages import InputMessages
+from bearing_sim.messages.sample_messages import FilledMessages
 from bearing_sim.messages.topics import INPUTS, MEASUREMENTS, RECORDED, RESIDUAL, outputs, recorded
 from bearing_sim.model.sample import OBSERVABLES, new_block
 from bearing_sim.recording.mcap_reader import McapReader, Rows
@@ -121,7 +121,7 @@ def test_samples_with_further_topics_have_them_before_their_others_and_all_count
 
 @pytest.mark.parametrize("name", [*INPUTS, *MEASUREMENTS])
 def test_messages_of_inputs_filled_from_a_template_are_those_of_the_topic(name):
-    topic, messages, random = (INPUTS | MEASUREMENTS)[name], InputMessages(), np.random.default_rng(3)
+    topic, messages, random = (INPUTS | MEASUREMENTS)[name], FilledMessages(), np.random.default_rng(3)
     for k in range(6):
         if name in INPUTS:
             source = Inputs(*(1e3 * random.random(6)).tolist())

@@ -36,10 +36,11 @@ from bearing_sim.scene.loader import did_you_mean, load_scene
 @option("--set", "overrides", "Override a field of the mapping; can be repeated.", multiple=True, metavar="FIELD=VALUE")
 @option("--column", "columns", "With --guess: the column of time, shaft_speed, radial_load ...", multiple=True, metavar="FIELD=HEADING")
 @option("--unit", "units", "With --guess: the unit of a column, such as shaft_speed=rpm, time=ms.", multiple=True, metavar="FIELD=UNIT")
+@option("--sheet", "Of a workbook (.xlsx) with several.", metavar="NAME")
 @option("--time-format", "With --guess: how times are written, such as '%d/%m/%Y %H:%M:%S', or iso.", metavar="FORMAT")
 @json_option
 def import_csv(
-    data, mapping_name, out, guesses, load, speed, oil_temperature, delimiter, decimal, only, overrides, columns, units, time_format, as_json
+    data, mapping_name, out, guesses, load, speed, oil_temperature, delimiter, decimal, only, overrides, columns, units, sheet, time_format, as_json
 ):
     """Convert DATA.csv to an MCAP log for `bearing-sim replay`.
 
@@ -58,7 +59,7 @@ def import_csv(
         if mapping_name or overrides:
             raise UsageError("--guess makes a mapping; give none, and no --set")
         chosen = _pairs("--column", columns, _FIELDS), _pairs("--unit", units, _FIELDS)
-        _guess(data, out, as_json, *chosen, _constants(given), delimiter, decimal, time_format, _pairs("--only", only))
+        _guess(data, out, as_json, *chosen, _constants(given), delimiter, decimal, time_format, _pairs("--only", only), sheet or "")
         return
     if columns or units or time_format:
         raise UsageError("--column, --unit and --time-format go with --guess; a mapping is changed with --set, such as --set shaft_speed.unit=rpm")
@@ -69,7 +70,7 @@ def import_csv(
     overrides = [*overrides, *(f"{name}={_flow(tree)}" for name, tree in _constants(given).items())]
     if only:
         overrides.append(f"only={_flow(_pairs('--only', only))}")
-    overrides += [f"{name}={_flow(text)}" for name, text in (("delimiter", delimiter), ("decimal", decimal)) if text is not None]
+    overrides += [f"{name}={_flow(text)}" for name, text in (("delimiter", delimiter), ("decimal", decimal), ("sheet", sheet)) if text is not None]
     mapping, text = load_mapping(mapping_name, overrides)
     table = read_table(data, mapping)
     out.check()  # again, now that mapping and table have been read

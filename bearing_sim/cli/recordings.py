@@ -255,12 +255,11 @@ def _exporting(kind: str, detail: str) -> click.Command:
         from bearing_sim.recording import table
         from bearing_sim.recording.reader import Recording
 
-        write = {"csv": table.write_csv, "parquet": table.write_parquet}[kind]
         ends = -math.inf if first is None else first, math.inf if last is None else last
         excerpt = table.Excerpt(tuple(columns), not no_rollers, every, *ends)
         source = Recording(recording, allow_partial=True)
         with progress_bar(f"writing {out.path.name}", source.duration) as progress, out.draft() as draft:
-            rows = write(source, draft, excerpt, progress)
+            rows = table.write_table(source, draft, excerpt, progress, kind)
         size = out.path.stat().st_size
         tell_use(source.tally, recording)
         report = {"recording": str(recording), "out": str(out), "rows": rows, "size": size, "read": source.tally.report()}

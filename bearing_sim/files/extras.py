@@ -8,7 +8,7 @@ import platform
 
 EXTRAS = {
     "view": ("rerun", "PIL"),
-    "tables": ("pandas", "xarray", "pyarrow"),
+    "tables": ("openpyxl", "pandas", "xarray", "pyarrow"),
     "plot": ("matplotlib",),
     "terminal": ("rich",),
     "vibration": ("h5py", "pyuff"),

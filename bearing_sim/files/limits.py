@@ -119,6 +119,7 @@ TABLE_ROWS = Limit("table_rows", 5_000_000, "rows", "a measured table")
 TABLE_LINE = Limit("table_line", 1_000_000, "characters", "one line of a measured table")
 TABLE_COLUMNS = Limit("table_columns", 2_000, "columns", "a measured table")
 TABLE_BYTES = Limit("table_bytes", 2_000_000_000, "bytes", "the columns of a Parquet table that are read")
+WORKBOOK_BYTES = Limit("workbook_bytes", 250_000_000, "bytes", "a workbook, unpacked")
 VIBRATION_FILE = Limit("vibration_file", 1_000_000_000, "bytes", "a vibration record")
 VIBRATION_SAMPLES = Limit("vibration_samples", 50_000_000, "numbers", "all channels of a vibration record")
 VIBRATION_TEXT = Limit("vibration_text", 10_000_000, "numbers or lines", "a vibration record in text")
@@ -149,49 +150,7 @@ VIEW_NUMBERS = Limit("view_numbers", 50_000_000, "numbers", "the view of a bag f
 VIEW_LINES = Limit("view_lines", 2_000, "lines", "the view of a bag from another source")
 VIEW_EVENTS = Limit("view_events", 100_000, "events", "the view of a bag from another source")
 
-LIMITS = (
-    SCENE_FILE,
-    YAML_NODES,
-    YAML_DEPTH,
-    CONTOUR_FILE,
-    CONTOUR_POINTS,
-    CROWN_FILE,
-    CROWN_POINTS,
-    TABLE_FILE,
-    TABLE_ROWS,
-    TABLE_LINE,
-    TABLE_COLUMNS,
-    TABLE_BYTES,
-    VIBRATION_FILE,
-    VIBRATION_SAMPLES,
-    VIBRATION_TEXT,
-    VIBRATION_PARTS,
-    VIBRATION_ANALYSED,
-    BEARINGS_ROWS,
-    POINTS_FILE,
-    POINTS_ROWS,
-    RESULT_TEXT,
-    RESULT_ROWS,
-    RESULT_CELLS,
-    STATE_FILE,
-    RESPONSE_FILE,
-    KEPT_TABLE_FILE,
-    COMPILED_FILE,
-    HISTORY_FILE,
-    JSON_FILE,
-    RECORDING_RECORD,
-    RECORDING_EXPANSION,
-    RECORDING_TEXTS,
-    BAG_METADATA,
-    DEFINITION,
-    DEFINITION_FIELDS,
-    DEFINITION_DEPTH,
-    MESSAGE_ITEMS,
-    LOG_MESSAGES,
-    VIEW_NUMBERS,
-    VIEW_LINES,
-    VIEW_EVENTS,
-)
+LIMITS = tuple(each for each in tuple(globals().values()) if isinstance(each, Limit))
 """All limits, in the order in which the documentation lists them."""
 
 

@@ -7,8 +7,8 @@ asked for, with the option that decides.
 
 import datetime
 import re
+from collections.abc import Iterable, Sequence
 from collections.abc import Mapping as AnyMapping
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -20,18 +20,20 @@ from bearing_sim.files.labview_text import start_of
 from bearing_sim.inputs.csv_import import TimeColumn, time_reader
 from bearing_sim.inputs.csv_text import (
     DELIMITERS,
+    HEADINGS,
     NAMES,
+    QUANTITIES,
     Layout,
     Marks,
     TableError,
     cells_in,
     cells_of,
-    encoding_of,
     find_header,
-    first_lines,
+    first_look,
     is_comment,
     is_relative,
     is_unit_of,
+    may_be_relative,
     number_marks,
     percentage_question,
     records,
@@ -54,62 +56,18 @@ class Role(NamedTuple):
     not_words: str = ""
 
 
-_TEMPERATURE = r"temp|^t_|theta|°c|degc"
-ROLES = (
-    Role("cage_speed", "rad/s", r"(cage|k[aä]fig).*(speed|rpm|n$|drehzahl|omega)|^n_?(cage|k[aä]fig|k)\b|(speed|rpm|drehzahl).*(cage|k[aä]fig)"),
-    Role("running_clearance", "m", r"clearance|lagerluft|radialluft|betriebsspiel|lagerspiel", r"initial|nominal|cold|kalt|einbau|axial"),
-    Role(
-        "shaft_speed",
-        "rad/s",
-        r"speed|rpm|drehzahl|\bn\b|^n_|omega|rotation|revolution|umdrehung|vitesse|velocidad",
-        r"wind|cage|k[aä]fig|air|luft|vehicle|fahr",
-    ),
-    Role("power", "W", r"power|leistung|puissance|\bp_?(el|mech)?\b|kw\b", r"factor|faktor|reactive|blind"),
-    Role("torque", "N*m", r"torque|drehmoment|moment|\bm_?d\b|couple"),
-    Role("radial_load", "N", r"load|force|last|kraft|^f_?[rxyz]?\b|fradial|radial|charge|carga", r"axial|workload|auslast|current|strom"),
-    Role("inner_ring_temperature", "K", rf"(inner|innen|\bi\.?r|\bir\b).*({_TEMPERATURE})|({_TEMPERATURE}).*(inner|innen|_ir\b|\bir\b|_i\b)"),
-    Role(
-        "outer_ring_temperature",
-        "K",
-        rf"(outer|aussen|außen|\bor\b).*({_TEMPERATURE})|({_TEMPERATURE}).*(outer|aussen|außen|_or\b|\bor\b|_e\b|_ar\b)",
-    ),
-    Role(
-        "oil_temperature",
-        "K",
-        rf"(oil|öl|oel|lub|sump|huile).*({_TEMPERATURE})?|({_TEMPERATURE}).*(oil|öl|oel|lub|sump|huile)",
-        r"pressure|druck|level",
-    ),
-)
-_MAY_BE_RELATIVE = ("shaft_speed", "radial_load", "cage_speed", "power", "torque")  # columns in per cent, of a value that is asked for
-_TIME_WORDS = re.compile(r"time|zeit|date|datum|stamp|uhr|utc|heure|fecha|hora|^t$|^t[ _\[(/]|^ts$|^x_value", re.IGNORECASE)
-_CLOCK_WORDS = re.compile(r"^(time|zeit|uhrzeit|clock|hora|heure)", re.IGNORECASE)
+ROLES = tuple(Role(**role) for role in HEADINGS["roles"])
+_TIME_WORDS = re.compile(HEADINGS["time"]["words"], re.IGNORECASE)
+_DATES, _CLOCKS = HEADINGS["time"]["dates"], HEADINGS["time"]["clocks"]
 _SUFFIX = re.compile(r"(.+?)[ _.]+(?:in[ _]+)?([A-Za-z°%µ/0-9^-]+)$")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
-_DATES = (
-    (r"\d{4}-\d\d?-\d\d?", "%Y-%m-%d", ""),
-    (r"\d{4}/\d\d?/\d\d?", "%Y/%m/%d", ""),
-    (r"\d{4}\.\d\d?\.\d\d?", "%Y.%m.%d", ""),
-    (r"\d\d?\.\d\d?\.\d{4}", "%d.%m.%Y", ""),
-    (r"\d\d?\.\d\d?\.\d\d", "%d.%m.%y", ""),
-    (r"\d\d?/\d\d?/\d{4}", "%d/%m/%Y", "%m/%d/%Y"),
-    (r"\d\d?-\d\d?-\d{4}", "%d-%m-%Y", "%m-%d-%Y"),
-)
-"""Dates as patterns, their format, and the other format that they may have as well."""
-
-_CLOCKS = (
-    (r"\d\d?:\d\d", "%H:%M"),
-    (r"\d\d?:\d\d:\d\d", "%H:%M:%S"),
-    (r"\d\d?:\d\d:\d\d\.\d{1,6}", "%H:%M:%S.%f"),
-    (r"\d\d?:\d\d:\d\d,\d{1,6}", "%H:%M:%S,%f"),
-    (r"\d\d?:\d\d:\d\d [AaPp][Mm]", "%I:%M:%S %p"),
-    (r"\d\d?:\d\d [AaPp][Mm]", "%I:%M %p"),
-)
 _EPOCHS = ((1e8, 4e9, "s"), (1e11, 4e12, "ms"), (1e14, 4e15, "us"), (1e17, 4e18, "ns"))
 """Numbers that count from 1970, 1973 to 2096, by unit."""
 
 _SPREADSHEET_DAYS = (30_000.0, 60_000.0)  # of dates from 1982 to 2064, counted from 1899-12-30
 _SPREADSHEET_STEP = 0.01  # between rows: 14 minutes; that seconds of the same size stand so close is an assumption against them
 _DAYS = ("day", "days", "d")
+_ROWS_TRIED = 3  # for the formats that times may have
 _CELLS_LOOKED_AT = 500
 _LONGEST_LIST = 10_000  # characters of headings
 _LONGEST_LABEL, _LONGEST_HEADING = 100, 300  # characters
@@ -123,17 +81,17 @@ class Guess:
     Attributes
     ----------
     tree : the mapping; fields that were not understood are missing.
+    layout : how the text is laid out.
     reasons : by field, why.
     questions : what has to be decided, with the option that decides; by field.
     left : headings of columns that are not used.
-    layout : how the text is laid out.
     """
 
     tree: dict
+    layout: Layout
     reasons: dict[str, str] = field(default_factory=dict)
     questions: dict[str, str] = field(default_factory=dict)
     left: list[str] = field(default_factory=list)
-    layout: Layout = field(default_factory=lambda: Layout("utf-8"))
 
     @property
     def text(self) -> str:
@@ -148,6 +106,14 @@ class Guess:
             lines.append(f"# columns that are not used: {shortened(', '.join(self.left), _LONGEST_LIST)}")
         return "\n".join(lines) + "\n"
 
+    def enter(self, name: str, value: object, reason: str) -> None:
+        """Enter a field of the mapping."""
+        self.tree[name], self.reasons[name] = value, reason
+
+
+class _Asked(Exception):
+    """What has to be decided, with the option that decides."""
+
 
 def guess(
     path: Path,
@@ -158,6 +124,7 @@ def guess(
     decimal: str | None = None,
     time_format: str | None = None,
     only: AnyMapping[str, str] | None = None,
+    sheet: str = "",
 ) -> Guess:
     """Return a proposal for the mapping of a table.
 
@@ -170,6 +137,7 @@ def guess(
     delimiter, decimal : likewise.
     time_format : ``iso`` or a format of strptime, likewise.
     only : by heading, the text that its cells must have; other rows are left out.
+    sheet : of a workbook.
 
     Raises
     ------
@@ -177,34 +145,35 @@ def guess(
         The file is no table, or a heading that was given is not in it.
     """
     columns, units, constants = dict(columns or {}), dict(units or {}), dict(constants or {})
-    encoding = encoding_of(path)
-    lines = first_lines(path, encoding)
-    layout = _layout(path, lines, encoding, delimiter)
+    layout = first_look(path, sheet=sheet)
+    _find_any_header(layout, delimiter)
     asked = [(f"--column {name}={heading}", heading) for name, heading in columns.items()]
     for option, heading in (*asked, *((f"--only {heading}", heading) for heading in only or {})):
         if heading not in layout.names:
             raise TableError(f"{path}, line {layout.header_line}: {option}: no such heading{did_you_mean(heading, layout.names)}")
-    found = Guess({"name": re.sub(r"\W+", "_", path.stem).strip("_") or "table", "source": path.name}, layout=layout)
-    layout.marks = _marks(lines, layout, found, decimal)
+    found = Guess({"name": re.sub(r"\W+", "_", path.stem).strip("_") or "table", "source": path.name}, layout)
+    layout.marks = _marks(layout, found, decimal)
     if layout.delimiter != ",":
-        found.tree["delimiter"] = "tab" if layout.delimiter == "\t" else layout.delimiter
-        found.reasons["delimiter"] = f"{NAMES.get(layout.delimiter, layout.delimiter)}, by the header"
+        known = NAMES.get(layout.delimiter, layout.delimiter)
+        found.enter("delimiter", "tab" if layout.delimiter == "\t" else layout.delimiter, f"{known}, by the header")
     if layout.marks.decimal == "," or layout.marks.thousands:
-        found.tree["decimal"], found.reasons["decimal"] = layout.marks.decimal, "given" if decimal else "by the cells"
+        found.enter("decimal", layout.marks.decimal, "given" if decimal else "by the cells")
     if layout.marks.thousands:
-        found.tree["thousands"], found.reasons["thousands"] = layout.marks.thousands, "by the cells: all of a column have it"
-    if not encoding.startswith("utf-8"):
-        found.tree["encoding"], found.reasons["encoding"] = encoding, "the file is not UTF-8"
+        found.enter("thousands", layout.marks.thousands, "by the cells: all of a column have it")
+    if layout.encoding not in ("utf-8", "utf-8-sig", "workbook"):
+        found.enter("encoding", layout.encoding, "the file is not UTF-8")
+    if sheet:
+        found.enter("sheet", sheet, "given")
     if only:
-        found.tree["only"], found.reasons["only"] = dict(only), "given"
-    used = _guess_time(found, lines, columns.pop("time", None), units.pop("time", None), time_format)
+        found.enter("only", dict(only), "given")
+    used = _guess_time(found, columns.pop("time", None), units.pop("time", None), time_format)
     named: dict[str, list[str]] = {}
     for heading in layout.names:
         if heading and heading not in used and (role := _role_of(heading, layout, columns)) is not None:
             named.setdefault(role.field, []).append(heading)
-    _guess_channels(found, named, columns, units, constants, lines)
+    _guess_channels(found, named, columns, units, constants)
     if "time" in found.tree and not only:
-        _ask_for_rows(found, path, lines)
+        _ask_for_rows(found)
     taken = used | {column for column in _headings_in(found.tree)}
     found.left = [heading for heading in layout.names if heading and heading not in taken]
     return found
@@ -224,11 +193,10 @@ def headed_columns(path: Path, known: Sequence[str], roles: Sequence[Role]) -> t
     TableError
         The file is no table, or its numbers may mean two things.
     """
-    encoding = encoding_of(path)
-    lines = first_lines(path, encoding)
-    layout = _layout(path, lines, encoding, None)
+    layout = first_look(path)
+    _find_any_header(layout)
     try:
-        layout.marks = number_marks(cells_in(lines, layout, [name for name in dict.fromkeys(layout.names) if name]), layout.delimiter)
+        layout.marks = number_marks(cells_in(layout, [name for name in dict.fromkeys(layout.names) if name]), layout.delimiter)
     except TableError as error:
         raise TableError(f"{path}, {str(error).partition('; say which')[0]}; write numbers without separators of thousands") from None
     columns = []
@@ -249,9 +217,9 @@ def _headings_in(tree) -> list[str]:
     return [each for value in tree for each in _headings_in(value)] if isinstance(tree, list) else []
 
 
-def _layout(path: Path, lines: Sequence[str], encoding: str, delimiter: str | None) -> Layout:
-    """Return a layout with the header: the first line with as many cells as most lines, and without numbers."""
-    layout, best = Layout(encoding), (0, ",")
+def _find_any_header(layout: Layout, delimiter: str | None = None) -> None:
+    """Enter the header into a layout: the first line with as many cells as most lines, and without numbers."""
+    path, lines, best = layout.path, layout.lines, (0, ",")
     for candidate in DELIMITERS if delimiter is None else ("\t" if delimiter == "tab" else delimiter,):
         widths = [len(cells_of(line, candidate)) for line in lines[:_CELLS_LOOKED_AT] if line.strip() and not is_comment(line)]
         usual = max(set(widths), key=lambda width: (widths.count(width), width), default=1)
@@ -264,8 +232,8 @@ def _layout(path: Path, lines: Sequence[str], encoding: str, delimiter: str | No
         cells = cells_of(uncommented(line) if is_comment(line) else line, best[1])
         words = [cell for cell in cells if cell and not re.match(r"[-+]?[.,]?\d", cell)]
         if len(words) >= 2 and len(words) >= sum(map(bool, cells)) - 1 and _is_followed_by_data(lines[number:], best[1], len(cells)):
-            find_header(path, [*[""] * (number - 1), *lines[number - 1 :]], [("column", words[0])], best[1], layout)
-            return layout
+            find_header(layout, [("column", words[0])], best[1], number)
+            return
     raise TableError(f"{path}: no header: no line of headings stands above the numbers; add one, such as time;speed [rpm];load [kN]")
 
 
@@ -277,22 +245,22 @@ def _is_followed_by_data(lines: Sequence[str], delimiter: str, width: int) -> bo
     return any(abs(len(cells) - width) <= 1 and any(re.match(r"[-+]?[.,]?\d", cell) for cell in cells) for cells in following)
 
 
-def _marks(lines: Sequence[str], layout: Layout, found: Guess, decimal: str | None) -> Marks:
+def _marks(layout: Layout, found: Guess, decimal: str | None) -> Marks:
     """Return how numbers are written in the columns whose headings say what they are or, if none does, in all."""
     named = [name for name in dict.fromkeys(layout.names) if name]
     useful = [name for name in named if _TIME_WORDS.search(name) or _role_of(name, layout, {}) is not None] or named
     try:
-        return number_marks(cells_in(lines, layout, useful), layout.delimiter, decimal)
+        return number_marks(cells_in(layout, useful), layout.delimiter, decimal)
     except TableError as error:
         found.questions["decimal"] = str(error)
         return Marks()
 
 
-def _first_cells(lines: Sequence[str], layout: Layout) -> Cells:
+def _first_cells(layout: Layout) -> Cells:
     """Return the first cells of each column that are not empty, by heading, without a second line of the header."""
     named = list(dict.fromkeys(layout.names))
     found: dict[str, list[str]] = {name: [] for name in named}
-    for _, name, text in cells_in(lines, layout, named):
+    for _, name, text in cells_in(layout, named):
         found[name].append(text.strip())
     return {name: [cell for cell in cells[layout.words :] if cell][:_CELLS_LOOKED_AT] for name, cells in found.items()}
 
@@ -304,10 +272,10 @@ def _number(text: str, marks: Marks) -> float:
         return float("nan")
 
 
-def _guess_time(found: Guess, lines: Sequence[str], given: str | None, unit: str | None, format_: str | None) -> set[str]:
+def _guess_time(found: Guess, given: str | None, unit: str | None, format_: str | None) -> set[str]:
     """Enter the time into a guess; return the headings of its columns."""
     layout = found.layout
-    cells = _first_cells(lines, layout)
+    cells = _first_cells(layout)
     likely = [given] if given else [name for name in layout.names if name and _TIME_WORDS.search(name) and _is_time(cells, layout, name)]
     if not likely:
         likely = [name for name in layout.names[:1] if name and _is_time(cells, layout, name)]
@@ -322,12 +290,11 @@ def _guess_time(found: Guess, lines: Sequence[str], given: str | None, unit: str
         values = [f"{date} {clock}" for date, clock in zip(values, cells[pair[1]])]
     tree = {"column": heading} | ({"time_of_day": pair[1]} if pair else {})
     reason = f"of {', '.join(likely)} the first" if others else "by its heading" if _TIME_WORDS.search(heading) else "the first column rises"
-    how, why, question = _time_of(values, layout, lines, heading, unit, format_)
-    if question:
-        found.questions["time"] = question
-        return set(likely)
-    found.tree["time"] = tree | how
-    found.reasons["time"] = "; ".join(filter(None, (reason, why, _zone_note(values, how))))
+    try:
+        how, why = _time_of(values, layout, heading, unit, format_)
+        found.enter("time", tree | how, "; ".join(filter(None, (reason, why, _zone_note(values, how)))))
+    except _Asked as question:
+        found.questions["time"] = str(question)
     return set(likely)
 
 
@@ -350,37 +317,42 @@ def _is_time(cells: Cells, layout: Layout, heading: str) -> bool:
 
 def _date_and_clock(cells: Cells, likely: Sequence[str]) -> tuple[str, str] | None:
     """Return the headings of a date and of a time of day, if the table has them in two columns."""
-    dates = [name for name in likely if any(re.fullmatch(pattern, (cells[name] or [""])[0]) for pattern, _, _ in _DATES)]
-    clocks = [name for name in likely if any(re.fullmatch(pattern, (cells[name] or [""])[0]) for pattern, _ in _CLOCKS)]
+    dates, clocks = ([name for name in likely if _formats_of(cells[name][:1], formats)] for formats in (_DATES, _CLOCKS))
     return (dates[0], clocks[0]) if dates and clocks else None
 
 
-def _time_of(
-    values: Sequence[str], layout: Layout, lines: Sequence[str], heading: str, unit: str | None, format_: str | None
-) -> tuple[dict, str, str]:
-    """Return the fields of the time, why, and a question if it may mean several things."""
+def _time_of(values: Sequence[str], layout: Layout, heading: str, unit: str | None, format_: str | None) -> tuple[dict, str]:
+    """Return the fields of the time, and why; raise `_Asked` if it may mean several things."""
     if format_ is not None:
-        return {"format": format_}, "its format was given", ""
+        return {"format": format_}, "its format was given"
     if not values:
-        return {}, "", f"the column {heading!r} is empty; name another: --column time=HEADING"
+        raise _Asked(f"the column {heading!r} is empty; name another: --column time=HEADING")
     numbers = [_number(value, layout.marks) for value in values]
     if all(number == number for number in numbers):
-        return _time_of_numbers(numbers, layout, lines, heading, unit)
+        return _time_of_numbers(numbers, layout, heading, unit)
     if all(_is_iso(value) for value in values):
-        return {"format": "iso"}, f"ISO 8601, as in {values[0]}", ""
-    for date, format_, other in _DATES:
-        for clock, clock_format in (*_CLOCKS, ("", "")):
-            pattern = re.compile(f"({date})([ T]+)({clock})" if clock else f"({date})()()")
-            match = pattern.fullmatch(values[0])
-            if match is None:
-                continue
-            formats = [f"{each}{'T' if 'T' in match[2] else ' ' * bool(match[2])}{clock_format}" for each in (format_, other) if each]
-            if other:
-                formats, question = _day_or_month(values, *formats)
-                if question:
-                    return {}, "", question
-            return {"format": formats[0]}, f"as in {values[0]}", ""
-    return {}, "", f"the times in {heading!r} are not understood, such as {values[0]!r}; say how they are written: --time-format '%d.%m.%Y %H:%M:%S'"
+        return {"format": "iso"}, f"ISO 8601, as in {values[0]}"
+    formats = _formats_of(values, [*_DATES, *(f"{date}{between}{clock}" for date in _DATES for between in " T" for clock in _CLOCKS)])
+    if len(formats) > 1:
+        raise _Asked(f"{values[0]!r} has the day or the month first; say which: " + " or ".join(f"--time-format '{each}'" for each in formats))
+    if formats:
+        return {"format": formats[0]}, f"as in {values[0]}"
+    raise _Asked(f"the times in {heading!r} are not understood, such as {values[0]!r}; say how they are written: --time-format '%d.%m.%Y %H:%M:%S'")
+
+
+def _formats_of(texts: Sequence[str], formats: Iterable[str]) -> list[str]:
+    """Return the formats of strptime that fit the most of some texts, as far as they fit one of the first."""
+    likely = [format_ for format_ in formats if any(_is_written(text, format_) for text in texts[:_ROWS_TRIED])]
+    counts = [sum(_is_written(text, format_) for text in texts) for format_ in likely]
+    return [format_ for format_, count in zip(likely, counts) if count == max(counts)]
+
+
+def _is_written(text: str, format_: str) -> bool:
+    try:
+        datetime.datetime.strptime(text, format_)
+    except ValueError:
+        return False
+    return True
 
 
 def _is_iso(text: str) -> bool:
@@ -391,38 +363,28 @@ def _is_iso(text: str) -> bool:
     return re.match(r"\d{4}-?\d\d-?\d\d", text) is not None
 
 
-def _day_or_month(values: Sequence[str], day_first: str, month_first: str) -> tuple[list[str], str]:
-    """Return the format of dates such as 03/04/2026, or a question if all of them may be read both ways."""
-    firsts, seconds = zip(*(map(int, re.split(r"[/-]", value)[:2]) for value in values))
-    if max(firsts) > 12:
-        return [day_first], ""
-    if max(seconds) > 12:
-        return [month_first], ""
-    return [], f"{values[0]!r} has the day or the month first; say which: --time-format '{day_first}' or --time-format '{month_first}'"
-
-
-def _time_of_numbers(numbers: Sequence[float], layout: Layout, lines: Sequence[str], heading: str, unit: str | None) -> tuple[dict, str, str]:
+def _time_of_numbers(numbers: Sequence[float], layout: Layout, heading: str, unit: str | None) -> tuple[dict, str]:
     headed = spelled(_heading_unit(heading, layout)[1])
     unit = unit or (headed if is_unit_of(headed, "s") else None)
     since_1970 = next((each for low, high, each in _EPOCHS if all(low < abs(number) < high for number in numbers)), None)
     if unit is None and since_1970 is not None:
-        return {"unit": since_1970}, f"numbers of this size count {since_1970} from 1970 ({_date(numbers[0], since_1970)})", ""
+        return {"unit": since_1970}, f"numbers of this size count {since_1970} from 1970 ({_date(numbers[0], since_1970)})"
     may_be_days = all(_SPREADSHEET_DAYS[0] < number < _SPREADSHEET_DAYS[1] for number in numbers)
     if unit is None and may_be_days:
         steps = [later - earlier for earlier, later in zip(numbers, numbers[1:]) if later > earlier]
         if not steps or max(steps) > _SPREADSHEET_STEP:
             days = f"days of a spreadsheet ({_spreadsheet_date(numbers[0])}), or seconds"
-            return {}, "", f"numbers such as {numbers[0]:g} may be {days}; say which: --unit time=day or --unit time=s"
+            raise _Asked(f"numbers such as {numbers[0]:g} may be {days}; say which: --unit time=day or --unit time=s")
         unit = "day"
     if unit is None:
-        return {}, "", f"{heading!r} has numbers without a unit, such as {numbers[0]:g}; say which: --unit time=s, ms, min or h"
+        raise _Asked(f"{heading!r} has numbers without a unit, such as {numbers[0]:g}; say which: --unit time=s, ms, min or h")
     if unit in _DAYS and may_be_days:
         other = "in its system of 1904 (old files of Macs) the epoch is 1904-01-01"
-        return {"unit": "day", "epoch": "1899-12-30"}, f"days of a spreadsheet, {numbers[0]:g} is {_spreadsheet_date(numbers[0])}; {other}", ""
+        return {"unit": "day", "epoch": "1899-12-30"}, f"days of a spreadsheet, {numbers[0]:g} is {_spreadsheet_date(numbers[0])}; {other}"
     why = f"{unit}, {'by its heading' if headed == unit else 'as given'}"
-    if begins := start_of(lines):
-        return {"unit": unit, "epoch": begins}, f"{why}; LabVIEW's header has the epoch", ""
-    return {"unit": unit}, why if since_1970 else f"{why}; the date of 0 is not known, so 1970-01-01 stands for it (epoch)", ""
+    if begins := start_of(layout.lines):
+        return {"unit": unit, "epoch": begins}, f"{why}; LabVIEW's header has the epoch"
+    return {"unit": unit}, why if since_1970 else f"{why}; the date of 0 is not known, so 1970-01-01 stands for it (epoch)"
 
 
 def _spreadsheet_date(number: float) -> str:
@@ -434,14 +396,13 @@ def _date(number: float, unit: str) -> str:
     return f"{datetime.datetime.fromtimestamp(seconds, datetime.UTC):%Y-%m-%d %H:%M}"
 
 
-def _ask_for_rows(found: Guess, path: Path, lines: Sequence[str]) -> None:
+def _ask_for_rows(found: Guess) -> None:
     """Ask which rows are meant where the times go back, because the table holds several machines one below the other or in turn."""
-    layout = found.layout
-    place, before, line_of_return = layout.names.index(found.tree["time"]["column"]), None, 0
-    read = time_reader(TypeAdapter(TimeColumn).validate_python(found.tree["time"]), layout.marks)
-    clock = layout.names.index(found.tree["time"]["time_of_day"]) if "time_of_day" in found.tree["time"] else None
-    labels: dict[int, set[str]] = {k: set() for k, name in enumerate(layout.names) if name and k not in (place, clock)}
-    for number, cells in records(path, replace(layout)):
+    layout, before, line_of_return = found.layout, None, 0
+    time = TypeAdapter(TimeColumn).validate_python(found.tree["time"])
+    read, places = time_reader(time, layout.marks), [layout.names.index(name) for name in (time.column, time.time_of_day) if name]
+    labels: dict[int, set[str]] = {k: set() for k, name in enumerate(layout.names) if name and k not in places}
+    for number, cells in records(replace(layout)):
         if len(cells) != len(layout.names):
             continue
         for k in list(labels):
@@ -449,7 +410,7 @@ def _ask_for_rows(found: Guess, path: Path, lines: Sequence[str]) -> None:
             if not cells[k].isprintable() or len(labels[k]) > _MOST_LABELS or re.fullmatch(r"[-+]?[.,]?\d.*|", cells[k].strip()):
                 del labels[k]
         try:
-            now = read(" ".join([cells[place], *([cells[clock]] if clock is not None else [])]).strip(), None)
+            now = read(" ".join(cells[k] for k in places).strip(), None)
         except (ValueError, ArithmeticError):
             continue
         line_of_return = line_of_return or (number if before is not None and now < before else 0)
@@ -484,7 +445,7 @@ def _role_of(heading: str, layout: Layout, columns: AnyMapping[str, str], roles:
     for role in roles:
         says = any(re.search(role.words, text) for text in texts)
         denies = bool(role.not_words) and any(re.search(role.not_words, text) for text in texts)
-        may_be = not role.si_unit or is_unit_of(unit, role.si_unit) or not _is_a_unit(unit) or is_relative(unit) and role.field in _MAY_BE_RELATIVE
+        may_be = not role.si_unit or is_unit_of(unit, role.si_unit) or not _is_a_unit(unit) or is_relative(unit) and may_be_relative(role.si_unit)
         if says and not denies and may_be:
             return role
     return None
@@ -497,17 +458,20 @@ def _is_a_unit(unit: str) -> bool:
     )
 
 
-def _guess_channels(found: Guess, named: AnyMapping[str, list[str]], columns, units, constants, lines) -> None:
+def _guess_channels(found: Guess, named: AnyMapping[str, list[str]], columns, units, constants) -> None:
     """Enter speed, load, temperatures, and what is measured of the results, into a guess."""
     temperatures = ("oil_temperature", "inner_ring_temperature", "outer_ring_temperature")
     for name in ("shaft_speed", "radial_load", *temperatures, "cage_speed", "running_clearance"):
         if name in constants:
-            found.tree[name], found.reasons[name] = constants[name], "given"
+            found.enter(name, constants[name], "given")
             continue
-        column, reason = _column_of(found, name, named.get(name, []), columns, units)
+        try:
+            column, reason = _column_of(found.layout, name, named.get(name, []), columns, units)
+        except _Asked as question:
+            found.questions[name] = str(question)
+            continue
         if column is not None:
-            found.tree[name] = {"law": "sum", "columns": [column]} if name == "radial_load" else column
-            found.reasons[name] = reason
+            found.enter(name, {"law": "sum", "columns": [column]} if name == "radial_load" else column, reason)
     if "shaft_speed" not in found.tree and "shaft_speed" not in found.questions:
         found.questions["shaft_speed"] = "no heading names a speed; name its column: --column shaft_speed=HEADING, or give --speed 1500rpm"
     if "radial_load" not in found.tree and "radial_load" not in found.questions:
@@ -523,40 +487,29 @@ def _load_question(named: AnyMapping[str, list[str]]) -> str:
     return text
 
 
-def _column_of(found: Guess, name: str, headings: list[str], columns, units) -> tuple[dict | None, str]:
-    """Return the column of a field and why; None if there is none, or a question has been entered."""
+def _column_of(layout: Layout, name: str, headings: list[str], columns, units) -> tuple[dict | None, str]:
+    """Return the column of a field and why; None if there is none.  Raise `_Asked` if something has to be decided."""
     role = next(each for each in ROLES if each.field == name)
     given = columns.get(name)
-    absolute = [heading for heading in headings if not is_relative(_heading_unit(heading, found.layout)[1])]
-    headings = absolute or headings
-    if len(set(headings)) < len(headings) and given is None or given is not None and found.layout.names.count(given) > 1:
-        found.questions[name] = (
-            f"{found.layout.names.count(given or headings[0])} columns are called {given or headings[0]!r}; rename one in the header"
-        )
+    absolute = [heading for heading in headings if not is_relative(_heading_unit(heading, layout)[1])]
+    headings = [given] if given is not None else absolute or headings
+    if not headings:
         return None, ""
-    if given is None and len(headings) > 1:
-        choice = " or ".join(f"--column {name}={heading!r}" for heading in headings)
-        found.questions[name] = f"{len(headings)} headings fit; choose: {choice}"
-        return None, ""
-    if given is None and not headings:
-        return None, ""
-    heading = given or headings[0]
-    headed = spelled(_heading_unit(heading, found.layout)[1])
+    heading = headings[0]
+    if len(set(headings)) < len(headings) or given is not None and layout.names.count(given) > 1:
+        raise _Asked(f"{layout.names.count(heading)} columns are called {heading!r}; rename one in the header")
+    if len(headings) > 1:
+        raise _Asked(f"{len(headings)} headings fit; choose: " + " or ".join(f"--column {name}={each!r}" for each in headings))
+    headed, example = spelled(_heading_unit(heading, layout)[1]), QUANTITIES[role.si_unit]["unit"]
     unit = units.get(name) or (headed if is_unit_of(headed, role.si_unit) else None)
     if unit is None and re.search(r"rpm", heading, re.IGNORECASE):
         unit = "rpm"
     if is_relative(headed) and not is_relative(unit or ""):
-        example = percentage_question(headed, role.si_unit).replace(", such as ", f": --unit {name}=")
-        found.questions[name] = f"{heading!r} is a percentage; give {example}"
-        return None, ""
+        relative = percentage_question(headed, role.si_unit).replace(", such as ", f": --unit {name}=")
+        raise _Asked(f"{heading!r} is a percentage; give {relative}")
     if unit is None:
-        found.questions[name] = f"the heading {heading!r} has no unit; say which: --unit {name}={_UNIT_EXAMPLES[role.si_unit]}"
-        return None, ""
+        raise _Asked(f"the heading {heading!r} has no unit; say which: --unit {name}={example}")
     if not is_unit_of(unit, role.si_unit):
-        found.questions[name] = f"--unit {name}={unit}: no unit of this quantity; expected for example {_UNIT_EXAMPLES[role.si_unit]}"
-        return None, ""
+        raise _Asked(f"--unit {name}={unit}: no unit of this quantity; expected for example {example}")
     reason = ("as given" if given else "by its heading") + f", in {unit} " + ("as given" if name in units else "as it says")
     return {"column": heading, "unit": unit}, reason
-
-
-_UNIT_EXAMPLES = {"rad/s": "rpm", "N": "kN", "K": "degC", "m": "um"}

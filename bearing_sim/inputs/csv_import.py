@@ -28,16 +28,16 @@ from pydantic import Field, TypeAdapter, ValidationError
 from bearing_sim.files.provenance import git_hash, package_version
 from bearing_sim.files.tally import Tally
 from bearing_sim.inputs.csv_text import (
-    AT_FULL_SCALE,
+    QUANTITIES,
     Layout,
     Marks,
     TableError,
     cells_in,
-    encoding_of,
     find_header,
-    first_lines,
+    first_look,
     is_relative,
     is_unit_of,
+    may_be_relative,
     number_marks,
     percentage_question,
     records,
@@ -95,7 +95,7 @@ def _column(si_unit: str, meaning: str) -> type:
         @check
         def _converts(self) -> list[str]:
             if (not self.column) == (self.constant is None):
-                return ["expected either a column, or a constant such as " + _EXAMPLES[si_unit]]
+                return [f"expected either a column, or a constant such as {QUANTITIES[si_unit]['constant']}"]
             if self.constant is not None:
                 return self._errors_of_constant()
             if self.unit is not None and self.scale is not None:
@@ -103,7 +103,7 @@ def _column(si_unit: str, meaning: str) -> type:
             if self.unit is None and self.scale is None and not unit_in(self.column)[1]:
                 return [f"expected either unit, or scale (and offset), since the heading {self.column!r} has no unit"]
             if self.unit is not None and is_relative(self.column) and not is_relative(self.unit):
-                example = f"expected {percentage_question(self.unit, si_unit)}; or" if si_unit in AT_FULL_SCALE else "expected"
+                example = f"expected {percentage_question(self.unit, si_unit)}; or" if may_be_relative(si_unit) else "expected"
                 return [f"unit = {self.unit!r}: the heading {self.column!r} is a percentage; {example}, if it is wrong, scale: 1 {self.unit}"]
             if self.scale is None and self.offset is not None:
                 return ["offset does not go with unit; give scale and offset instead"]
@@ -144,8 +144,6 @@ def _column(si_unit: str, meaning: str) -> type:
 
     return Column
 
-
-_EXAMPLES = {"rad/s": "1500 rpm", "N": "800 N", "m/s^2": "9.81 m/s^2", "K": "60 degC", "W": "2 kW", "N*m": "50 N*m", "m": "20 um"}
 
 SpeedColumn = _column("rad/s", "shaft speed")
 ForceColumn = _column("N", "force")
@@ -239,6 +237,16 @@ class SumLoad:
     columns: tuple[ForceColumn, ...]  # of forces
     negative: Literal["refuse", "magnitude", "direction"] = "refuse"  # what a sum below 0 is: no load, one of that magnitude, or one along -y
 
+    def load(self, speed: float, forces: Sequence[float]) -> float:
+        """Return the load [N] at a shaft speed [rad/s] for the values of `columns` [N]; raise `_BadCell` where there is none."""
+        load = math.fsum(forces)
+        if load >= 0.0 or self.negative == "direction":
+            return load
+        if self.negative == "magnitude":
+            return -load
+        choice = "a radial load is a magnitude; --set radial_load.negative=magnitude takes it without its sign, =direction as a load along -y"
+        raise _BadCell("negative", f"{load:.6g} N is negative: {choice}")
+
 
 @record
 class NormLoad:
@@ -246,6 +254,10 @@ class NormLoad:
 
     law: Literal["norm"] = "norm"
     columns: tuple[ForceColumn, ...]  # of forces
+
+    def load(self, speed: float, forces: Sequence[float]) -> float:
+        """Return the load [N]; see `SumLoad.load`."""
+        return math.hypot(*forces)
 
 
 @record
@@ -255,6 +267,15 @@ class MassTimesAcceleration:
     law: Literal["mass_times_acceleration"] = "mass_times_acceleration"
     mass: quantity("kg", "mass that the bearing supports", 1e-6, 1e6)
     accelerations: tuple[AccelerationColumn, ...]  # columns
+
+    @property
+    def columns(self) -> tuple:
+        """The columns that the load is computed from."""
+        return self.accelerations
+
+    def load(self, speed: float, accelerations: Sequence[float]) -> float:
+        """Return the load [N] for the values of `columns` [m/s^2]."""
+        return self.mass * math.hypot(*accelerations)
 
 
 @record
@@ -289,6 +310,20 @@ class GearForce:
         across = math.hypot(1.0, math.tan(self.pressure_angle) / math.cos(self.helix_angle))
         return math.hypot(self.share * across * 2 * torque / self.pitch_diameter, self.dead_weight)
 
+    @property
+    def columns(self) -> tuple:
+        """The columns that the load is computed from."""
+        return (self.power or self.torque,)
+
+    def load(self, speed: float, measured: Sequence[float]) -> float:
+        """Return the load [N] at a shaft speed [rad/s] for a power [W] or a torque [N m]; raise `_BadCell` where there is none."""
+        (number,) = measured
+        if self.torque is not None or number == 0.0:
+            return self.force(number)
+        if not abs(speed) > 0.0:  # also NaN, where the row's speed could not be read
+            raise _BadCell("no_speed", "power without a shaft speed other than zero gives no force")
+        return self.force(number / (self.efficiency * abs(speed)))
+
 
 @record
 class ConstantLoad:
@@ -296,6 +331,15 @@ class ConstantLoad:
 
     law: Literal["constant"] = "constant"
     value: quantity("N", "radial load throughout", 0.0, 1e8)
+
+    @property
+    def columns(self) -> tuple:
+        """There are none."""
+        return ()
+
+    def load(self, speed: float, measured: Sequence[float]) -> float:
+        """Return the load [N]."""
+        return self.value
 
 
 @record
@@ -308,6 +352,7 @@ class Mapping:
     delimiter: str | None = None  # between cells: one character, or tab; by default found in the header
     decimal: Literal[".", ","] | None = None  # mark of numbers; by default found in the cells, and asked for where they may mean both
     thousands: Literal[".", ",", "apostrophe", "space"] | None = None  # between groups of three digits; by default found in the cells, likewise
+    sheet: str = ""  # of a workbook; by default the only one
     encoding: str | None = None  # of the file, such as utf-8 or latin-1; by default that of its byte-order mark, UTF-8, or Latin-1
     only: dict[str, str] = field(default_factory=dict)  # column: text that its cell must have; other rows are left out
     time: TimeColumn  # of each row
@@ -333,24 +378,15 @@ class Mapping:
         for name in _RESULTS.values():
             if getattr(self, name) is not None and getattr(self, name).constant is not None:
                 return [f"{name}: expected a column; a constant is no measurement"]
-        if any(one.constant is not None for one in self.load_columns()):
+        if any(one.constant is not None for one in self.radial_load.columns):
             return ["radial_load: expected columns; a load that was not measured has law: constant and a value"]
-        if isinstance(self.radial_load, ConstantLoad) or self.load_columns():
+        if isinstance(self.radial_load, ConstantLoad) or self.radial_load.columns:
             return []
         return [f"radial_load: the law {self.radial_load.law} needs at least one column"]
 
-    def load_columns(self) -> tuple:
-        """Return the columns that the load is computed from."""
-        load = self.radial_load
-        if isinstance(load, ConstantLoad):
-            return ()
-        if isinstance(load, MassTimesAcceleration):
-            return load.accelerations
-        return (load.power or load.torque,) if isinstance(load, GearForce) else load.columns
-
     def columns(self) -> list[tuple[str, object]]:
         """Return (path in the mapping, record) of every column of numbers."""
-        named = [("shaft_speed", self.shaft_speed), *(("radial_load", one) for one in self.load_columns())]
+        named = [("shaft_speed", self.shaft_speed), *(("radial_load", one) for one in self.radial_load.columns)]
         named += [(name, getattr(self, name)) for name in (*topics.TEMPERATURES, *_RESULTS.values())]
         return [(where, one) for where, one in named if one is not None and one.constant is None]
 
@@ -566,7 +602,7 @@ def _rows_of(path: Path, mapping: Mapping) -> tuple[Layout, Iterable[tuple[int, 
     """Return how a table is laid out and its rows, (number, cells)."""
     if not is_parquet(path):
         layout = layout_of(path, mapping)
-        return layout, records(path, layout)
+        return layout, records(layout)
     layout = parquet_layout(path, mapping.column_names(), Marks(mapping.decimal or ".", mapping.thousands or ""))
     takes_timestamps = mapping.time.format == "iso" and not mapping.time.time_of_day
     return layout, parquet_records(path, layout, mapping.only, mapping.time.column, takes_timestamps)
@@ -602,17 +638,15 @@ def layout_of(path: Path, mapping: Mapping) -> Layout:
     TableError
         See `read_table`.
     """
-    layout = Layout(encoding_of(path, mapping.encoding))
-    if mapping.encoding is None and not layout.encoding.startswith("utf-8"):
+    layout = first_look(path, mapping.encoding, mapping.sheet)
+    if mapping.encoding is None and layout.encoding not in ("utf-8", "utf-8-sig", "workbook"):
         layout.found.append(f"encoding: {layout.encoding}, since it is not UTF-8")
-    lines = first_lines(path, layout.encoding)
-    delimiter = "\t" if mapping.delimiter == "tab" else mapping.delimiter
-    find_header(path, lines, mapping.column_names(), delimiter, layout)
+    find_header(layout, mapping.column_names(), "\t" if mapping.delimiter == "tab" else mapping.delimiter)
     numbers = [one.column for _, one in mapping.columns()] + [mapping.time.column] * (mapping.time.format is None)
     try:
         for _, one in mapping.columns():
             one.contradiction(layout.cell_units.get(one.column, ""))
-        layout.marks = number_marks(cells_in(lines, layout, numbers), layout.delimiter, mapping.decimal, mapping.thousands)
+        layout.marks = number_marks(cells_in(layout, numbers), layout.delimiter, mapping.decimal, mapping.thousands)
     except TableError as error:
         raise TableError(f"{path}, {error}") from None
     layout.found += layout.marks._replace(
@@ -632,8 +666,8 @@ class _RowReader:
         self._time = time_reader(mapping.time, self._marks)
         self._units = {columns[name]: unit for name, unit in layout.cell_units.items()}
         self._time_columns = [columns[name] for name in (mapping.time.column, mapping.time.time_of_day) if name]
-        self._load_columns = [(columns[one.column], one.column, *one.line()) for one in mapping.load_columns()]
-        self._load = _load_law(mapping)
+        self._load_columns = [(columns[one.column], one.column, *one.line()) for one in mapping.radial_load.columns]
+        self._load = mapping.radial_load.load
         self._speed = self._value_reader(mapping.shaft_speed, columns)
         optional = {channel: getattr(mapping, name) for channel, name in (*zip(topics.TEMPERATURES, topics.TEMPERATURES), *_RESULTS.items())}
         self._optional = {channel: self._value_reader(one, columns) for channel, one in optional.items() if one}
@@ -775,40 +809,6 @@ def _stamp(time_ns: int) -> int:
     if not 0 <= time_ns < _TIMES_END:
         raise _TimeOutOfRange
     return time_ns
-
-
-def _load_law(mapping: Mapping) -> Callable[[float, list[float]], float]:
-    """Return the function load(speed, column values), in SI."""
-    law = mapping.radial_load
-    if isinstance(law, MassTimesAcceleration):
-        return lambda speed, values: law.mass * math.hypot(*values)
-    if isinstance(law, NormLoad):
-        return lambda speed, values: math.hypot(*values)
-    if isinstance(law, ConstantLoad):
-        return lambda speed, values: law.value
-    if isinstance(law, GearForce):
-        return lambda speed, values: _gear_force(law, speed, values[0])
-    return lambda speed, values: _signed(law, math.fsum(values))
-
-
-def _signed(law: SumLoad, load: float) -> float:
-    """Return the load [N] that a sum stands for."""
-    if load >= 0.0 or law.negative == "direction":
-        return load
-    if law.negative == "magnitude":
-        return -load
-    choice = "a radial load is a magnitude; --set radial_load.negative=magnitude takes it without its sign, =direction as a load along -y"
-    raise _BadCell("negative", f"{load:.6g} N is negative: {choice}")
-
-
-def _gear_force(law: GearForce, speed: float, measured: float) -> float:
-    if law.torque is not None:
-        return law.force(measured)
-    if measured == 0.0:
-        return law.force(0.0)
-    if not abs(speed) > 0.0:  # also NaN, where the row's speed could not be read
-        raise _BadCell("no_speed", "power without a shaft speed other than zero gives no force")
-    return law.force(measured / (law.efficiency * abs(speed)))
 
 
 def _find_gaps(table: Table, mapping: Mapping, row_spacings: np.ndarray) -> None:

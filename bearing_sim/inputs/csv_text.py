@@ -11,16 +11,17 @@ import io
 import itertools
 import math
 import re
+import tomllib
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import BinaryIO, NamedTuple, TextIO
+from typing import NamedTuple, TextIO
 
 from bearing_sim.files.labview_text import plain_lines
-from bearing_sim.files.limits import TABLE_COLUMNS, TABLE_FILE, TABLE_LINE, TABLE_ROWS, FileError, Limit, LimitError
+from bearing_sim.files.limits import TABLE_COLUMNS, TABLE_FILE, TABLE_LINE, TABLE_ROWS, FileError
 from bearing_sim.files.reading import open_regular
+from bearing_sim.inputs.workbook import sheet_lines
 from bearing_sim.scene.errors import did_you_mean, shortened
 from bearing_sim.scene.quantity import conversion, to_si
 
@@ -28,6 +29,7 @@ DELIMITERS = (",", ";", "\t", "|")
 NAMES = {",": "comma", ";": "semicolon", "\t": "tab", "|": "vertical bar"}
 """Words for delimiters, for messages."""
 
+_WORKBOOK = b"PK\x03\x04"
 _COMMENTS = ("#", "//")
 _FIRST_LINES, _FIRST_CHARACTERS = 2000, 2_000_000  # of a file, in which header, delimiter and decimal mark are looked for
 _LONGEST_HEADING = 300  # characters in which a unit is looked for
@@ -35,8 +37,7 @@ _CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")  # acts o
 _SHOWN = 1000  # characters of a header in a message
 _MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
 _BINARY = {
-    b"PK\x03\x04": "a workbook of a spreadsheet or another archive; save the sheet as CSV",
-    b"\xd0\xcf\x11\xe0": "a workbook of an old spreadsheet; save the sheet as CSV",
+    b"\xd0\xcf\x11\xe0": "a workbook of an old spreadsheet, or one with a password; save the sheet as CSV",
     b"PAR1": "Parquet; write its mapping by hand, since there is no text to guess it from",
 }
 _SPACES = " \N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{THIN SPACE}\N{FIGURE SPACE}"
@@ -46,31 +47,20 @@ _MINUS = "\N{MINUS SIGN}"
 _UNIT_LIKE = re.compile(r"(?=.*[^\W\d_]|.*[%°-])(?:\D*|[^\d:]*\d[^\d:]*)")
 _WITH_UNIT = re.compile(r"[-+\N{MINUS SIGN}]?\d[\d.,' ]*\s?([^\W\d_]{1,5}(?:/[^\W\d_]{1,3})?|[%\N{PER MILLE SIGN}]|[°][CF])")
 _HEADED = (re.compile(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*"), re.compile(r"(.+?)\s*/\s*([^/\s]+(?:/[^/\s]+)?)"))
-_SPELLED = {
-    **dict.fromkeys(("°C", "℃", "C", "deg C", "Grad C", "Celsius", "deg_C", "degc", "DegC", "grdC"), "degC"),
-    **dict.fromkeys(("°F", "℉", "F", "deg F"), "degF"),
-    **dict.fromkeys(("RPM", "Rpm", "U/min", "U/Min", "Umdr./min", "min-1", "1/min", "r/min", "rev/min"), "rpm"),
-    **dict.fromkeys(("Nm", "N m", "N·m", "N.m"), "N*m"),
-    **dict.fromkeys(("kNm", "kN m", "kN·m", "kN.m"), "kN*m"),
-    **dict.fromkeys(("m/s²", "m/s2"), "m/s^2"),
-    **dict.fromkeys(("sec", "seconds", "Sek", "Sekunden", "Sec"), "s"),
-    **dict.fromkeys(("msec", "millis"), "ms"),
-    **dict.fromkeys(("KN",), "kN"),
-    **dict.fromkeys(("KW", "Kw"), "kW"),
-}
+HEADINGS = tomllib.loads(Path(__file__).with_name("headings.toml").read_text("utf-8"))
+"""What people write in headings: what columns are, times, and units (see there)."""
+QUANTITIES = HEADINGS["quantities"]
+_SPELLED = {written: unit for unit, texts in HEADINGS["spelled"].items() for written in texts}
 """What people write in a heading, in the spelling of `bearing_sim.scene.quantity`."""
-
 
 _PER_CENT, _PER_MILLE = r"%|per ?cent|pct|prozent", r"\N{PER MILLE SIGN}|per ?mille?|promille|permil"
 _RELATIVE = re.compile(rf"(?:({_PER_CENT})|({_PER_MILLE}))\s*(?:(?:of|von)\s+)?(.*)", re.IGNORECASE)
 _OF_SOMETHING = re.compile(rf".*(?:{_PER_CENT}|{_PER_MILLE})\s+(?:of|von)\b.*", re.IGNORECASE)
 _ENDS_RELATIVE = re.compile(rf"(?:{_PER_CENT}|{_PER_MILLE})\W*", re.IGNORECASE)
-AT_FULL_SCALE = {"rad/s": "1500 rpm", "N": "5 kN", "m/s^2": "9.81 m/s^2", "W": "2 MW", "N*m": "50 N*m", "m": "100 um"}
-"""By SI unit, an example of a quantity of which something may be a percentage; a temperature is none."""
 
 
-class TableError(ValueError):
-    """A table that cannot be imported."""
+TableError = FileError
+"""A table that cannot be imported: a file that cannot be read, or that exceeds a limit."""
 
 
 class Marks(NamedTuple):
@@ -125,7 +115,10 @@ class Layout:
 
     Attributes
     ----------
-    encoding : of the file, as Python names it.
+    path : of the file.
+    encoding : of its text, as Python names it; ``workbook`` for a sheet of one, ``parquet``.
+    sheet : of a workbook; empty for the only one.
+    lines : its first lines, without their ends.
     delimiter : between cells.
     marks : how its numbers are written.
     names : headings in order, without blanks around them.
@@ -138,7 +131,10 @@ class Layout:
     found : what was found in the file and not given, in words.
     """
 
+    path: Path
     encoding: str
+    sheet: str = ""
+    lines: list[str] = field(default_factory=list)
     delimiter: str = ","
     marks: Marks = Marks()
     names: tuple[str, ...] = ()
@@ -152,15 +148,17 @@ class Layout:
 
 
 def encoding_of(path: Path, given: str | None = None) -> str:
-    """Return the encoding of a text file: that of its byte-order mark, UTF-8 if it is that, otherwise Windows' Latin-1.
+    """Return the encoding of a text file: that of its byte-order mark, UTF-8 if it is that, otherwise Windows' Latin-1; ``workbook`` for one.
 
     Raises
     ------
     TableError
         The file is missing, is no text, or cannot be read in the encoding given.
     """
-    with opened(path) as stream:
+    with open_regular(path, TABLE_FILE) as stream:
         begin = stream.read(4)
+        if begin == _WORKBOOK:
+            return "workbook"
         for magic, what in _BINARY.items():
             if begin.startswith(magic):
                 raise TableError(f"{path}: no CSV table but {what}")
@@ -176,7 +174,7 @@ def encoding_of(path: Path, given: str | None = None) -> str:
             if b"\0" in piece:
                 raise TableError(f"{path}: no text, it has bytes of zero; expected a CSV table")
             lines += piece.count(b"\n")
-            within(TABLE_ROWS, lines, path)
+            TABLE_ROWS.check(lines, str(path))
             if is_utf8:
                 try:
                     decoder.decode(piece)
@@ -185,82 +183,50 @@ def encoding_of(path: Path, given: str | None = None) -> str:
     return "utf-8" if is_utf8 else "cp1252"
 
 
-def opened(path: Path) -> BinaryIO:
-    """Return a table's file, opened for reading bytes.
+def table_lines(path: Path, encoding: str, sheet: str = "", errors: str = "strict") -> Iterator[str]:
+    """Yield the lines of a text with their ends, those of a LabVIEW measurement file as a plain table, those of a sheet of a workbook as CSV.
 
     Raises
     ------
     TableError
-        It cannot be opened, or is too large.
+        It cannot be opened, the encoding is unknown or not one of texts, or a line is longer than the limit.
     """
-    try:
-        return open_regular(path, TABLE_FILE)
-    except FileError as error:
-        raise TableError(str(error)) from None
-
-
-def within(limit: Limit, found: int, where: str | Path) -> None:
-    """Raise `TableError` if what was found exceeds a limit; ``where`` opens the message."""
-    try:
-        limit.check(found, str(where))
-    except LimitError as error:
-        raise TableError(str(error)) from None
-
-
-@contextmanager
-def opened_text(path: Path, encoding: str, errors: str = "strict") -> Iterator[TextIO]:
-    """Open a table's file for reading text, with its line ends as they are.
-
-    Raises
-    ------
-    TableError
-        It cannot be opened, or the encoding is unknown or not one of texts.
-    """
+    if encoding == "workbook":
+        yield from sheet_lines(path, sheet)
+        return
+    if sheet:
+        raise TableError(f"{path}: sheet {sheet!r}: it is no workbook")
     try:
         found = codecs.lookup(encoding)
     except (LookupError, ValueError) as error:  # ValueError: a null character in the name
         raise TableError(f"{path}: encoding {encoding!r}: {error}") from None
     if not getattr(found, "_is_text_encoding", True):
         raise TableError(f"{path}: encoding {encoding!r}: no encoding of texts; expected such as utf-8 or latin-1")
-    with opened(path) as stream, io.TextIOWrapper(stream, encoding=encoding, errors=errors, newline="") as text:
-        yield text
+    with open_regular(path, TABLE_FILE) as stream, io.TextIOWrapper(stream, encoding=encoding, errors=errors, newline="") as text:
+        yield from plain_lines(_within_limit(text, path))
 
 
-def lines_of(stream: TextIO, path: Path) -> Iterator[str]:
-    """Return the lines of a text with their ends, those of a LabVIEW measurement file as a plain table.
-
-    Raises
-    ------
-    TableError
-        A line is longer than the limit.
-    """
-    longest = TABLE_LINE.value
-
-    def within_limit() -> Iterator[str]:
-        number = 0
-        while line := stream.readline(longest + 1):
-            number += 1
-            if len(line) > longest:
-                raise TableError(f"{path}, line {number}: {TABLE_LINE.refusal()}")
-            yield line
-
-    return plain_lines(within_limit())
+def _within_limit(text: TextIO, path: Path) -> Iterator[str]:
+    longest, number = TABLE_LINE.value, 0
+    while line := text.readline(longest + 1):
+        number += 1
+        if len(line) > longest:
+            raise TableError(f"{path}, line {number}: {TABLE_LINE.refusal()}")
+        yield line
 
 
-def first_lines(path: Path, encoding: str) -> list[str]:
-    """Return the first lines of a file, without their ends."""
-    found: list[str] = []
-    length = 0
+def first_look(path: Path, encoding: str | None = None, sheet: str = "") -> Layout:
+    """Return a layout with the encoding, which may be given, and the first lines of a file; errors as of `encoding_of` and `table_lines`."""
+    layout, length = Layout(path, encoding_of(path, encoding), sheet), 0
     try:
-        with opened_text(path, encoding, errors="replace") as stream:
-            for line in lines_of(stream, path):
-                found.append(line.rstrip("\r\n"))
-                length += len(line)
-                if len(found) == _FIRST_LINES or length > _FIRST_CHARACTERS:
-                    break
+        for line in table_lines(path, layout.encoding, sheet, errors="replace"):
+            layout.lines.append(line.rstrip("\r\n"))
+            length += len(line)
+            if len(layout.lines) == _FIRST_LINES or length > _FIRST_CHARACTERS:
+                break
     except (LookupError, UnicodeError) as error:
-        raise TableError(f"{path}: encoding {encoding!r}: {error}") from None
-    return found
+        raise TableError(f"{path}: encoding {layout.encoding!r}: {error}") from None
+    return layout
 
 
 def is_comment(line: str) -> bool:
@@ -281,15 +247,15 @@ def cells_of(line: str, delimiter: str) -> list[str]:
         return [cell.strip() for cell in line.split(delimiter)]
 
 
-def find_header(path: Path, lines: Sequence[str], wanted: Sequence[tuple[str, str]], delimiter: str | None, layout: Layout) -> None:
+def find_header(layout: Layout, wanted: Sequence[tuple[str, str]], delimiter: str | None = None, begin: int = 1) -> None:
     """Enter where the header is, and its delimiter, into a layout: the first line that has all columns wanted.
 
     Parameters
     ----------
-    path, lines : of the file.
+    layout : is completed.
     wanted : (place in the mapping, name) of each column.
     delimiter : of the mapping; None to find it.
-    layout : is completed.
+    begin : number of the first line that may be the header.
 
     Raises
     ------
@@ -298,7 +264,7 @@ def find_header(path: Path, lines: Sequence[str], wanted: Sequence[tuple[str, st
     """
     names = {name for _, name in wanted}
     best, most = (1, []), (-1, False, 0)
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(layout.lines[begin - 1 :], begin):
         if not line.strip():
             continue
         commented = is_comment(line)
@@ -306,8 +272,8 @@ def find_header(path: Path, lines: Sequence[str], wanted: Sequence[tuple[str, st
             cells = cells_of(uncommented(line) if commented else line, candidate)
             known = len(names.intersection(cells))
             if known == len(names):
-                _enter_header(path, wanted, layout, candidate, cells, number, commented, delimiter is None)
-                layout.units = lines_below(lines[number:], layout)
+                _enter_header(wanted, layout, candidate, cells, number, commented, delimiter is None)
+                layout.units = lines_below(layout)
                 return
             likeness = (known, not commented, min(len(cells), 2))
             if likeness > most:
@@ -317,7 +283,7 @@ def find_header(path: Path, lines: Sequence[str], wanted: Sequence[tuple[str, st
     shown = f"the header has {_shown(cells)}"
     if len(cells) == 1:
         shown += f", one column only (delimiter: expected {', '.join(NAMES[each] for each in DELIMITERS)}, or what the mapping says)"
-    raise TableError("\n".join([f"{path}, line {number}: {shown}", *(f"  {error}" for error in errors)]))
+    raise TableError("\n".join([f"{layout.path}, line {number}: {shown}", *(f"  {error}" for error in errors)]))
 
 
 def _shown(cells: Sequence[str]) -> str:
@@ -326,13 +292,13 @@ def _shown(cells: Sequence[str]) -> str:
     return shortened(", ".join(texts), _SHOWN) or "nothing"
 
 
-def _enter_header(path, wanted, layout, delimiter, cells, number, commented, was_searched) -> None:
+def _enter_header(wanted, layout, delimiter, cells, number, commented, was_searched) -> None:
     errors = [f"  {where}: {cells.count(name)} columns are called {name!r}" for where, name in wanted if cells.count(name) > 1]
     if errors:
-        raise TableError("\n".join([f"{path}, line {number}: the header has {_shown(cells)}", *errors]))
-    within(TABLE_COLUMNS, len(cells), f"{path}, line {number}")
+        raise TableError("\n".join([f"{layout.path}, line {number}: the header has {_shown(cells)}", *errors]))
+    TABLE_COLUMNS.check(len(cells), f"{layout.path}, line {number}")
     if odd := next((cell for cell in cells if _CONTROL.search(cell)), None):
-        raise TableError(f"{path}, line {number}: the heading {odd[:_SHOWN]!r} has control characters; expected text")
+        raise TableError(f"{layout.path}, line {number}: the heading {odd[:_SHOWN]!r} has control characters; expected text")
     layout.delimiter, layout.names, layout.header_line, layout.is_comment = delimiter, tuple(cells), number, commented
     if was_searched and delimiter != ",":
         layout.found.append(f"delimiter: {NAMES[delimiter]}")
@@ -340,18 +306,19 @@ def _enter_header(path, wanted, layout, delimiter, cells, number, commented, was
         layout.found.append(f"header in line {number}" + ", a comment" * commented)
 
 
-def lines_below(lines: Sequence[str], layout: Layout) -> tuple[str, ...]:
+def lines_below(layout: Layout) -> tuple[str, ...]:
     """Return the units below the header: cells that are words with at most one digit, as in 1/min; empty if the line holds data.
 
     One more such line, as loggers write it (``Smp``, ``Avg``), is counted in the layout; so are units that stand in the cells themselves.
     """
-    below = [cells_of(each, layout.delimiter) for each in itertools.islice((each for each in lines if each.strip() and not is_comment(each)), 2)]
+    lines = (each for each in layout.lines[layout.header_line :] if each.strip() and not is_comment(each))
+    below = [cells_of(each, layout.delimiter) for each in itertools.islice(lines, 2)]
     words = list(itertools.takewhile(lambda cells: sum(map(bool, cells)) >= 2 and all(_UNIT_LIKE.fullmatch(cell) for cell in cells if cell), below))
     layout.words = len(words)
     layout.found += [f"second line of the header: {_shown(words[0])}"] if words else []
     layout.found += [f"third line of the header: {_shown(words[1])}; it is not used"] if words[1:] else []
     texts: dict[str, list[str]] = {}
-    for _, name, text in cells_in(lines, layout, [name for name in dict.fromkeys(layout.names) if name], 0):
+    for _, name, text in cells_in(layout, [name for name in dict.fromkeys(layout.names) if name]):
         texts.setdefault(name, []).append(text)
     for name, column in texts.items():
         behind = {found[1] if (found := _WITH_UNIT.fullmatch(text)) else "" for text in column[layout.words :] if text}
@@ -360,10 +327,10 @@ def lines_below(lines: Sequence[str], layout: Layout) -> tuple[str, ...]:
     return tuple(words[0]) if words else ()
 
 
-def cells_in(lines: Sequence[str], layout: Layout, columns: Sequence[str], begin: int | None = None) -> Iterator[tuple[int, str, str]]:
-    """Yield (line number, heading, text without its unit) of the cells of some columns in the first lines of a file, from a line on."""
+def cells_in(layout: Layout, columns: Sequence[str]) -> Iterator[tuple[int, str, str]]:
+    """Yield (line number, heading, text without its unit) of the cells of some columns in the first lines of a file."""
     places = [(layout.names.index(name), name, layout.cell_units.get(name, "")) for name in columns]
-    for number, line in enumerate(lines[layout.header_line if begin is None else begin :], layout.header_line + 1):
+    for number, line in enumerate(layout.lines[layout.header_line :], layout.header_line + 1):
         if is_comment(line):
             continue
         cells = cells_of(line, layout.delimiter)
@@ -416,7 +383,7 @@ def number_marks(cells: Iterable[tuple[int, str, str]], delimiter: str = "", dec
     return fitting[0]
 
 
-def records(path: Path, layout: Layout) -> Iterator[tuple[int, list[str]]]:
+def records(layout: Layout) -> Iterator[tuple[int, list[str]]]:
     """Yield (number of the line that a row begins on, cells) below the header; comment lines are left out and counted in the layout.
 
     Cells that are empty at the end of a row, beyond the header, are dropped, and one that only lacks cells of columns without a heading is
@@ -427,34 +394,32 @@ def records(path: Path, layout: Layout) -> Iterator[tuple[int, list[str]]]:
     TableError
         A quotation mark is out of place, a byte has no meaning in the encoding, or there are more or longer rows than the limits allow.
     """
-    width, lines, most_rows = len(layout.names), _Lines(layout), TABLE_ROWS.value
+    path, width, lines, most_rows = layout.path, len(layout.names), _Lines(layout), TABLE_ROWS.value
     named = max((k for k, name in enumerate(layout.names) if name), default=-1) + 1
-    with opened_text(path, layout.encoding) as stream:
-        lines.stream = enumerate(lines_of(stream, path), 1)
-        rows = csv.reader(lines, delimiter=layout.delimiter, strict=True)
-        skipped = 0
-        while True:
-            lines.at_start = True
-            try:
-                cells = next(rows)
-            except StopIteration:
-                return
-            except csv.Error as error:
-                if "unexpected end" in str(error):
-                    raise TableError(f"{path}, line {lines.began}: a quotation mark is opened and not closed") from None
-                raise TableError(f"{path}, line {lines.number}: {error}") from None
-            except UnicodeDecodeError as error:
-                raise TableError(f"{path}: not readable as {layout.encoding} text ({error.reason}); say which encoding it has") from None
-            if skipped < layout.words and cells:
-                skipped += 1
-                continue
-            while len(cells) > width and not cells[-1].strip():
-                cells.pop()
-            if lines.began - layout.header_line > most_rows:
-                within(TABLE_ROWS, lines.began - layout.header_line, path)
-            if named <= len(cells) < width:
-                cells += [""] * (width - len(cells))
-            yield lines.began, cells
+    rows = csv.reader(lines, delimiter=layout.delimiter, strict=True)
+    skipped = 0
+    while True:
+        lines.at_start = True
+        try:
+            cells = next(rows)
+        except StopIteration:
+            return
+        except csv.Error as error:
+            if "unexpected end" in str(error):
+                raise TableError(f"{path}, line {lines.began}: a quotation mark is opened and not closed") from None
+            raise TableError(f"{path}, line {lines.number}: {error}") from None
+        except UnicodeDecodeError as error:
+            raise TableError(f"{path}: not readable as {layout.encoding} text ({error.reason}); say which encoding it has") from None
+        if skipped < layout.words and cells:
+            skipped += 1
+            continue
+        while len(cells) > width and not cells[-1].strip():
+            cells.pop()
+        if lines.began - layout.header_line > most_rows:
+            TABLE_ROWS.check(lines.began - layout.header_line, str(path))
+        if named <= len(cells) < width:
+            cells += [""] * (width - len(cells))
+        yield lines.began, cells
 
 
 class _Lines:
@@ -474,7 +439,7 @@ class _Lines:
 
     def __init__(self, layout: Layout):
         self._layout = layout
-        self.stream: Iterator[tuple[int, str]] = iter(())
+        self._lines = enumerate(table_lines(layout.path, layout.encoding, layout.sheet), 1)
         self.at_start, self.began, self.number = True, 0, 0
         self._length = 0  # of the row so far
 
@@ -482,7 +447,7 @@ class _Lines:
         return self
 
     def __next__(self) -> str:
-        for number, line in self.stream:
+        for number, line in self._lines:
             self.number = number
             if number <= self._layout.header_line:
                 continue
@@ -493,7 +458,7 @@ class _Lines:
                 self.at_start, self.began, self._length = False, number, 0
             self._length += len(line)
             if self._length > len(line):
-                within(TABLE_LINE, self._length, f"the row that begins in line {self.began}")
+                TABLE_LINE.check(self._length, f"the row that begins in line {self.began}")
             return line
         raise StopIteration
 
@@ -521,9 +486,13 @@ def is_relative(text: str) -> bool:
 
 def percentage_question(unit: str, si_unit: str) -> str:
     """Return what to say instead of a unit that is a percentage of nothing that is named."""
-    what = {"rad/s": "speed", "N": "force", "W": "power", "N*m": "torque"}.get(si_unit, "value")
-    found = _RELATIVE.match(unit.strip())
-    return f"the {what} at 100 %, such as '{'%' if found is None or found[1] else chr(0x2030)} of {AT_FULL_SCALE[si_unit]}'"
+    found, quantity = _RELATIVE.match(unit.strip()), QUANTITIES[si_unit]
+    return f"the {quantity['name']} at 100 %, such as '{'%' if found is None or found[1] else chr(0x2030)} of {quantity['full_scale']}'"
+
+
+def may_be_relative(si_unit: str) -> bool:
+    """Return whether something in a unit may be a percentage; a temperature is none."""
+    return "full_scale" in QUANTITIES.get(si_unit, ())
 
 
 def unit_line(unit: str, si_unit: str) -> tuple[float, float]:
@@ -542,7 +511,7 @@ def unit_line(unit: str, si_unit: str) -> tuple[float, float]:
     found = _RELATIVE.fullmatch(unit.strip())
     if found is None:
         return conversion(spelled(unit), si_unit)
-    if si_unit not in AT_FULL_SCALE:
+    if not may_be_relative(si_unit):
         raise ValueError(f"unit = {unit!r}: expected a unit of this quantity, which is no percentage")
     try:
         reference = to_si(found[3], si_unit)

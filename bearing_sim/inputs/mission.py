@@ -4,6 +4,7 @@
 Start, idle, take-off at 45,000 rpm, cruise, descent under light load with a gust, stop.
 """
 
+import csv
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -23,21 +24,9 @@ CAGE_RATE, CAGE_NOISE = 10.0, 0.002
 """Of the synthetic sensor of the cage: readings a second [Hz], and the standard deviation of one over the ideal cage's speed."""
 _SEED = 1
 
-# For each phase: its name, its end as a fraction of the mission, and the inputs at its end:
-# shaft speed [rpm], load along y and z [N], oil temperature [degC].
-PHASES = (
-    ("rest", 0.03, 0.0, 120.0, 0.0, 40.0),
-    ("start", 0.15, 22_000.0, 250.0, 0.0, 70.0),
-    ("idle", 0.23, 22_000.0, 250.0, 0.0, 85.0),
-    ("run-up", 0.31, 45_000.0, 800.0, 150.0, 105.0),
-    ("take-off", 0.43, 45_000.0, 800.0, 150.0, 120.0),
-    ("throttle back", 0.48, 39_000.0, 500.0, 50.0, 120.0),
-    ("cruise", 0.60, 39_000.0, 500.0, 50.0, 115.0),
-    ("unload", 0.65, 33_000.0, 100.0, 0.0, 110.0),
-    ("descent", 0.84, 33_000.0, 100.0, 0.0, 100.0),
-    ("run-down", 0.97, 0.0, 120.0, 0.0, 80.0),
-    ("standstill", 1.00, 0.0, 120.0, 0.0, 80.0),
-)
+_ROWS = csv.reader(Path(__file__).with_name("mission.csv").read_text("utf-8").splitlines()[1:])
+PHASES = tuple((name, *map(float, numbers)) for name, *numbers in _ROWS)
+"""For each phase: its name, its end as a fraction of the mission, and the inputs at its end (see the heading of the file)."""
 _GUST = (0.73, 0.05, 700.0, -400.0)  # centre and width as fractions of the mission; peak of the additional load along y and z [N]
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from bearing_sim.files.extras import what_is_missing
 from bearing_sim.files.limits import TABLE_BYTES, TABLE_FILE, TABLE_ROWS, FileError
 from bearing_sim.files.reading import open_regular
-from bearing_sim.inputs.csv_text import Layout, Marks, TableError, within
+from bearing_sim.inputs.csv_text import Layout, Marks, TableError
 from bearing_sim.scene.errors import did_you_mean, shortened
 
 _MAGIC = b"PAR1"
@@ -48,7 +48,7 @@ def parquet_layout(path: Path, wanted: Sequence[tuple[str, str]], marks: Marks) 
     errors = [f"  {where}: no column {name!r}{did_you_mean(name, names)}" for where, name in wanted if name not in names]
     if errors:
         raise TableError("\n".join([f"{path}: the table has {', '.join(names) or 'no columns'}", *errors]))
-    return Layout("parquet", marks=marks, names=tuple(dict.fromkeys(name for _, name in wanted)))
+    return Layout(path, "parquet", marks=marks, names=tuple(dict.fromkeys(name for _, name in wanted)))
 
 
 def parquet_records(path: Path, layout: Layout, only: Mapping[str, str], time: str, takes_timestamps: bool) -> Iterator[tuple[int, list[str]]]:
@@ -145,8 +145,6 @@ def _dataset(path: Path):
             open_regular(file, TABLE_FILE).close()
         files = files if path.is_dir() else files[0]
         return pyarrow.dataset.dataset(files, format="parquet", partitioning=pyarrow.dataset.partitioning(flavor="hive"))
-    except FileError as error:
-        raise TableError(str(error)) from None
     except (pyarrow.ArrowException, OSError) as error:
         raise TableError(f"{path}: cannot be read as Parquet: {_reason(error)}") from None
 
@@ -156,13 +154,13 @@ def _read(path: Path, dataset, columns: Sequence[str], condition):
     import pyarrow
 
     try:
-        within(TABLE_ROWS, dataset.count_rows(filter=condition), path)
+        TABLE_ROWS.check(dataset.count_rows(filter=condition), str(path))
         table = dataset.to_table(columns=columns, filter=condition)
     except MemoryError:
         raise TableError(f"{path}: its columns {shortened(', '.join(columns), _SHOWN)} do not fit into the memory of this machine") from None
     except (pyarrow.ArrowException, OSError) as error:
         raise TableError(f"{path}: cannot be read as Parquet: {_reason(error)}") from None
-    within(TABLE_BYTES, table.nbytes, path)
+    TABLE_BYTES.check(table.nbytes, str(path))
     return table
 
 

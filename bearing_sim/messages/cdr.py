@@ -64,6 +64,57 @@ class Field(NamedTuple):
         return self.dtype is not None and not self.is_count and _NOT_PAYLOAD.isdisjoint(name.partition("[")[0] for name in self.path.split("."))
 
 
+class Cursor:
+    """The place in a message that is being decoded.
+
+    Attributes
+    ----------
+    data, at : the bytes, and the next one to be read.
+    order : ``"<"`` or ``">"``.
+    base : byte from which alignment is counted; -1 without alignment.
+    items : how many texts, arrays and messages may still be made.
+
+    Raises
+    ------
+    CdrError
+        Its methods: the message ends before what is read, or contains more than the limit.
+    """
+
+    __slots__ = ("data", "at", "order", "base", "items")
+
+    def __init__(self, data: bytes, at: int, order: str, base: int, items: int):
+        self.data, self.at, self.order, self.base, self.items = data, at, order, base, items
+
+    def take(self, size: int, count: int = 1) -> int:
+        """Return where numbers of a size [byte] begin, and go behind them."""
+        begin = self.at
+        if self.base >= 0:
+            begin += -(begin - self.base) % size
+        self.at = begin + size * count
+        if self.at > len(self.data):
+            raise CdrError(f"{len(self.data)} bytes end within the message")
+        return begin
+
+    def make_item(self) -> None:
+        """Count a text, array or message."""
+        self.items -= 1
+        if self.items < 0:
+            raise CdrError(f"it contains {MESSAGE_ITEMS.refusal()}")
+
+    def length(self) -> int:
+        """Return the length of a text or a sequence, which comes before it."""
+        (length,) = struct.unpack_from(self.order + "I", self.data, self.take(4))
+        return length
+
+
+def cursor_of(data: bytes, items: int) -> Cursor:
+    """Return the place at which the fields of a serialised message begin; raise `CdrError` if it is no message in CDR version 1."""
+    order = ORDERS.get(bytes(data[:2]))
+    if order is None or len(data) < ENCAPSULATION:
+        raise CdrError(f"expected a message in CDR version 1; its first bytes are {bytes(data[:ENCAPSULATION]).hex() or 'none'}")
+    return Cursor(data, ENCAPSULATION, order, ENCAPSULATION, items)
+
+
 class CdrLayout:
     """The fields of one message, and of every message that is laid out alike.
 
@@ -85,18 +136,12 @@ class CdrLayout:
     """
 
     def __init__(self, ros_type: str, data: bytes):
-        order = ORDERS.get(bytes(data[:2]))
-        if order is None or len(data) < ENCAPSULATION:
-            raise CdrError(f"{len(data)} bytes that do not begin as a message of {ros_type} in CDR version 1")
         self.fields: list[Field] = []
-        self._data, self._at, self._order = data, ENCAPSULATION, order
-        self._most_fields = MESSAGE_ITEMS.value
         try:
+            self._cursor = cursor_of(data, MESSAGE_ITEMS.value)
             self._walk("", ros_type)
-        except struct.error:
-            self._at = len(data) + 1
-        if self._at > len(data):
-            raise CdrError(f"{len(data)} bytes end within a message of {ros_type}")
+        except CdrError as error:
+            raise CdrError(f"a message of {ros_type}: {error}") from None
 
     @cached_property
     def by_path(self) -> dict[str, Field]:
@@ -124,40 +169,27 @@ class CdrLayout:
         else:
             (item, item_detail), count = detail
             if node == Nodetype.SEQUENCE:
-                count = self._length(path, is_count=True)
+                count = self._cursor.length()
+                self.fields.append(Field(path, _dtype(f"{self._cursor.order}u4"), self._cursor.at - 4, 1, self._cursor.at, True))
             if item == Nodetype.BASE and item_detail[0] in NUMBERS:
                 self._base(path, item_detail[0], count)
                 return
-            if count > len(self._data) - self._at:  # no item takes less than a byte
-                raise struct.error
+            if count > len(self._cursor.data) - self._cursor.at:
+                raise CdrError(f"{len(self._cursor.data)} bytes end within an array of {count} items, of which none takes less than a byte")
             for k in range(count):
                 self._enter(f"{path}[{k}]", item, item_detail)
-                if len(self.fields) > self._most_fields:
-                    raise CdrError(f"it contains {MESSAGE_ITEMS.refusal()}")
 
     def _base(self, path: str, kind: str, count: int) -> None:
-        if kind not in NUMBERS:
-            begin = self._align(4)
-            length = self._length(path)
-            self._at += length
-            self.fields.append(Field(path, None, begin, 1, self._at))
-            return
-        dtype = _dtype(self._order + NUMBERS[kind])
-        begin = self._align(dtype.itemsize) if count else self._at
-        self._at += count * dtype.itemsize
-        self.fields.append(Field(path, dtype, begin, count, self._at))
-
-    def _length(self, path: str, is_count: bool = False) -> int:
-        begin = self._align(4)
-        (length,) = struct.unpack_from(f"{self._order}I", self._data, begin)
-        self._at += 4
-        if is_count:
-            self.fields.append(Field(path, _dtype(f"{self._order}u4"), begin, 1, self._at, True))
-        return length
-
-    def _align(self, size: int) -> int:
-        self._at += -(self._at - ENCAPSULATION) % size
-        return self._at
+        cursor = self._cursor
+        cursor.make_item()
+        if kind in NUMBERS:
+            dtype = _dtype(cursor.order + NUMBERS[kind])
+            begin = cursor.take(dtype.itemsize, count) if count else cursor.at
+        else:
+            dtype, length = None, cursor.length()
+            begin = cursor.at - 4
+            cursor.take(1, length)
+        self.fields.append(Field(path, dtype, begin, count, cursor.at))
 
 
 class PointCloudLayout(CdrLayout):
@@ -180,7 +212,7 @@ class PointCloudLayout(CdrLayout):
             if kind not in NUMPY_TYPES or offset + count * dtype.itemsize > step:
                 continue
             text = data[name.begin + 4 : name.end - 1].decode(errors="replace")
-            if len(points) + rows * width > self._most_fields:
+            if len(points) + rows * width > MESSAGE_ITEMS.value:
                 raise CdrError(f"it contains {MESSAGE_ITEMS.refusal()}")
             begins = (whole.begin + row * row_step + point * step + offset for row in range(rows) for point in range(width))
             points += [Field(text, dtype, begin, count, begin + count * dtype.itemsize) for begin in begins]
@@ -190,7 +222,7 @@ class PointCloudLayout(CdrLayout):
         self.fields = description + self._points
 
     def _number(self, field: Field) -> int:
-        return int(np.frombuffer(self._data, field.dtype, 1, field.begin)[0])
+        return int(np.frombuffer(self._cursor.data, field.dtype, 1, field.begin)[0])
 
     @property
     def numbers(self) -> list[Field]:

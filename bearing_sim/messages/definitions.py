@@ -20,7 +20,7 @@ import numpy as np
 from rosbags.interfaces import Nodetype
 
 from bearing_sim.files.limits import DEFINITION, DEFINITION_DEPTH, DEFINITION_FIELDS, MESSAGE_ITEMS
-from bearing_sim.messages.cdr import ENCAPSULATION, NUMBERS, ORDERS, typestore
+from bearing_sim.messages.cdr import NUMBERS, CdrError, Cursor, cursor_of, typestore
 
 _SEPARATOR = re.compile(r"^={3,}[ \t\r]*$", re.MULTILINE)
 _NAMED = re.compile(r"\s*MSG:[ \t]+(\S+)[ \t\r]*(?:\n|$)")
@@ -40,10 +40,6 @@ class DefinitionError(ValueError):
     """A definition that cannot be used; the message says which type and why."""
 
 
-class MessageError(ValueError):
-    """Bytes that are not a message of the type; the message says where they end or what they lack."""
-
-
 class FieldType(NamedTuple):
     """Type of a field: the name of a number, of a text or of a message (``pkg/Type``); and how many there are.
 
@@ -54,52 +50,14 @@ class FieldType(NamedTuple):
     count: int | None = None
 
 
-class _Cursor:
-    """The place in a message that is being decoded.
-
-    Attributes
-    ----------
-    data, at : the bytes, and the next one to be read.
-    order : ``"<"`` or ``">"``.
-    base : byte from which alignment is counted; -1 without alignment.
-    items : how many texts, arrays and messages may still be made.
-    """
-
-    __slots__ = ("data", "at", "order", "base", "items")
-
-    def __init__(self, data: bytes, at: int, order: str, base: int, items: int):
-        self.data, self.at, self.order, self.base, self.items = data, at, order, base, items
-
-    def take(self, size: int, count: int = 1) -> int:
-        """Return where numbers of a size [byte] begin, and go behind them."""
-        begin = self.at
-        if self.base >= 0:
-            begin += -(begin - self.base) % size
-        self.at = begin + size * count
-        if self.at > len(self.data):
-            raise MessageError(f"{len(self.data)} bytes end within the message")
-        return begin
-
-    def make_item(self) -> None:
-        """Count a text, array or message."""
-        self.items -= 1
-        if self.items < 0:
-            raise MessageError(f"it contains {MESSAGE_ITEMS.refusal()}")
-
-    def length(self) -> int:
-        """Return the length of a text or a sequence, which comes before it."""
-        (length,) = struct.unpack_from(self.order + "I", self.data, self.take(4))
-        return length
-
-
-_Read = Callable[[_Cursor], object]
+_Read = Callable[[Cursor], object]
 
 
 def decoder(name: str, encoding: str, definition: bytes, note: Callable[[str], None] = lambda text: None) -> Callable[[bytes], object]:
     """Return a function that decodes messages of a type into objects with the fields as attributes.
 
     Arrays of numbers are NumPy arrays, others are lists; a stamp is a message of ``sec`` and ``nanosec``.  The function raises
-    `MessageError` for bytes that are no such message.
+    `CdrError` for bytes that are no such message.
 
     Parameters
     ----------
@@ -126,11 +84,8 @@ def decoder(name: str, encoding: str, definition: bytes, note: Callable[[str], N
     def decode(data: bytes) -> object:
         data = bytes(data)
         if is_ros1:
-            return read(_Cursor(data, 0, "<", -1, items))
-        order = ORDERS.get(data[:2])
-        if order is None or len(data) < ENCAPSULATION:
-            raise MessageError(f"expected a message in CDR version 1; its first bytes are {data[:ENCAPSULATION].hex() or 'none'}")
-        return read(_Cursor(data, ENCAPSULATION, order, ENCAPSULATION, items))
+            return read(Cursor(data, 0, "<", -1, items))
+        return read(cursor_of(data, items))
 
     return decode
 
@@ -286,7 +241,7 @@ class _Readers:
             raise DefinitionError(f"the definition of {name[:80]} has two fields of one name")
         pads = not parts and not self._is_ros1  # CDR has no empty messages: one byte stands for it
 
-        def read(cursor: _Cursor) -> SimpleNamespace:
+        def read(cursor: Cursor) -> SimpleNamespace:
             cursor.make_item()
             if pads:
                 cursor.take(1)
@@ -322,13 +277,13 @@ class _Readers:
             return item
         fixed = kind.count
 
-        def read(cursor: _Cursor) -> list:
+        def read(cursor: Cursor) -> list:
             count = cursor.length() if fixed < 0 else fixed
             cursor.make_item()
             if count > cursor.items:
-                raise MessageError(f"it contains {MESSAGE_ITEMS.refusal()}")
+                raise CdrError(f"it contains {MESSAGE_ITEMS.refusal()}")
             if count > len(cursor.data) - cursor.at and not self._is_ros1:  # in CDR, no item takes less than a byte
-                raise MessageError(f"{len(cursor.data)} bytes end within an array of {count} items")
+                raise CdrError(f"{len(cursor.data)} bytes end within an array of {count} items")
             return [item(cursor) for _ in range(count)]
 
         return read
@@ -341,7 +296,7 @@ class _Readers:
             unpack = {order: struct.Struct(order + _CODES[form]).unpack_from for order in "<>"}
             return lambda cursor: unpack[cursor.order](cursor.data, cursor.take(size))[0]
 
-        def read(cursor: _Cursor) -> np.ndarray:
+        def read(cursor: Cursor) -> np.ndarray:
             cursor.make_item()
             count = cursor.length() if fixed < 0 else fixed
             begin = cursor.take(size, count) if count else cursor.at
@@ -349,7 +304,7 @@ class _Readers:
 
         return read
 
-    def _text(self, cursor: _Cursor) -> str:
+    def _text(self, cursor: Cursor) -> str:
         cursor.make_item()
         length = cursor.length()
         begin = cursor.take(1, length)
@@ -357,4 +312,4 @@ class _Readers:
         try:
             return cursor.data[begin:end].decode()
         except UnicodeDecodeError:
-            raise MessageError(f"the text at byte {begin} is not UTF-8") from None
+            raise CdrError(f"the text at byte {begin} is not UTF-8") from None

@@ -9,8 +9,10 @@ Alarms are raised where the text of a status changes.  So a text changes with th
 """
 
 import math
+import tomllib
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cache
+from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -47,53 +49,11 @@ class Subject(NamedTuple):
 SETTING_ERRORS = ("measured slip error [fraction]", "measured life error [fraction]")
 """Keys of the errors of the setting that runs, as `bearing-sim trade` has measured them; of slip 0.01 is a point."""
 _CHANNELS = (*INPUTS, *MEASURED_CHANNELS)
-_VALUES = {"shaft_speed": "shaft speed [", "radial_load": "radial load [", "oil_temperature": "oil temperature ["}
-_VALUES |= {name: f"{name.replace('_', ' ')} measured [" for name in RING_TEMPERATURES}
-"""Beginnings of the keys of the inputs' values in `condition` and `further_condition`."""
-
-SUBJECTS = (
-    Subject("run", "the state of the node, the phase of the run, and the solver", ("run.", "solver.", "reproduction.", "study."), ("phase", "state")),
-    Subject("clock", "the clock: `/clock` where `use_sim_time` is set", ("clock.",), ("clock [s]", "behind the clock [s]")),
-    *(Subject(name, f"the messages of the topic `{name}`", (), (f"{name} ", _VALUES.get(name, name))) for name in _CHANNELS),
-    Subject(
-        "inputs",
-        "all inputs together, and the log that they come from",
-        ("input.", "log."),
-        ("messages refused", "inputs unknown [s]", "refused: "),
-    ),
-    Subject(
-        "pace",
-        "whether the model keeps up with time, and what was left out",
-        ("pace.", "output.", "run.behind"),
-        ("real-time factor", "time lost [s]", "blocks dropped", "outputs_left_out"),
-    ),
-    Subject("governor", "the setting and level of fidelity that is computed, and its errors", ("governor.",), ("level", "setting", *SETTING_ERRORS)),
-    Subject("slip", "cage slip against its thresholds", ("bearing.slip",), ("cage slip [fraction]", "cage slip 5 %", "cage slip 95 %")),
-    Subject(
-        "life",
-        "life, remaining life and damage against their thresholds",
-        ("bearing.life", "bearing.remaining_life"),
-        ("rating life [h]", "rating life 5 %", "rating life 95 %", "remaining life", "damage [fraction of life]"),
-    ),
-    Subject("film", "film thickness over roughness against its thresholds", ("bearing.lambda",), ("film",)),
-    Subject("pocket_force", "pocket force against its thresholds", ("bearing.pocket_force",), ("largest pocket force [N]",)),
-    Subject("clearance", "running clearance against its thresholds", ("bearing.clearance",), ("running clearance",)),
-    Subject("residual", "measured against predicted slip and temperatures", ("residual.",), ("residual ",)),
-    Subject("vibration", "the cage speed out of blocks of the topic `vibration`", ("vibration.",), ("vibration: ",)),
-    Subject("estimate", "bands of the results, and the fields that measurements calibrate", ("estimate.", "calibration."), ("estimate: ",)),
-    Subject("watchers", "what the optional watchers say that the scene names", ("watcher.",), ("watcher ",)),
-    Subject("validity", "whether the laws are used within their ranges", ("validity.",)),
-    Subject("scene", "whether the scene is plausible", ("scene.",)),
-    Subject("recording", "recordings", ("recording.", "sink."), ("record: ",)),
-    Subject("view", "the live view", (), ("view: ",)),
-    Subject(
-        "state",
-        "the stored state of the bearing in service",
-        ("state.",),
-        ("serial number", "running [h]", "revolutions", "starts", "state written [s ago]"),
-    ),
+SUBJECTS = tuple(
+    Subject(name, entry["meaning"], tuple(entry.get("kinds", ())), tuple(entry.get("values", ())))
+    for name, entry in tomllib.loads(Path(__file__).with_name("subjects.toml").read_text("utf-8")).items()
 )
-"""The subjects of a bearing, in the order of a report.  Names are stable: configurations of other programs refer to them."""
+"""The subjects of a bearing, in the order of a report, from ``subjects.toml``."""
 
 JUDGED = ("slip", "life", "film", "pocket_force", "clearance", "residual", "validity")
 """The subjects that samples are judged by."""

@@ -21,14 +21,14 @@ class RollerField(NamedTuple):
     Attributes
     ----------
     name, unit, meaning : for documents; a point cloud has no room for units.
-    numbers : of samples of shape (n,), shape (n, Z) or (n, 1).
+    numbers : an observable of the rollers, or a function that returns numbers of samples of shape (n,), shape (n, Z) or (n, 1).
     of_tilting_levels : whether levels without tilts omit it.
     """
 
     name: str
     unit: str
     meaning: str
-    numbers: Callable[[np.ndarray], np.ndarray]
+    numbers: str | Callable[[np.ndarray], np.ndarray]
     of_tilting_levels: bool = False
 
 
@@ -43,16 +43,14 @@ ROLLER_FIELDS = (
     ),
     RollerField("y", "m", "place of the roller's centre", lambda samples: samples["roller_radius"] * np.cos(samples["roller_angle"])),
     RollerField("z", "m", "place of the roller's centre", lambda samples: samples["roller_radius"] * np.sin(samples["roller_angle"])),
-    RollerField("inner_load", "N", "normal force between roller and inner raceway", lambda samples: samples["inner_load"]),
-    RollerField("outer_load", "N", "normal force between roller and outer raceway", lambda samples: samples["outer_load"]),
-    RollerField(
-        "pocket_force", "N", "force of the cage's pocket on the roller, positive where it drives the roller", lambda samples: samples["pocket_force"]
-    ),
-    RollerField("orbital_speed", "rad/s", "angular speed of the roller's centre about the bearing's", lambda samples: samples["orbital_speed"]),
-    RollerField("spin", "rad/s", "rotation about its own axis, positive where it rolls on the outer ring", lambda samples: samples["roller_spin"]),
+    RollerField("inner_load", "N", "normal force between roller and inner raceway", "inner_load"),
+    RollerField("outer_load", "N", "normal force between roller and outer raceway", "outer_load"),
+    RollerField("pocket_force", "N", "force of the cage's pocket on the roller, positive where it drives the roller", "pocket_force"),
+    RollerField("orbital_speed", "rad/s", "angular speed of the roller's centre about the bearing's", "orbital_speed"),
+    RollerField("spin", "rad/s", "rotation about its own axis, positive where it rolls on the outer ring", "roller_spin"),
     RollerField("orbital_slip", "", "1 - orbital speed / cage speed without slip; NaN at rest", _orbital_slip),
-    RollerField("tilt", "rad", "inclination of the axis outwards", lambda samples: samples["roller_tilt"], True),
-    RollerField("skew", "rad", "inclination of the axis along the orbit", lambda samples: samples["roller_skew"], True),
+    RollerField("tilt", "rad", "inclination of the axis outwards", "roller_tilt", True),
+    RollerField("skew", "rad", "inclination of the axis along the orbit", "roller_skew", True),
 )
 """The fields of a point of topic ``rollers``, in order.
 
@@ -81,7 +79,7 @@ def roller_points(fields: tuple[RollerField, ...], samples: np.ndarray) -> np.nd
     rollers = samples["roller_angle"].shape[1]
     points = np.empty((len(samples), rollers, len(fields)), "<f4")
     for k, field in enumerate(fields):
-        points[:, :, k] = field.numbers(samples)
+        points[:, :, k] = samples[field.numbers] if isinstance(field.numbers, str) else field.numbers(samples)
     flat = points.reshape(len(samples), -1)
     found = np.empty((len(samples), 4 * flat.shape[1] + 1), np.uint8)
     found[:, :-1] = flat.view(np.uint8)

@@ -153,8 +153,8 @@ class SampleMessages:
             _STAMP.pack_into(self._buffer, at, *divmod(stamp_ns, 1_000_000_000))
 
 
-class InputMessages:
-    """Serialised messages of inputs and measurements: those of a topic, frame and joints differ in stamp and numbers only."""
+class FilledMessages:
+    """Serialised messages of inputs, measurements and bands: those of a topic, frame and joints differ in stamp and numbers only."""
 
     def __init__(self):
         self._templates: dict[tuple[str | None, ...], tuple[bytearray, int | None, list[tuple[int, list[str]]]]] = {}
@@ -164,7 +164,7 @@ class InputMessages:
 
         Parameters
         ----------
-        topic : of `bearing_sim.messages.topics.INPUTS` or ``MEASUREMENTS``.
+        topic : of `bearing_sim.messages.topics.INPUTS`, ``MEASUREMENTS`` or ``ESTIMATED``.
         stamp_ns : of its header, if it has one [ns since the epoch].
         source : what `Topic.message` takes.
         frame : in its header; that of the topic if absent.
@@ -186,33 +186,7 @@ class InputMessages:
             data[begin : begin + len(numbers)] = numbers
         return bytes(data)
 
-
-class BandMessages:
-    """Serialised messages of bands: those of the same quantities differ in stamp and numbers only.
-
-    Parameters
-    ----------
-    frame : the bearing's, for headers.
-    """
-
-    def __init__(self, frame: str = FRAME):
-        self._frame = frame
-        self._templates: dict[tuple[str, ...], tuple[bytearray, int, int]] = {}
-
-    def each(self, bands: Bands, stamps_ns: Sequence[int]) -> list[bytes]:
-        """Return the message of each instant, with its stamp [ns since the epoch]."""
-        key = (bands.topic, *bands.names, *bands.units)
-        if key not in self._templates:
-            topic = ESTIMATED[bands.topic]
-            message = topic.message(0, bands)
-            message["header"]["frame_id"] = self._frame
-            data = message_type(topic.ros_type).serialize(message)
-            by_path = CdrLayout(topic.ros_type, data).by_path
-            self._templates[key] = bytearray(data), by_path[STAMP_FIELDS[0]].begin, by_path["position"].begin
-        data, stamp, position = self._templates[key]
-        messages = []
-        for stamp_ns, numbers in zip(stamps_ns, np.ascontiguousarray(bands.numbers, np.float64), strict=True):
-            _STAMP.pack_into(data, stamp, *divmod(int(stamp_ns), 1_000_000_000))
-            data[position : position + numbers.nbytes] = numbers.tobytes()
-            messages.append(bytes(data))
-        return messages
+    def of_bands(self, bands: Bands, stamps_ns: Sequence[int], frame: str) -> list[bytes]:
+        """Return the message of each instant of bands, with its stamp [ns since the epoch]."""
+        each = zip(stamps_ns, bands.numbers, strict=True)
+        return [self.serialized(ESTIMATED[bands.topic], stamp_ns, bands._replace(numbers=numbers[None]), frame) for stamp_ns, numbers in each]

@@ -12,7 +12,9 @@ Names are relative; a recording writes them with a leading slash.
 """
 
 import math
+import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -22,7 +24,7 @@ from bearing_sim.messages.bands import BANDS, ESTIMATES, Bands
 from bearing_sim.messages.point_cloud import ROLLER_FIELDS, RollerField, point_cloud, roller_fields, roller_points
 from bearing_sim.model.characteristic_frequencies import FREQUENCIES, characteristic_frequencies
 from bearing_sim.model.loads import largest_loads  # noqa: F401 - for rooms that show samples and import messages only
-from bearing_sim.model.sample import NODE_OBSERVABLES, OBSERVABLES, RING_TEMPERATURES
+from bearing_sim.model.sample import OBSERVABLES, RING_TEMPERATURES
 from bearing_sim.model.turning import SLIP_FROM_SPEED, turns  # noqa: F401 - likewise
 
 SHAFT_JOINT, CAGE_JOINT, CLEARANCE_JOINT = "shaft", "cage", "running_clearance"
@@ -268,92 +270,21 @@ class ArrayRows(NamedTuple):
     fields: tuple[str, ...]
 
 
-ARRAYS = {
-    "equivalent_loads": ArrayRows(
-        "whole rollers inner, outer, laminae inner, outer",
-        ("inner_equivalent_load", "outer_equivalent_load", "inner_lamina_load", "outer_lamina_load"),
-    ),
-    "rating_lives": ArrayRows("L10, L_nm, L10r, L_nmr", ("l10", "lnm", "l10r", "lnmr")),
-    "life_factors": ArrayRows(
-        "P, P_ref, kappa, e_C, a_ISO at P, a_ISO of laminae, S_0",
-        (
-            "equivalent_load",
-            "reference_load",
-            "viscosity_ratio",
-            "contamination_factor",
-            "modification_factor",
-            "reference_modification_factor",
-            "static_safety",
-        ),
-    ),
-    "running_clearance": ArrayRows(
-        "running, initial, fits, rotation, heat, contour",
-        ("running_clearance", "initial_clearance", "fit_clearance", "rotation_clearance", "heat_clearance", "contour_clearance"),
-    ),
-    "centre_positions": ArrayRows(
-        "inner ring y, z, cage y, z, outer ring y, z, shaft y, z",
-        ("ring_y", "ring_z", "cage_y", "cage_z", "outer_ring_y", "outer_ring_z", "shaft_y", "shaft_z"),
-    ),
-    "axis_tilts": ArrayRows("inner ring y, z, cage y, z", ("ring_tilt_y", "ring_tilt_z", "cage_tilt_y", "cage_tilt_z")),
-    "slice_pressures": ArrayRows(
-        "inner, outer, inner end laminae, outer end laminae", ("inner_pressure", "outer_pressure", "inner_edge_pressure", "outer_edge_pressure")
-    ),
-    "power": ArrayRows(
-        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, support, "
-        "friction moment, flange",
-        (
-            "shaft_power",
-            "inner_sliding_power",
-            "outer_sliding_power",
-            "churning_power",
-            "windage_power",
-            "land_power",
-            "pocket_power",
-            "damping_power",
-            "inner_rolling_power",
-            "outer_rolling_power",
-            "seal_power",
-            "support_power",
-            "friction_moment",
-            "flange_power",
-        ),
-    ),
-    "roller_speeds": ArrayRows("speed: orbital, spin", ("orbital_speed", "roller_spin")),
-    "pocket_forces": ArrayRows("force on", ("pocket_force",)),
-    "roller_tilts": ArrayRows("inclination: outwards, along the orbit", ("roller_tilt", "roller_skew")),
-    "roller_loads": ArrayRows("ring", ("inner_load", "outer_load")),
-    "operating_point": ArrayRows(
-        "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load, largest inner and outer roller load",
-        (
-            "load_y",
-            "load_z",
-            "oil_temperature",
-            "land_eccentricity",
-            "inner_flange_force",
-            "outer_flange_force",
-            "flange_load",
-            "inner_load_maximum",
-            "outer_load_maximum",
-        ),
-    ),
-    "predicted_temperatures": ArrayRows(
-        "shaft, inner ring, rollers, outer ring, housing, oil that leaves",
-        NODE_OBSERVABLES,
-    ),
-    "heat_flows": ArrayRows("to the oil, to ambient", ("heat_to_oil", "heat_to_ambient")),
-    "measured_temperatures": ArrayRows(
-        "measured inner ring, outer ring, uncorrected inner ring, outer ring",
-        tuple(f"{name}_{kind}" for kind in ("measured", "uncorrected") for name in RING_TEMPERATURES),
-    ),
-    "roller_places": ArrayRows("angle, radius, rotation", ("roller_angle", "roller_radius", "roller_rotation")),
-}
-"""The topics of samples that carry arrays, by name; a second dimension ``roller`` where rows have a number for each roller."""
+_ARRAYS = tomllib.loads(Path(__file__).with_name("arrays.toml").read_text("utf-8"))
+ARRAYS = {name: ArrayRows(entry["label"], tuple(entry["rows"])) for name, entry in _ARRAYS.items()}
+"""The topics of samples that carry arrays, by name, from ``arrays.toml``; a second dimension ``roller`` where rows have a number for each roller."""
 
 LIFE_SYMBOLS = dict(zip(ARRAYS["rating_lives"].fields, ARRAYS["rating_lives"].label.split(", ")))
 """The standards' symbols of rating lives, by observable."""
 
 
-def _array(name: str, meaning: str, of_tilting_levels: bool = False, of_heat: bool = False) -> Topic:
+def _arrays(only_recorded: bool) -> dict[str, Topic]:
+    """Return the topics of arrays by name, in their order: those of recordings alone, or the others."""
+    chosen = {name: entry for name, entry in _ARRAYS.items() if entry.get("only_recorded", False) == only_recorded}
+    return {name: _array(name, entry) for name, entry in chosen.items()}
+
+
+def _array(name: str, entry: Mapping[str, Any]) -> Topic:
     """Return the topic of an array."""
     label, fields = ARRAYS[name]
 
@@ -364,7 +295,8 @@ def _array(name: str, meaning: str, of_tilting_levels: bool = False, of_heat: bo
             dim.append({"label": "roller", "size": data.shape[1], "stride": data.shape[1]})
         return {"layout": {"dim": dim, "data_offset": 0}, "data": data.ravel()}
 
-    return Topic(name, "std_msgs/msg/Float64MultiArray", meaning, message, {"data": fields}, of_tilting_levels, of_heat)
+    flags = {flag: entry.get(flag, False) for flag in ("of_tilting_levels", "of_heat")}
+    return Topic(name, "std_msgs/msg/Float64MultiArray", entry["meaning"], message, {"data": fields}, **flags)
 
 
 INPUTS = {
@@ -476,40 +408,12 @@ OUTPUTS = {
             repeats=True,
         ),
         _rollers(ROLLER_FIELDS),
-        _array("equivalent_loads", "dynamic equivalent roller loads [N]: of whole rollers (inner, outer ring), by laminae (inner, outer)"),
-        _array("rating_lives", "rating lives [h] by ISO 281 (L10, L_nm) and by ISO/TS 16281 (L10r, L_nmr)"),
-        _array("life_factors", "equivalent and reference load P, P_ref [N], kappa, e_C, a_ISO at P and of the laminae, static safety S_0"),
-        _array("running_clearance", "diametral clearance [m], negative is preload: of the running bearing, and its parts"),
-        _array("centre_positions", "displacements [m]: inner ring and cage from the outer ring, outer ring and shaft in space, y, z each"),
-        _array("axis_tilts", "tilts [rad]: inner ring towards y, z, cage towards y, z", True),
-        _array("slice_pressures", "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end laminae alone", True),
-        _array(
-            "predicted_temperatures", "temperatures [K] of shaft, rings, rollers, housing and the oil that leaves, given or computed", of_heat=True
-        ),
-        _array("heat_flows", "heat [W] that the oil takes along, and that housing and shaft give off; NaN without a network", of_heat=True),
-        _array("power", "power [W]: what the shaft puts in, then what is lost, by cause; and the frictional moment [N*m]"),
-        _array("roller_speeds", "speeds [rad/s], (orbital, spin) x roller"),
-        _array("pocket_forces", "forces of the pockets on the rollers [N], positive where they drive"),
-        _array("roller_tilts", "inclinations [rad], (tilt outwards, skew along the orbit) x roller", True),
-        # The last message of a sample: readers take the sample for complete once it is there.
-        _array("roller_loads", "roller loads [N], ring (inner, outer) x roller"),
     )
-}
+} | _arrays(only_recorded=False)
 """The output topics by name; a level has those of `outputs`."""
 
 
-RECORDED = {
-    topic.name: topic
-    for topic in (
-        _array("operating_point", "inputs as the model had them: load y, z [N], oil [K]; land eccentricity; forces of flanges [N]"),
-        _array(
-            "measured_temperatures",
-            "ring temperatures [K]: measured, as the model had them, and of the network without their correction",
-            of_heat=True,
-        ),
-        _array("roller_places", "(azimuth [rad], distance from the centre [m], rotation [rad]) x roller"),
-    )
-}
+RECORDED = _arrays(only_recorded=True)
 """Topics of recordings alone: with them and `OUTPUTS` a recording holds every observable of `bearing_sim.model.sample`."""
 
 

@@ -162,6 +162,8 @@ LATEST = 2**62
 """Time after all those of recordings [ns since the epoch], in the year 2116; with later ones, differences would not fit 64 bits."""
 FREE_EXPANSION = 64_000_000
 """Bytes to which the compressed parts of a recording may unpack however small it is."""
+PACKED_SUFFIXES = (".zstd", ".zst", ".lz4")
+"""Of files that are compressed as a whole."""
 _RENAMED_MEANWHILE = 5  # times that a folder is listed again while a recorder completes its parts
 QOS_TEXT = to_yaml(QOS)
 """The same as YAML, for the metadata of a channel."""
@@ -179,6 +181,25 @@ def mcap_files(path: str | Path) -> list[Path]:
     RecordingError
         There is no such recording, or it is in another format.
     """
+    files = recording_files(path)
+    if Path(path).is_file():
+        return files
+    if sqlite := [file.name for file in files if file.suffix == ".db3"]:
+        raise RecordingError(f"{path}: an SQLite bag ({', '.join(sqlite)}); expected MCAP. `view`, `info` and `replay` read it as it is")
+    unusable = [file.name for file in files if ".mcap" not in file.name or file.suffix in PACKED_SUFFIXES]
+    if unusable or not files:
+        raise RecordingError(f"{path}: expected uncompressed .mcap files, {'cannot use ' + ', '.join(unusable) if unusable else 'found none'}")
+    return files
+
+
+def recording_files(path: str | Path) -> list[Path]:
+    """Return the files of a recording in whatever format, in order: the file itself, or those of a bag's folder.
+
+    Raises
+    ------
+    RecordingError
+        There is no such recording, files that its metadata names are missing, or it has files of several formats.
+    """
     path = Path(path)
     if path.is_file():
         return [path]
@@ -189,27 +210,23 @@ def mcap_files(path: str | Path) -> list[Path]:
         if all(file.exists() for file in files if file.name.endswith(ACTIVE)):
             break
         files = _files_in(path)  # a recorder completed one, which then has another name
-    require_listed(path, files)
-    if sqlite := [file.name for file in files or path.glob("*.db3") if file.suffix == ".db3"]:
-        raise RecordingError(f"{path}: an SQLite bag ({', '.join(sqlite)}); expected MCAP. `view`, `info` and `replay` read it as it is")
-    unusable = [file.name for file in files if ".mcap" not in file.name or file.suffix == ".zstd"]
-    if unusable or not files:
-        raise RecordingError(f"{path}: expected uncompressed .mcap files, {'cannot use ' + ', '.join(unusable) if unusable else 'found none'}")
+    if missing := [file.name for file in files if not file.is_file()]:
+        raise RecordingError(f"{path}: {_what_is_missing(path, files, missing)}")
+    other = [file.name for file in files if ".db3" not in file.name]
+    if other and len(other) < len(files):
+        raise RecordingError(f"{path}: it has both SQLite and other files ({', '.join(other[:3])}); expected one kind")
     return files
 
 
-def require_listed(path: Path, files: Sequence[Path]) -> None:
-    """Raise `RecordingError` if files of a bag's folder are missing; the message says which are there instead."""
-    missing = [file.name for file in files if not file.is_file()]
-    if not missing:
-        return
+def _what_is_missing(path: Path, files: Sequence[Path], missing: Sequence[str]) -> str:
+    """Return which files of a bag's folder are missing, which are there instead, and what to do."""
     others = sorted(file for file in path.iterdir() if file.is_file() and file.name != "metadata.yaml" and file not in files)
     there = [file for file in files if file.is_file()] + others
     listed = f"metadata.yaml names {', '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not there"
     if not there:
-        raise RecordingError(f"{path}: {listed}, and there is no other file; the folder has lost its recording")
+        return f"{listed}, and there is no other file; the folder has lost its recording"
     found = f"there {'is' if len(there) == 1 else 'are'} {', '.join(file.name for file in there)}"
-    raise RecordingError(f"{path}: {listed}; {found}. Restore the name, or give the file itself: {there[0]}")
+    return f"{listed}; {found}. Restore the name, or give the file itself: {there[0]}"
 
 
 def listed_files(path: Path) -> list[Path] | None:
@@ -247,14 +264,22 @@ def folder_metadata(path: Path) -> dict | None:
 
 
 def _files_in(path: Path) -> list[Path]:
-    """Return the files of a bag's folder in order, those that its metadata lists first."""
-    files, named = sorted([*path.glob("*.mcap"), *path.glob(f"*.mcap{ACTIVE}")], key=by_number), listed_files(path)
+    """Return the files of a bag's folder in order, those that its metadata lists first; without metadata, of its formats only one."""
+    files, named = sorted(filter(Path.is_file, path.iterdir()), key=_by_number), listed_files(path)
     if named is not None:
         # A killed recorder leaves files that are unfinished or not listed yet; they come last.
-        files = named + [file for file in files if file.name.endswith(ACTIVE) or file.stem.startswith(f"{path.name}_") and file not in named]
-    return files
+        files = [file for file in files if file.name.endswith((".mcap", f".mcap{ACTIVE}")) and file not in named]
+        return named + [file for file in files if file.name.endswith(ACTIVE) or file.stem.startswith(f"{path.name}_")]
+    sqlite = [file for file in files if plain_name(file).endswith(".db3")]
+    plain = [file for file in sqlite if file.suffix == ".db3"]
+    return plain or sqlite or [file for file in files if plain_name(file).endswith((".mcap", f".mcap{ACTIVE}"))]
 
 
-def by_number(file: Path) -> tuple:
+def plain_name(file: Path) -> str:
+    """Return the name that a file has when it is not compressed."""
+    return file.stem if file.suffix in PACKED_SUFFIXES else file.name
+
+
+def _by_number(file: Path) -> tuple:
     """Return the key by which ``run_10.mcap`` comes after ``run_9.mcap``."""
     return tuple(int(part) if part.isdigit() else part for part in re.split(r"(\d+)", file.name))

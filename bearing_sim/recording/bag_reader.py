@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Messages of recordings of any origin: MCAP files, SQLite databases of rosbag2 and bags of ROS 1, also unfinished or damaged ones."""
 
+import io
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,7 +16,16 @@ from bearing_sim.files.limits import RECORDING_EXPANSION, RECORDING_RECORD, File
 from bearing_sim.files.reading import open_regular
 from bearing_sim.files.tally import Tally
 from bearing_sim.messages.definitions import DefinitionError, decoder, ros2_name
-from bearing_sim.recording.bag import FREE_EXPANSION, LATEST, RecordingError, by_number, folder_metadata, listed_files, mcap_files, require_listed
+from bearing_sim.recording.bag import (
+    FREE_EXPANSION,
+    LATEST,
+    PACKED_SUFFIXES,
+    RecordingError,
+    folder_metadata,
+    mcap_files,
+    plain_name,
+    recording_files,
+)
 from bearing_sim.recording.foreign_formats import EndsEarly, ForeignTopic, Item, ros1_items, sqlite_items
 from bearing_sim.recording.mcap_format import Message, own_topic
 from bearing_sim.recording.mcap_reader import McapReader
@@ -25,7 +35,6 @@ _PACKED = {b"\x28\xb5\x2f\xfd": "zstd", b"\x04\x22\x4d\x18": "lz4"}
 """By its first bytes, how a file or a message is compressed; a message in CDR begins with a zero, an MCAP file and a database with others."""
 _UNPACKED_BY = {b"\x1f\x8b": "gunzip -k", b"BZh": "bunzip2 -k", b"\xfd7zXZ": "unxz -k", b"PK\x03\x04": "unzip", b"7z\xbc\xaf": "7z x"}
 """Commands that unpack what is not unpacked here, by first bytes."""
-_SUFFIXES = (".zstd", ".zst", ".lz4")  # of files that are compressed as a whole
 _UNKNOWN = {".db3": "row that is no message", ".bag": "no such connection in the file", "": "no such channel in the file"}
 
 
@@ -67,16 +76,18 @@ class BagReader:
     """
 
     def __init__(self, path: str | Path):
-        self._path, self.tally = Path(path), Tally()
-        self._files = self._foreign_files()
-        self.is_foreign = bool(self._files)
+        path, self.tally = Path(path), Tally()
+        self._files = recording_files(path)
+        self.is_foreign = any(file.suffix in (".db3", ".bag", *PACKED_SUFFIXES) for file in self._files) or path.is_file() and _is_packed(path)
         if not self.is_foreign:
-            self._files = mcap_files(self._path)
+            self._files = mcap_files(path)
+        elif path.is_dir() and (folder_metadata(path) or {}).get("compression_format") not in (None, "", *_PACKED.values()):
+            raise RecordingError(f"{path}: compressed in a way that is not known; expected zstd or lz4, by file or by message")
 
     def __iter__(self) -> Iterator[BagTopic | tuple[BagTopic, int, bytes]]:
         self.tally = Tally()
         for file in self._files:
-            suffix = Path(_plain_name(file)).suffix
+            suffix = Path(plain_name(file)).suffix
             used, late, unknown, left = 0, 0, 0, _most_unpacked(file)
             kinds: dict[tuple[str, str, bytes], _Type] = {}  # thousands of types may be the same: each is parsed once
             found: dict[int, BagTopic] = {}
@@ -107,27 +118,6 @@ class BagReader:
             for count, reason in ((unknown, _UNKNOWN.get(suffix, _UNKNOWN[""])), (late, "time before 1970 or after 2116")):
                 if count:
                     self.tally.refuse(reason, count)
-
-    def _foreign_files(self) -> list[Path]:
-        """Return the files of a recording that is no MCAP, or compressed; none of one that is plain MCAP or that does not exist."""
-        if self._path.is_file():
-            return [self._path] if self._path.suffix in (".db3", ".bag", *_SUFFIXES) or _is_packed(self._path) else []
-        if not self._path.is_dir():
-            return []
-        files = listed_files(self._path)
-        if files is None:
-            files = sorted((file for file in self._path.iterdir() if _plain_name(file).endswith((".db3", ".mcap")) and file.is_file()), key=by_number)
-            files = [file for file in files if file.suffix == ".db3"] or [file for file in files if ".db3" in file.name] or files
-        is_sqlite = any(".db3" in file.name for file in files)
-        if not is_sqlite and not any(file.suffix in _SUFFIXES for file in files):
-            return []
-        require_listed(self._path, files)
-        if other := [file.name for file in files if is_sqlite and ".db3" not in file.name]:
-            raise RecordingError(f"{self._path}: it has both SQLite and other files ({', '.join(other[:3])}); expected one kind")
-        metadata = folder_metadata(self._path) or {}
-        if metadata.get("compression_format") not in (None, "", *_PACKED.values()):
-            raise RecordingError(f"{self._path}: compressed in a way that is not known; expected zstd or lz4, by file or by message")
-        return files
 
     def _note(self, text: str) -> None:
         if text not in self.tally.notes:
@@ -166,18 +156,11 @@ class BagReader:
             return
         self.tally.notes.append(f"{file.name}: compressed by {how}")
         with TemporaryDirectory(prefix="bearing_sim-") as folder:
-            target, left = Path(folder) / (_plain_name(file) or "bag"), _most_unpacked(file)
-            size, end = 0, ""
+            target = Path(folder) / (plain_name(file) or "bag")
             with open_regular(file) as packed, open(target, "wb") as stream:
-                try:
-                    for piece in _pieces(packed, how):
-                        size += stream.write(piece)
-                        if size > left:
-                            raise RecordingError(f"{file}: it unpacks to {RECORDING_EXPANSION.refusal()}")
-                except (zstandard.ZstdError, RuntimeError, EOFError) as error:  # lz4 raises RuntimeError
-                    end = f"it cannot be unpacked to its end: {error}"
-            if not size:
-                raise RecordingError(f"{file}: nothing of it can be unpacked, so it is cut short or damaged")
+                end = _unpack(packed, how, stream, _most_unpacked(file), f"{file}: it unpacks")
+                if not stream.tell():
+                    raise RecordingError(f"{file}: nothing of it can be unpacked, so it is cut short or damaged")
             try:
                 yield target
             except RecordingError as error:
@@ -186,9 +169,22 @@ class BagReader:
                 self._note_end(file, end)
 
 
-def _plain_name(file: Path) -> str:
-    """Return the name that a file has when it is not compressed."""
-    return file.stem if file.suffix in _SUFFIXES else file.name
+def _unpack(packed: BinaryIO, how: str, target: BinaryIO, most: int, what: str) -> str:
+    """Unpack a stream into another; return why it cannot be unpacked to its end, or ``""``.
+
+    Raises
+    ------
+    RecordingError
+        ``what`` unpacks to more than so many bytes.
+    """
+    try:
+        for piece in _pieces(packed, how):
+            target.write(piece)
+            if target.tell() > most:
+                raise RecordingError(f"{what} to {RECORDING_EXPANSION.refusal()}")
+    except (zstandard.ZstdError, RuntimeError, EOFError) as error:  # lz4 raises RuntimeError
+        return f"it cannot be unpacked to its end: {error}"
+    return ""
 
 
 def _pieces(packed: BinaryIO, how: str) -> Iterator[bytes]:
@@ -227,19 +223,9 @@ def _most_unpacked(file: Path) -> int:
 
 def _unpacked_message(file: Path, data: bytes, how: str, left: int) -> bytes:
     """Return a compressed message of at most ``left`` bytes; an empty one if it cannot be unpacked."""
-    most = min(left, RECORDING_RECORD.value)
-    try:
-        if how == "lz4":
-            unpacked = lz4.frame.LZ4FrameDecompressor().decompress(data, most + 1)
-            length = len(unpacked)
-        else:
-            length = zstandard.frame_content_size(data)
-            unpacked = zstandard.ZstdDecompressor().decompress(data, max_output_size=most if length < 0 else length) if length <= most else b""
-    except (zstandard.ZstdError, RuntimeError, EOFError):
-        return b""
-    if length > most:
-        raise RecordingError(f"{file}: its messages unpack to {RECORDING_EXPANSION.refusal()}")
-    return unpacked
+    target = io.BytesIO()
+    end = _unpack(io.BytesIO(data), how, target, min(left, RECORDING_RECORD.value), f"{file}: its messages unpack")
+    return b"" if end else target.getvalue()
 
 
 class _Type:

@@ -17,7 +17,7 @@ import lz4.frame
 import numpy as np
 import zstandard
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, Chunk, Footer, Header, Metadata, MetadataIndex, Schema, Statistics
+from mcap.records import Attachment, Channel, Chunk, Header, Metadata, MetadataIndex, Schema, Statistics
 
 from bearing_sim.files.limits import RECORDING_EXPANSION, RECORDING_RECORD, RECORDING_TEXTS, FileError
 from bearing_sim.files.reading import open_regular
@@ -39,7 +39,7 @@ from bearing_sim.recording.mcap_format import (
     packed,
     parsed,
 )
-from bearing_sim.recording.mcap_sections import Section, SectionReader, records_in
+from bearing_sim.recording.mcap_sections import Section, SectionReader, footer_of, records_in
 
 _HEAD = RECORD.size + 2  # [byte] of a message record that identify its kind: opcode, length, channel
 _LOG = RECORD.size + 6  # [byte] of a record before its log time
@@ -415,21 +415,20 @@ def _metadata(stream: BinaryIO, size: int, indexes: Iterable[MetadataIndex]) -> 
 
 def _summary(stream: BinaryIO, size: int) -> bytes:
     """Return the records of the summary, checked."""
-    tail = len(packed(Footer(0, 0, 0))) + len(MAGIC)
-    if size < tail + len(MAGIC):
-        raise DamagedRecord("it is too short")
-    stream.seek(size - tail)
-    end = stream.read(tail)
-    footer = parsed(end[0], end[RECORD.size : -len(MAGIC)]) if end.endswith(MAGIC) else None
-    if not isinstance(footer, Footer) or not 0 < footer.summary_start < size:
-        raise DamagedRecord("it has no footer")
+
+    def read(begin: int, end: int) -> bytes:
+        stream.seek(begin)
+        return stream.read(end - begin)
+
+    footer = footer_of(read, size)
+    if footer is None or footer.summary_start == 0:
+        raise DamagedRecord("it has no summary")
     if size - footer.summary_start > RECORDING_RECORD.value:
         raise DamagedRecord("its summary exceeds the limit")
-    stream.seek(footer.summary_start)
-    summary = stream.read(size - tail - footer.summary_start)
-    if footer.summary_crc not in (0, zlib.crc32(end[: -len(MAGIC) - 4], zlib.crc32(summary))):
+    checked = read(footer.summary_start, size - len(MAGIC) - 4)  # up to the checksum in the footer
+    if footer.summary_crc not in (0, zlib.crc32(checked)):
         raise DamagedRecord("the checksum of the summary is wrong")
-    return summary
+    return checked[: 4 - len(packed(footer))]
 
 
 def _log_times(stream: BinaryIO, size: int, places: Iterable[int], channels: set[int]) -> np.ndarray:

@@ -1,7 +1,6 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Recover an MCAP file whose writer was killed, and report what an MCAP file contains and whether it is whole."""
 
-import math
 import re
 from collections import Counter
 from collections.abc import Callable
@@ -66,6 +65,15 @@ class Contents:
     covers_all: bool = False
     undecodable: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    _newest: dict[str, int] = field(default_factory=dict, repr=False)  # by topic, its highest log time so far
+
+    def count(self, topic: str, log_ns: int) -> None:
+        """Count a message of a topic."""
+        newest = self._newest.get(topic, log_ns)
+        self.out_of_order += log_ns < newest
+        self._newest[topic] = max(log_ns, newest)
+        self.first_ns, self.last_ns = min(self.first_ns, log_ns) if self.messages else log_ns, max(self.last_ns, log_ns)
+        self.messages[topic] += 1
 
     @property
     def is_sound(self) -> bool:
@@ -127,25 +135,21 @@ def foreign_contents(path: str | Path) -> Contents | None:
         return None
     files = [path] if path.is_file() else [file for file in path.iterdir() if file.is_file()]
     found = Contents(path, sum(file.stat().st_size for file in files), has_checksums=False, library="another program (SQLite or ROS 1)")
-    first, last, untried = math.inf, -math.inf, set()
+    untried = set()
     try:
         for item in bag:
             if isinstance(item, BagTopic):
                 found.types[item.name] = item.ros_type
                 untried.add(item.name)
                 continue
-            topic, log_ns, _ = item
             _try(found, untried, *item)
-            found.messages[topic.name] += 1
-            first, last = min(first, log_ns), max(last, log_ns)
+            found.count(item[0].name, item[1])
         found.is_finished, found.ends = bag.tally.is_whole, bag.tally.text if not bag.tally.is_whole else ""
         found.notes = bag.tally.notes
     except RecordingError as error:
         if not found.types:
             raise
         found.ends = str(error)
-    if found.messages:
-        found.first_ns, found.last_ns = int(first), int(last)
     return found
 
 
@@ -220,19 +224,14 @@ class _Copy:
 def _walk(reader: McapReader, progress: Callable[[float], None], take: Callable) -> Contents:
     """Hand every record that can be read and understood to ``take``; return what there is."""
     found = Contents(reader.path, reader.size)
-    newest: dict[int, int] = {}
-    orphans, first, last = 0, math.inf, 0
+    orphans = 0
     for record in reader:
         if isinstance(record, Message):
-            topic, latest = reader.topics.get(record.channel_id), newest.get(record.channel_id, 0)
+            topic = reader.topics.get(record.channel_id)
             if topic is None:  # its channel was described in a damaged chunk
                 orphans += 1
                 continue
-            found.messages[topic] += 1
-            found.out_of_order += record.log_time < latest
-            newest[record.channel_id] = max(latest, record.log_time)
-            first = min(first, record.log_time)
-            last = max(last, record.log_time)
+            found.count(topic, record.log_time)
         elif isinstance(record, Header):
             found.profile, found.library = record.profile, record.library
         elif isinstance(record, Channel):
@@ -244,7 +243,6 @@ def _walk(reader: McapReader, progress: Callable[[float], None], take: Callable)
             found.attachments += 1
         take(record)
         progress(reader.read / max(reader.size, 1))
-    found.first_ns, found.last_ns = (int(first), last) if found.messages else (0, 0)
     found.damaged, found.damage = reader.damaged + orphans, list(reader.damage)
     if orphans:
         found.damage.append(f"{orphans} messages whose channels were described in what is damaged")

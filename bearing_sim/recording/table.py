@@ -6,7 +6,7 @@ Columns are named after the observables of `bearing_sim.model.sample`, those of 
 ``shaft_speed [rad/s]``.  Besides ``time`` there is ``stamp``, the wall time.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -46,8 +46,8 @@ class TableError(ValueError):
     """An excerpt that names an unknown observable, or a time span without samples."""
 
 
-def write_csv(recording: Recording, path: Path, excerpt: Excerpt, progress: Callable[[float], None]) -> int:
-    """Write a recording as CSV and return the number of rows.
+def write_table(recording: Recording, path: Path, excerpt: Excerpt, progress: Callable[[float], None], kind: str) -> int:
+    """Write a recording as a table and return the number of rows.
 
     Parameters
     ----------
@@ -55,37 +55,30 @@ def write_csv(recording: Recording, path: Path, excerpt: Excerpt, progress: Call
     path : the file; replaced if it exists.
     excerpt : the part to write.
     progress : called repeatedly with the time reached [s].
+    kind : ``csv`` or ``parquet``; the latter has the scene in the file's metadata.
 
     Raises
     ------
     TableError
         The excerpt names an unknown observable, or contains no sample.
     """
-    schema = _schema(recording, excerpt, units_in_names=True)
-    with pa.OSFile(str(path), "wb") as stream, pa.csv.CSVWriter(stream, schema) as writer:
-        return _write(recording, excerpt, schema, writer.write_table, progress)
-
-
-def write_parquet(recording: Recording, path: Path, excerpt: Excerpt, progress: Callable[[float], None]) -> int:
-    """Write a recording as Parquet and return the number of rows; see `write_csv`.  The scene is in the file's metadata."""
-    schema = _schema(recording, excerpt, units_in_names=False)
-    kept = {name: text for name, text in recording.metadata.items() if text}
-    with pa.parquet.ParquetWriter(str(path), schema.with_metadata(kept), compression="zstd") as writer:
-        return _write(recording, excerpt, schema, writer.write_table, progress)
-
-
-def _write(recording: Recording, excerpt: Excerpt, schema: pa.Schema, write: Callable, progress: Callable[[float], None]) -> int:
-    rows, seen = 0, 0
-    for block in recording:
-        if not isinstance(block, np.ndarray):
-            continue
-        kept = block[-seen % excerpt.every :: excerpt.every]
-        seen += len(block)
-        kept = kept[(kept["time"] >= excerpt.first) & (kept["time"] <= excerpt.last)]
-        if len(kept):
-            write(pa.Table.from_arrays(list(_arrays(recording, kept, excerpt)), schema=schema))
-            rows += len(kept)
-        progress(float(block["time"][-1]) - recording.first_time)
+    schema, rows, seen = _schema(recording, excerpt, units_in_names=kind == "csv"), 0, 0
+    if kind == "csv":
+        writer = pa.csv.CSVWriter(str(path), schema)
+    else:
+        metadata = {name: text for name, text in recording.metadata.items() if text}
+        writer = pa.parquet.ParquetWriter(str(path), schema.with_metadata(metadata), compression="zstd")
+    with writer:
+        for block in recording:
+            if not isinstance(block, np.ndarray):
+                continue
+            kept = block[-seen % excerpt.every :: excerpt.every]
+            seen += len(block)
+            kept = kept[(kept["time"] >= excerpt.first) & (kept["time"] <= excerpt.last)]
+            if len(kept):
+                writer.write_table(pa.Table.from_arrays(list(_arrays(recording, kept, excerpt)), schema=schema))
+                rows += len(kept)
+            progress(float(block["time"][-1]) - recording.first_time)
     if not rows:
         raise TableError(
             f"{recording.path}: no sample between {excerpt.first:g} and {excerpt.last:g} s; there are some from "
@@ -112,11 +105,8 @@ def _schema(recording: Recording, excerpt: Excerpt, units_in_names: bool) -> pa.
 
     fields = []
     for observable in _observables(excerpt):
-        if observable.per_roller:
-            names: Sequence[str] = [f"{observable.name}_{roller:0{digits}}" for roller in range(recording.scene.bearing.roller.count)]
-        else:
-            names = [observable.name]
-        fields += [field(name, observable.unit, observable.meaning) for name in names]
+        rollers = [f"_{roller:0{digits}}" for roller in range(recording.scene.bearing.roller.count)] if observable.per_roller else [""]
+        fields += [field(f"{observable.name}{roller}", observable.unit, observable.meaning) for roller in rollers]
     stamp = pa.field("stamp", pa.timestamp("ns", tz="UTC"), metadata={"unit": "ns", "meaning": "wall time of the sample"})
     return pa.schema([fields[0], stamp, *fields[1:]])
 

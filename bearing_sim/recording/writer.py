@@ -21,7 +21,7 @@ from bearing_sim.messages import diagnostics, topics
 from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, Received, ReceivedInputs, Record, Report, Start
-from bearing_sim.messages.sample_messages import BandMessages, InputMessages
+from bearing_sim.messages.sample_messages import FilledMessages
 from bearing_sim.recording.append_file import AppendFile, set_aside
 from bearing_sim.recording.bag import ACTIVE, QOS_TEXT, UNLIMITED, Limits, Part, TopicCount, bag_metadata, write_bag_metadata
 from bearing_sim.recording.mcap_format import OWN_TOPIC, Message
@@ -478,7 +478,7 @@ class McapSink(AbstractContextManager):
         recorded = topics.recorded(scene).values()
         self._topics = [[topic for topic in recorded if topic.repeats == repeats] for repeats in (False, True)]
         self._lay_out(scene.bearing.roller.count)
-        self._band_messages, self._input_messages = BandMessages(frame), InputMessages()
+        self._messages = FilledMessages()
         self._last_period = -1  # of `REPEATING_RATE`, in which a sample was written with its repeating topics
         origin = {"package_version": package_version(), "git_hash": git_hash()}
         packages = {f"version_{name}": version for name, version in versions().items()}
@@ -518,7 +518,7 @@ class McapSink(AbstractContextManager):
                 self._write_input(topics.MEASUREMENTS[topics.MEASURED_CLEARANCE], time, (clearance, standard_error), origin)
             case Bands():
                 times_ns = [self._time_ns(time) for time in record.times.tolist()]
-                for time_ns, message in zip(times_ns, self._band_messages.each(record, times_ns)):
+                for time_ns, message in zip(times_ns, self._messages.of_bands(record, times_ns, self._frame)):
                     self._put(topics.ESTIMATED[record.topic], time_ns, message)
             case Received(topic, ros_type, log_ns, publish_ns, data):
                 self._files.current.write_cdr(topic, ros_type, log_ns, data, publish_ns)
@@ -547,7 +547,7 @@ class McapSink(AbstractContextManager):
     def _write_input(self, topic: topics.Topic, time: float, source, origin: topics.Origin | None) -> None:
         received_ns = self._time_ns(time)
         sent_ns = received_ns if origin is None or origin.stamp_ns is None else origin.stamp_ns
-        self._put(topic, received_ns, self._input_messages.serialized(topic, sent_ns, source, None if origin is None else origin.frame_id))
+        self._put(topic, received_ns, self._messages.serialized(topic, sent_ns, source, None if origin is None else origin.frame_id))
 
     def _write_diagnostics(self, message: Callable[..., dict], time: float, *contents) -> None:
         (name, ros_type), time_ns = topics.DIAGNOSTICS, self._time_ns(time)

@@ -27,7 +27,7 @@ from bearing_sim.inputs.gate import REQUIRED, Sources
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.sample_messages import BandMessages, SampleMessages, message_templates
+from bearing_sim.messages.sample_messages import FilledMessages, SampleMessages, message_templates
 from bearing_sim.messages.topics import Topic
 from bearing_sim.ros.messages import InputReader, Refused, message, message_class
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, follows_clock, scene_values_in
@@ -168,7 +168,7 @@ class Outputs:
         self._residual_topic = topics.MEASUREMENTS["cage_slip_residual"]
         self._residual = self._publisher(self._residual_topic)
         self._estimates = {topic.name: self._publisher(topic) for topic in topics.estimated(scene).values()}
-        self._band_messages = BandMessages(frame)
+        self._band_messages = FilledMessages()
         self._subscribed: tuple[SampleMessages | None, list[tuple[memoryview, Callable[[bytes], None]]]] = (None, [])
 
     def prepare(self) -> None:
@@ -212,7 +212,7 @@ class Outputs:
         """Publish quantities with their bands, a message for each stamp [ns since the epoch]."""
         publisher = self._estimates[bands.topic]
         if publisher.get_subscription_count():
-            for serialised in self._band_messages.each(bands, stamps_ns):
+            for serialised in self._band_messages.of_bands(bands, stamps_ns, self._frame):
                 publisher.publish(serialised)
 
     @property

@@ -17,8 +17,7 @@ from typing import NamedTuple
 
 from bearing_sim.files.limits import BEARINGS_ROWS
 from bearing_sim.inputs.csv_import import Mapping, input_log, mapping_from_yaml, read_table
-from bearing_sim.inputs.csv_text import DELIMITERS, TableError, encoding_of, find_header, first_lines, lines_of, opened_text, records, within
-from bearing_sim.inputs.csv_text import Layout as TextLayout
+from bearing_sim.inputs.csv_text import DELIMITERS, TableError, encoding_of, find_header, first_look, records, table_lines
 from bearing_sim.inputs.log import InputLog, Source, read_input_log
 from bearing_sim.inputs.parquet_table import checksum, files_of, is_parquet, rows_of, values_of
 from bearing_sim.messages import topics
@@ -26,7 +25,7 @@ from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean, sho
 from bearing_sim.scene.loader import load_scene, read_named
 from bearing_sim.scene.scene import Scene
 
-_TEXTS = (".csv", ".tsv", ".txt")
+_TEXTS = (".csv", ".tsv", ".txt", ".xlsx")
 _RECORDINGS = (".mcap", ".db3", ".bag")
 _HEADINGS = ("log", "serial", "scene", "mapping")
 _OF_MAPPING = "mapping."
@@ -152,10 +151,10 @@ def is_text(path: Path) -> bool:
 def _machines(path: Path, by: str) -> list[str]:
     if is_parquet(path):
         return values_of(path, by)
-    layout = TextLayout(encoding_of(path))
-    find_header(path, first_lines(path, layout.encoding), [("--by", by)], None, layout)
+    layout = first_look(path)
+    find_header(layout, [("--by", by)])
     column = layout.names.index(by)
-    return sorted({cells[column].strip() for _, cells in records(path, layout) if column < len(cells)} - {""})
+    return sorted({cells[column].strip() for _, cells in records(layout) if column < len(cells)} - {""})
 
 
 def read_log(log: Log, reading: Reading) -> InputLog:
@@ -299,14 +298,13 @@ def read_bearings(path: Path) -> list[dict[str, str]]:
 
 def _text_rows(path: Path) -> list[dict[str, str]]:
     try:
-        with opened_text(path, encoding_of(path)) as file:
-            first = next(lines_of(file, path), "")
-            delimiter = max(DELIMITERS, key=first.count)
-            rows = csv.reader(chain([first], lines_of(file, path)), delimiter=delimiter)
-            lines = [line for line in islice(rows, BEARINGS_ROWS.value + 2) if any(cell.strip() for cell in line)]
+        text = table_lines(path, encoding_of(path))
+        first = next(text, "")
+        rows = csv.reader(chain([first], text), delimiter=max(DELIMITERS, key=first.count))
+        lines = [line for line in islice(rows, BEARINGS_ROWS.value + 2) if any(cell.strip() for cell in line)]
     except (csv.Error, UnicodeDecodeError) as error:
         raise TableError(f"{path}: cannot be read as a table: {error}") from None
-    within(BEARINGS_ROWS, len(lines) - 1, path)
+    BEARINGS_ROWS.check(len(lines) - 1, str(path))
     if len(lines) < 2:
         raise TableError(f"{path}: expected a heading and a line for each bearing")
     names = [name.strip() for name in lines[0]]

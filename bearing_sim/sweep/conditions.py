@@ -178,20 +178,20 @@ def read_spectrum(path: Path) -> Spectrum:
         The file cannot be read, or is too long; a column is missing or unknown, a value is not the quantity expected, or there are no points.
     """
     from bearing_sim.inputs.csv_guess import ROLES, Role, headed_columns  # takes a while
-    from bearing_sim.inputs.csv_text import TableError, encoding_of, first_lines, is_unit_of, records
+    from bearing_sim.inputs.csv_text import first_look, is_unit_of, records
 
     roles = (Role("axial_load", "N", _AXIAL, r"clearance|spiel"), *(role for role in ROLES if role.field in _KNOWN), Role("weight", "", _WEIGHT))
     try:
-        encoding = encoding_of(path)
+        lines = first_look(path).lines
         POINTS_FILE.check(path.stat().st_size, str(path))
-        if not any(line.strip() for line in first_lines(path, encoding)[1:]):
+        if not any(line.strip() for line in lines[1:]):
             raise PointError(f"{path}: no operating points; expected a heading of {', '.join(_REQUIRED)} and a line for each point")
         layout, columns = headed_columns(path, _KNOWN, roles)
-        rows = [(number, cells) for number, cells in records(path, layout) if any(cell.strip() for cell in cells)]
+        rows = [(number, cells) for number, cells in records(layout) if any(cell.strip() for cell in cells)]
         POINTS_ROWS.check(len(rows), str(path))
     except LimitError as error:
         raise PointError(f"{error}; {_OVER_TIME}") from None
-    except (FileError, TableError) as error:
+    except FileError as error:
         raise PointError(str(error)) from None
     names = [name for name, _ in columns]
     for name, heading in zip(names, layout.names):
