@@ -5,7 +5,6 @@ import json
 
 import numpy as np
 import pytest
-from bearing_sim.studies.misalignment import misalign
 from click.testing import CliRunner
 from misalignment import misaligned_rings
 from misalignment.__main__ import misalignment
