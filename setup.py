@@ -48,7 +48,7 @@ setup(
             "physics/limits.toml",
             "ros/dds/*.xml",
             "ros/profiles/*.yaml",
-            "studies/*.csv",
+            "sweep/*.csv",
         ],
     },
     data_files=[

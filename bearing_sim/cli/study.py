@@ -229,11 +229,13 @@ def extremes(scene_name, overrides, samples, seed, journal, workers):
     cages, narrow and wide pockets and lands, under steady inputs, starts, stops, reversals, steps and ripples. Every variant runs for at
     least 50 turns of its cage, or until it settles; then its books of energy are checked. Exit code 1 if any run fails.
     """
-    from bearing_sim.studies.extremes import counts, draw, run_extremes, table_rows
+    from bearing_sim.studies.extremes import counts, draw, run_extremes, table_rows, variants
+    from bearing_sim.sweep.tasks import Execution, Journal
 
     announce_compilation()
-    with Points("variants", samples) as points:
-        outcomes = run_extremes(scene_name, overrides, samples, seed, journal and journal.path, workers, points.update)
+    cases = variants(scene_name, overrides, samples, seed)
+    with Points("variants", samples) as points, Journal(journal and journal.path) as kept:
+        outcomes = run_extremes(cases, Execution(kept, workers, progress=points.update))
     found, title = counts(outcomes), f"{scene_name}: {samples} variants at its extremes"
     others = [one for one in outcomes if one.status != "finished"]
     worst = max((one for one in outcomes if math.isfinite(one.books)), key=lambda one: abs(one.books), default=None)

@@ -35,6 +35,7 @@ _SOURCES = (
     "scene/*.py",
     "model/*.py",
     "levels/steady/*.py",
+    "sweep/*.csv",
     "sweep/point.py",
     "sweep/settling.py",
     "sweep/conditions.py",
@@ -256,6 +257,30 @@ def run_tasks(
             lost[task.key] = result
         progress(done, len(pending))
     return [lost[task.key] if task.key in lost else journal[task.key] for task in tasks]
+
+
+class Execution(NamedTuple):
+    """How the tasks of a study are computed.
+
+    Attributes
+    ----------
+    journal : with finished results, which are not computed again; None keeps results in memory.
+    workers, dask : see `run_tasks`.
+    progress : called with the number of finished points and of all that are not in the journal.
+    """
+
+    journal: Journal | None = None
+    workers: int | None = None
+    dask: str | None = None
+    progress: Progress = in_silence
+
+    def run(self, tasks: Sequence[Task]) -> list[dict]:
+        """Return the results of tasks, see `run_tasks`."""
+        return run_tasks(tasks, Journal() if self.journal is None else self.journal, self.workers, self.dask, self.progress)
+
+
+IN_MEMORY = Execution()
+"""Tasks on all cores of this machine, results in memory."""
 
 
 def _computed(tasks, workers, dask) -> Iterator[tuple[Task, dict, bool]]:
