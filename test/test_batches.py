@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from bearing_sim.studies import batches
+from bearing_sim.sweep import tasks as sweep_tasks
 from bearing_sim.sweep.tasks import Execution, Journal
 
 
@@ -29,9 +30,9 @@ def test_answers_stand_in_the_order_of_the_points_and_progress_counts_points(siz
 
 
 def test_only_the_points_of_a_lost_worker_have_no_answer(monkeypatch):
-    computed = batches.run_tasks
+    computed = sweep_tasks.run_tasks
     lost = {"status": "failed", "reason": "the worker died"}
-    monkeypatch.setattr(batches, "run_tasks", lambda *arguments: [lost if k == 1 else each for k, each in enumerate(computed(*arguments))])
+    monkeypatch.setattr(sweep_tasks, "run_tasks", lambda *arguments: [lost if k == 1 else each for k, each in enumerate(computed(*arguments))])
     found = batches.answers_at(POINTS, sums, (1.0,), NOTHING, "sums", 3, Execution(workers=1))
     assert np.isnan(found["sum"]).tolist() == [False] * 3 + [True] * 3 + [False]
     assert found["at_once"].tolist() == [3, 3, 3, -1, -1, -1, 1]

@@ -111,13 +111,13 @@ def run_up(scene: Scene, supply: str, load: float, celsius: float, seconds: floa
     return RunUp(supply, load, celsius, seconds, outcome.slip)
 
 
-def run_ups(scene: Scene, found: SkidMap, seconds: Sequence[float] = RUN_UPS) -> list[RunUp]:
+def run_ups(scene: Scene, found: SkidMap) -> list[RunUp]:
     """Return what run-ups lead to at the points of a map where the way in decides: those with two states, at most one for each supply."""
     first = {point.supply: point for point in found.points if point.skid - point.rolling > SKID}
-    return [run_up(scene, *point[:3], each) for point in first.values() for each in seconds]
+    return [run_up(scene, *point[:3], each) for point in first.values() for each in RUN_UPS]
 
 
-def draw_map(found: SkidMap, path: Path, title: str, before: SkidMap | None = None) -> None:
+def draw_map(found: SkidMap, path: Path, title: str) -> None:
     """Draw slip over load by temperature, a column for each supply, and the skid load over temperature below.
 
     Parameters
@@ -125,22 +125,20 @@ def draw_map(found: SkidMap, path: Path, title: str, before: SkidMap | None = No
     found : the map.
     path : of the picture.
     title : above it.
-    before : another map to be drawn in thin lines beside it.
     """
     supplies = list(dict.fromkeys(point.supply for point in found.points))
     figure = new_figure(4.3 * len(supplies), 7.0)
     axes = figure.subplots(2, len(supplies), squeeze=False, sharey="row")
-    shades, drawn = _shades(found), [(found, 1.8)] if before is None else [(before, 0.8), (found, 1.8)]
+    shades = _shades(found)
     for supply, (above, below) in zip(supplies, axes.T):
-        for (celsius, shade), (one, width) in itertools.product(shades.items(), drawn):
-            points = [point for point in one.points if (point.supply, point.celsius) == (supply, celsius)]
-            loads, look = [point.load / 1e3 for point in points], {"color": shade, "lw": width}
-            own = {"marker": ".", "label": f"{celsius:g} °C" if supply == supplies[0] else None} if one is found else {}
-            above.plot(loads, [100 * point.skid for point in points], **look, **own)
+        for celsius, shade in shades.items():
+            points = [point for point in found.points if (point.supply, point.celsius) == (supply, celsius)]
+            loads, look = [point.load / 1e3 for point in points], {"color": shade, "lw": 1.8}
+            label = f"{celsius:g} °C" if supply == supplies[0] else None
+            above.plot(loads, [100 * point.skid for point in points], marker=".", label=label, **look)
             above.plot(loads, [100 * point.rolling for point in points], ls=":", **look)
-        for one, width in drawn:
-            line = sorted((each.celsius, each.load / 1e3) for each in one.skid_loads if each.supply == supply)
-            below.plot(*zip(*line), "k.-", lw=width)
+        line = sorted((each.celsius, each.load / 1e3) for each in found.skid_loads if each.supply == supply)
+        below.plot(*zip(*line), "k.-", lw=1.8)
         for axis, along in ((above, above.axvline), (below, below.axhline)):
             along(found.minimum_load / 1e3, color="0.6", ls="--", lw=1.0)
             axis.grid(alpha=0.3)

@@ -361,7 +361,7 @@ def design(
         "verify_level": verify_level,
         "life": life_name(scene),
         "wanted": {"slip_below": limits.slip_below, "life_above": limits.life_above} | limits.conditions.as_json(),
-        "axes": [{"field": each.field.path, "unit": each.field.unit, "values": each.shown} for each in (radii, d_values)],
+        "axes": [radii.about, d_values.about],
         "duration": duration,
         "version": package_version(),
         "commit": git_hash(),

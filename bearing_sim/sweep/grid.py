@@ -8,6 +8,7 @@ import re
 import types
 import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Protocol
 
@@ -135,6 +136,11 @@ class Axis(NamedTuple):
     def shown(self) -> list:
         """The values in the display unit."""
         return [self.field.shown(value) for value in self.values]
+
+    @property
+    def about(self) -> dict:
+        """The axis as a table describes it."""
+        return {"field": self.field.path, "unit": self.field.unit, "values": self.shown}
 
     def override(self, value: float | int | str) -> str:
         """Return the override that sets the field to a value (see `bearing_sim.scene.loader.load_scene`)."""
@@ -326,9 +332,7 @@ def run_sweep(
     varied, points = read_varied(axes)
     changed = [*override_texts(overrides), *([f"level={level}"] if level else [])]
     plan = plan_sweep(scene, changed, varied, positive_seconds("duration", duration), points=points)
-    if isinstance(journal, Journal):
-        return plan.table(run_tasks(plan.tasks, journal, workers, dask, progress))
-    with Journal(None if journal is None else Path(journal)) as kept:
+    with nullcontext(journal) if isinstance(journal, Journal) else Journal(None if journal is None else Path(journal)) as kept:
         return plan.table(run_tasks(plan.tasks, kept, workers, dask, progress))
 
 
@@ -376,7 +380,7 @@ class Plan(NamedTuple):
             "scene": self.name,
             "overrides": list(self.overrides),
             "level": scene.level if all(axis.field.path != "level" for axis in self.axes) else "varied",
-            "axes" if self.is_grid else "varied": [{"field": each.field.path, "unit": each.field.unit, "values": each.shown} for each in self.axes],
+            "axes" if self.is_grid else "varied": [each.about for each in self.axes],
             "duration": self.duration,
             "version": package_version(),
             "commit": git_hash(),
