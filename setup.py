@@ -48,7 +48,7 @@ setup(
             "physics/limits.toml",
             "ros/dds/*.xml",
             "ros/profiles/*.yaml",
-            "sweep/*.csv",
+            "studies/*.csv",
         ],
     },
     data_files=[

@@ -23,9 +23,10 @@ from bearing_sim.model.thermal_network import POWERS
 from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, hours
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+from bearing_sim.studies.columns import columns_of
 from bearing_sim.studies.sheet import CLEARANCES
 from bearing_sim.sweep.pictures import as_shown, draw_map, new_figure, no_result_patch, on_grid, plain_numbers, save, set_limits, with_gaps
-from bearing_sim.sweep.point import FAILED, OK, columns_of
+from bearing_sim.sweep.point import FAILED, OK
 from bearing_sim.sweep.table import Table
 
 NO_EQUILIBRIUM = "no_equilibrium"

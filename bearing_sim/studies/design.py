@@ -23,11 +23,12 @@ from bearing_sim.scene.display import hours, number
 from bearing_sim.scene.loader import SceneError, load_scene, scene_to_yaml
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import with_values
+from bearing_sim.studies.columns import columns_of
 from bearing_sim.studies.sheet import loads_text
 from bearing_sim.sweep.conditions import Conditions, OperatingPoint, PointError, combined_life, scene_at_point
 from bearing_sim.sweep.grid import Axis, axis, one_line, scene_at
 from bearing_sim.sweep.pictures import legend_below, new_figure, on_grid, plain_numbers, save, with_gaps
-from bearing_sim.sweep.point import OK, REFUSED, UNSETTLED, columns_of, point_row
+from bearing_sim.sweep.point import OK, REFUSED, UNSETTLED, point_row
 from bearing_sim.sweep.table import Table, read_table, write_table
 from bearing_sim.sweep.tasks import IN_MEMORY, Execution, Task, task
 

@@ -31,8 +31,9 @@ from bearing_sim.runtime.replay import Replay, replay
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation
+from bearing_sim.studies.columns import TABLES, columns_of
 from bearing_sim.studies.fleet_logs import Bearing, Log, read_log
-from bearing_sim.sweep.point import FAILED, OK, REFUSED, TABLES, columns_of
+from bearing_sim.sweep.point import FAILED, OK, REFUSED
 from bearing_sim.sweep.table import Table
 from bearing_sim.sweep.tasks import IN_MEMORY, UNAVAILABLE, Execution, Task, program_hash, task
 from bearing_sim.watchers.estimation.response import ResponseModel, response_digest

@@ -22,10 +22,11 @@ from bearing_sim.model.turning import REST
 from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, hours, number
 from bearing_sim.scene.loader import scene_to_yaml
 from bearing_sim.scene.scene import Scene
+from bearing_sim.studies.columns import columns_of
 from bearing_sim.studies.design import life_name
 from bearing_sim.sweep.conditions import OperatingPoint, PointError, Spectrum, combined_life, scene_at_point, shares
 from bearing_sim.sweep.pictures import COLOURS, new_figure, save
-from bearing_sim.sweep.point import DURATION, LIVES, OK, OTHER_STATE, REFUSED, RESULTS, TEXTS, UNSETTLED, columns_of, empty_row, point_row
+from bearing_sim.sweep.point import DURATION, LIVES, OK, OTHER_STATE, REFUSED, RESULTS, TEXTS, UNSETTLED, empty_row, point_row
 from bearing_sim.sweep.table import Table
 from bearing_sim.sweep.tasks import IN_MEMORY, Execution, task
 

@@ -7,7 +7,7 @@ import math
 import re
 import types
 import typing
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Protocol
@@ -23,7 +23,7 @@ from bearing_sim.scene.scene import OPERATING_POINT, Scene
 from bearing_sim.simulation import positive_seconds
 from bearing_sim.sweep.point import DURATION, OTHER_STATE, REFUSED, RESULTS, TEXTS, Column, empty_row, point_row
 from bearing_sim.sweep.table import Table
-from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
+from bearing_sim.sweep.tasks import Journal, Progress, Task, in_silence, run_tasks, task
 
 _TYPES = {int: "a whole number", bool: "true or false", str: "a word"}
 
@@ -297,7 +297,7 @@ def run_sweep(
     journal: Journal | str | Path | None = None,
     workers: int | None = None,
     dask: str | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Progress = in_silence,
 ) -> Table:
     """Run a scene at every combination of values, or at every point of a list, on all cores, until each point has settled.
 
@@ -361,8 +361,7 @@ class Plan(NamedTuple):
     @property
     def tasks(self) -> list[Task]:
         """One task for each valid point."""
-        limits = (self.duration,) if self.longest is None else (self.duration, self.longest)
-        return [task(scene.level, point_row, scene, *limits) for scene in self.scenes if isinstance(scene, Scene)]
+        return [task(scene.level, point_row, scene, self.duration, self.longest) for scene in self.scenes if isinstance(scene, Scene)]
 
     def table(self, results: Iterable[dict]) -> Table:
         """Return the table of all points from the results of `tasks`."""

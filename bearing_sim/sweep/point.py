@@ -1,10 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """One point of a sweep: a scene run until it has settled, and its row in the table."""
 
-import csv
 import math
-from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -39,16 +36,6 @@ class Column(NamedTuple):
     def si_unit(self) -> str:
         """The unit in which Python has the value: SI, hours for a life."""
         return self.unit if self.factor == 1.0 else _SI_UNITS[self.unit]
-
-
-with open(Path(__file__).with_name("columns.csv"), encoding="utf-8", newline="") as _file:
-    TABLES: Sequence[Mapping[str, str]] = list(csv.DictReader(_file))
-"""The columns of all tables but a sweep's: ``table``, ``name``, ``unit``, ``kind`` and ``meaning`` of each."""
-
-
-def columns_of(table: str) -> tuple[Column, ...]:
-    """Return the columns of a table of `TABLES`."""
-    return tuple(Column(each["name"], each["unit"], each["meaning"]) for each in TABLES if each["table"] == table)
 
 
 LIVES = tuple(each.name for each in OBSERVABLES if each.unit == "h")

@@ -35,7 +35,6 @@ _SOURCES = (
     "scene/*.py",
     "model/*.py",
     "levels/steady/*.py",
-    "sweep/*.csv",
     "sweep/point.py",
     "sweep/settling.py",
     "sweep/conditions.py",
