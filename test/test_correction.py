@@ -182,7 +182,7 @@ def test_more_points_are_measured_as_long_as_they_help(errors, points, monkeypat
         measured.append(len(conditions))
         return SimpleNamespace(**dict(zip(("slip_error", "life_error"), next(found))))
 
-    monkeypatch.setattr("bearing_sim.studies.batches.run_tasks", lambda tasks, *_: [{"status": "failed"}] * len(tasks))
+    monkeypatch.setattr("bearing_sim.sweep.tasks.run_tasks", lambda tasks, *_: [{"status": "failed"}] * len(tasks))
     monkeypatch.setattr(studied, "_fitted", fitted)
     monkeypatch.setattr(studied, "_doubtful", lambda _, count, seed: np.zeros((count, 4)))
     studied._measured(scene, correction_domain(scene), tmp_path / "points.journal", 1, lambda done, total: None, studied.MOST_POINTS)

@@ -25,11 +25,10 @@ from bearing_sim.scene.display import force, number
 def cold_oil(scene_name, overrides, supplies, temperatures, loads, picture):
     """Map the slip of SCENE over load and oil temperature, from ideal rolling and from a skid, by supply of oil.
 
-    Says below which load a skid lasts, whether that load and a skid grow as the oil cools and fall as the load grows, as is published of gearboxes,
-    and where a skid depends on how fast the shaft runs up. All parts are as warm as the oil.
+    Says below which load a skid lasts, and where a skid depends on how fast the shaft runs up. All parts are as warm as the oil.
     """
     from bearing_sim.simulation import IntegrationError
-    from bearing_sim.studies.cold_oil import SUPPLIES, TEMPERATURES, draw_map, run_ups, skid_map, trends
+    from bearing_sim.studies.cold_oil import SUPPLIES, TEMPERATURES, draw_map, run_ups, skid_map
 
     scene = scene_of(scene_name, overrides)
     if not scene.operating.shaft_speed:
@@ -40,19 +39,19 @@ def cold_oil(scene_name, overrides, supplies, temperatures, loads, picture):
     newtons = [quantity_of("--load", each, "N") for each in loads]
     with as_usage_error(IntegrationError):
         found = skid_map(scene, supplies or SUPPLIES, celsius, newtons)
-        told, run_up = trends(found), run_ups(scene, found)
-    parts = {"points": found.points, "skid_loads": found.skid_loads, "trends": told, "run_ups": run_up}
+        run_up = run_ups(scene, found)
+    parts = {"points": found.points, "skid_loads": found.skid_loads, "run_ups": run_up}
     report = {"scene": scene.name, "minimum_load": found.minimum_load}
     if picture is not None:
         picture_into(picture, lambda draft: draw_map(found, draft, f"{scene.name}: slip with cold oil"))
     return Result(
         report | {name: [one._asdict() for one in each] for name, each in parts.items()},
-        lambda: _print(scene, found, told, run_up),
+        lambda: _print(scene, found, run_up),
         remarks=[str(picture.path)] if picture else [],
     )
 
 
-def _print(scene, found, told, run_up) -> None:
+def _print(scene, found, run_up) -> None:
     for supply in dict.fromkeys(point.supply for point in found.points):
         columns = [point.celsius for point in found.skid_loads if point.supply == supply]
         rows = [
@@ -62,8 +61,6 @@ def _print(scene, found, told, run_up) -> None:
         rows.append(("skid load", *(force(each.load) for each in found.skid_loads if each.supply == supply)))
         title = f"{scene.name}, {supply}: cage slip [%], and from a skid where that differs; minimum load {force(found.minimum_load)}"
         print_rows(title, ("load", *(f"{number(each)} °C" for each in columns)), rows)
-    rows = [(one.claim, one.figures, {True: "yes", False: "no", None: "no case"}[one.holds]) for one in told]
-    print_rows("published trends", ("trend", "figures", "holds"), rows, words=("trend", "figures"))
     if run_up:
         rows = [
             (each.supply, force(each.load), f"{number(each.celsius)} °C", f"{number(each.seconds)} s", f"{number(100 * each.slip, 3)} %")

@@ -63,6 +63,7 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     from bearing_sim.studies.fleet import OK, PARTLY, replay_fleet
     from bearing_sim.studies.fleet_logs import bearings_of, find_logs, read_bearings
     from bearing_sim.sweep.table import study_digest, write_table
+    from bearing_sim.sweep.tasks import Execution
 
     if not paths and bearings_path is None:
         raise UsageError("no logs; give files or folders, or --bearings TABLE.csv")
@@ -86,7 +87,7 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     bars = {"reading": reading_bar, "replay": replay_bar}
     with resumed(out, study, reading_bar, replay_bar) as journal:
         table = replay_fleet(
-            bearings, longest_gap, journal, workers, dask, lambda act, done, total: bars[act].update(done, total), _build_table, _respond
+            bearings, longest_gap, Execution(journal, workers, dask), lambda act, *counts: bars[act].update(*counts), _build_table, _respond
         )
     files = write_table(out.path, signed(table, study))
     report, ending = _report(table, replay_bar, files), None

@@ -68,6 +68,7 @@ def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamp
     from bearing_sim.studies.fleet_logs import is_text
     from bearing_sim.sweep.conditions import read_spectrum
     from bearing_sim.sweep.table import study_digest, write_table
+    from bearing_sim.sweep.tasks import Execution
 
     seconds, counts = seconds_of(duration), _counts(classes)
     names, constants = channel_sources(**channels)
@@ -89,7 +90,7 @@ def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamp
     announce_compilation(scene)
     points, study = Points("spectrum", len(found.points)), study_digest("spectrum", scene, found, seconds)
     with resumed(out, study, points) as journal:
-        result = studied.evaluate(scene, found, journal, seconds, workers, dask, points.update)
+        result = studied.evaluate(scene, found, seconds, Execution(journal, workers, dask, points.update))
     result.table.about.update(signed(result.table, study).about, source=str(data))
     files = write_table(out.path, result.table)
     if picture is not None:

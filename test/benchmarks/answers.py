@@ -32,7 +32,6 @@ _COMMANDS = {
     "scenes": ("scenes",),
     "sweep": ("sweep", "deng2017_table1", "--set", "level=steady", "--vary", "operating.radial_load=500N:2kN:4", "--workers", "1"),
     "uncertainty": ("uncertainty", "deng2017_table1", "--set", "level=steady", "--samples", "8", "--workers", "1"),
-    "misalignment": ("study", "misalignment", "deng2017_table1", "--points", "2", "--slices", "5", "--crown", "none"),
     "clearance": ("study", "clearance", "deng2017_table1_cold", "--speed", "15000rpm:30000rpm:2", "--load", "800N:800N:1"),
     "friction": ("study", "friction", "nu215_rig"),
 }
