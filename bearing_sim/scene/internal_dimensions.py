@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from bearing_sim.scene.designation import Designation, DesignationError, MakersRow, makers_rows, parse_designation, roller_counts
+from bearing_sim.scene.errors import InvalidField
 from bearing_sim.scene.flanges import HEIGHT, estimated_clearance
 from bearing_sim.scene.quantity import to_si
-from bearing_sim.scene.tree import at
+from bearing_sim.scene.tree import at, parts, without
 
 STEEL_DENSITY = 7850.0
 CAGE_DENSITIES = {"polyamide": 1320.0, "steel": 7850.0, "brass": 8400.0}  # kg/m^3, of the materials of the catalogue with these names
@@ -368,37 +369,43 @@ def cage_tree(name: str, space: CageSpace, guiding_ring: str = "outer_ring") -> 
     return tree, list(_cage_estimates(tree, rule))
 
 
-def with_cage_of_kind(bearing: Mapping) -> tuple[dict, str]:
+def with_cage_of_kind(bearing: Mapping, where: str) -> tuple[Mapping, list[InvalidField]]:
     """Return a block ``bearing`` whose cage, given by its kind, is a block with estimates, and why it cannot be; as it is if no kind is given.
 
     Parameters
     ----------
     bearing : as a file has it, with radii; its ``cage`` is a kind, such as ``P``, or a block with a ``preset`` and what differs.
+    where : dotted path of the block.
     """
-    given = bearing.get("cage")
-    kind = given.get("preset") if isinstance(given, Mapping) else given
+    given = at(bearing, ("cage",))
     if given is None:
-        return {name: value for name, value in bearing.items() if name != "cage"}, ""
-    if isinstance(given, Mapping) and "preset" not in given:
-        return dict(bearing), ""
+        return without(bearing, ("cage",)), []
+    own = without(given, ("preset",))
+    if isinstance(given, Mapping) and own is given:
+        return bearing, []
+    kind, own = (given["preset"], own) if isinstance(given, Mapping) else (given, {})
+    reason = ""
     if not isinstance(kind, str) or kind.strip().upper() not in CAGE_RULES:
-        return dict(bearing), f"{kind!r} is no kind of cage; expected one of {', '.join(CAGE_RULES)}, or a block"
-    try:
-        space = _space_of(bearing)
-    except ValueError as error:
-        return dict(bearing), f"a cage of kind {kind} is estimated from rollers and raceway, but {error}"
-    on_inner_ring = at(bearing, "flanges.inner") not in (None, "none") and at(bearing, "flanges.outer") in (None, "none")
+        reason = f"{kind!r} is no kind of cage; expected one of {', '.join(CAGE_RULES)}, or a block"
+    else:
+        try:
+            space = _space_of(bearing)
+        except ValueError as error:
+            reason = f"a cage of kind {kind} is estimated from rollers and raceway, but {error}"
+    if reason:
+        return bearing, [InvalidField(f"{where}.cage", "", reason)]
+    on_inner_ring = at(bearing, ("flanges", "inner")) not in (None, "none") and at(bearing, ("flanges", "outer")) in (None, "none")
     cage, estimates = cage_tree(kind.strip().upper(), space, "inner_ring" if on_inner_ring else "outer_ring")
-    own = {name: value for name, value in given.items() if name != "preset"} if isinstance(given, Mapping) else {}
-    marks = [each for each in estimates if each["field"].removeprefix("cage.") not in own]
-    return {**bearing, "cage": {**cage, **own}, "estimated": [*(bearing.get("estimated") or ()), *marks]}, ""
+    marks, known = [each for each in estimates if each["field"].removeprefix("cage.") not in own], bearing.get("estimated")
+    estimated = [*known, *marks] if isinstance(known, (list, tuple)) else marks if known is None else known
+    return {**bearing, "cage": {**cage, **own}, "estimated": estimated}, []
 
 
 def _space_of(bearing: Mapping) -> CageSpace:
     """Return where a cage has to fit in a bearing that a file gives; raise ValueError where a dimension is missing or is none."""
 
     def length(path: str, otherwise: float | None = None) -> float:
-        given = at(bearing, path)
+        given = at(bearing, parts(path))
         if given is None and otherwise is not None:
             return otherwise
         if given is None:

@@ -27,10 +27,10 @@ from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.mounting import Mounting, mounting_errors
 from bearing_sim.scene.quantity import check, quantity, record
 from bearing_sim.scene.ratings import rate
+from bearing_sim.scene.requirements import MEASURED
 from bearing_sim.scene.support import Support, support_errors
 from bearing_sim.scene.uncertainty import Range, messages, nearest, quantities, range_errors, with_values
 from bearing_sim.scene.vibration import VibrationInput
-from bearing_sim.scene.wants import MEASURED
 from bearing_sim.scene.watchers import watcher_errors
 
 NO_CLEARANCE_LIMIT = -1e-3
@@ -373,6 +373,9 @@ class Scene:
     # errors, such as {slip: 0.3 %, life: 5 %}, asks for the fastest setting whose errors `bearing-sim trade` has measured to be below them.
     wants: tuple[Literal[tuple(WANTS)], ...] = ()
     wanted_errors: tuple[WantedError, ...] = ()  # those of a mapping wants, which a file gives there
+    # path, from the folder of the scene file, of what `bearing-sim trade --front` measured: `level: auto` with errors in wants chooses by it, on
+    # every machine alike; None: by what this machine has kept, which level_reason says; a loaded scene has the level and no front
+    front: str | None = None
     level_reason: str = ""  # why the level was chosen, filled in for `level: auto`
     bearing: Bearing
     lubricant: Lubricant
