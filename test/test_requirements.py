@@ -102,7 +102,7 @@ def test_edge_loads_have_an_error_only_where_slices_were_measured():
     keep(HERE, course())
     assert scene("level=auto", "wants={edge_loads: 10 %}").bearing.roller.slices is None
     line = scene("level=auto", "wants={edge_loads: 1 %}").level_reason
-    assert line.startswith("level spatial chosen, the most accurate") and "no setting measured on manoeuvre keeps them" in line
+    assert line.startswith("level spatial chosen, the most accurate") and "no setting measured on manoeuvre (kept front " in line
 
 
 def test_a_largest_error_above_three_times_the_wanted_one_is_too_much():
@@ -156,7 +156,7 @@ def test_the_worst_of_several_courses_counts():
     keep(HERE, course())
     keep(HERE, course(PLANAR, COARSE._replace(errors=COARSE.errors | {"slip": 0.4}), name="start"))
     chosen = scene(*AUTO)
-    assert chosen.integration.relative_tolerance == HERE.integration.relative_tolerance and "(manoeuvre, start)" in chosen.level_reason
+    assert chosen.integration.relative_tolerance == HERE.integration.relative_tolerance and "(manoeuvre, start; kept front " in chosen.level_reason
 
 
 def test_a_level_that_lacks_what_the_scene_asks_for_is_not_chosen_however_fast():

@@ -133,7 +133,7 @@ def trade(
     best = recommend(found, factor, error) if factor is not None or error is not None else None
     remarks = [f"added to {written.path} ({_courses_in(written)})"] if written is not None else []
     if chosen is not None:
-        remarks.append(_write_chosen(chosen, scene, scene_name, found, best))
+        remarks.append(_write_chosen(chosen, scene, scene_name, found, best, by_wants=factor is None and error is None))
 
     def show():
         print_trade(scene_name, found)
@@ -187,8 +187,8 @@ def _store(scene, found, keep: bool, front: Path | None):
         raise FailedRun(f"{front} is not written: {failure}") from None
 
 
-def _write_chosen(out, scene, name: str, found, best) -> str:
-    """Write the fields of a scene file that choose a setting; return what was written."""
+def _write_chosen(out, scene, name: str, found, best, by_wants: bool) -> str:
+    """Write the fields of a scene file that choose the recommended setting, or the fastest that keeps the errors in wants; say so."""
     import yaml
 
     from bearing_sim.scene.measured_tradeoffs import Tradeoffs
@@ -198,11 +198,11 @@ def _write_chosen(out, scene, name: str, found, best) -> str:
     from bearing_sim.studies.trade import measured_course
 
     course = measured_course(found)
-    if best is None and scene.wanted_errors:
-        wanted = {each.want: each.error for each in scene.wanted_errors}
-        setting = next(iter(candidates(scene, wanted, Tradeoffs(out.path, (course,)))), None)
+    if by_wants:
+        fitting = candidates(scene, {each.want: each.error for each in scene.wanted_errors}, Tradeoffs(out.path, (course,)))
     else:
-        setting = next((one for one in course.settings if best is not None and (one.level, one.detail) == best.setting[:2]), None)
+        fitting = [one for one in course.settings if best is not None and (one.level, one.detail) == best.setting[:2]]
+    setting = next(iter(fitting), None)
     if setting is None:
         raise FailedRun(f"{out} is not written: no setting is that fast and that accurate")
     fields = {"level": setting.level}

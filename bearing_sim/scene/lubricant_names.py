@@ -83,7 +83,7 @@ def _oil_block(given: object, path: str) -> tuple[dict, list[InvalidField]]:
     if isinstance(name, str):
         preset, reason = _named_oil(name)
     else:
-        preset, reason = _some_oil(), f"expected the name of an oil{'' if is_block else ', such as ISO VG 68, or a block'}"
+        preset, reason = _some_oil(), "expected the name of an oil" if is_block else "expected the name of an oil, such as 'ISO VG 68', or a block"
     if set(_VISCOSITIES) & set(rest):
         preset = {key: value for key, value in preset.items() if key not in _VISCOSITIES}
     return {**preset, **rest}, [InvalidField(f"{path}.preset" if is_block else path, repr(name), reason)] if reason else []

@@ -20,7 +20,7 @@ from bearing_sim.scene.tree import Path, at, changed, leaves, parts, without
 from bearing_sim.scene.uncertainty import flattened, with_range
 
 _RACEWAY = ("bearing", "outer_raceway")
-_RADII = tuple((*_RACEWAY, name) for name in ("low_radius", "diameter", "low_points", "high_points", "contour", "contour_file"))
+_RADII = tuple((*_RACEWAY, name) for name in ("low_radius", "low_diameter", "diameter", "low_points", "high_points", "contour", "contour_file"))
 _LOW_RADIUS, _CLEARANCE = _RADII[0], ("bearing", "clearance")
 _WITHOUT_CAGE = ("mass", "width", "inner_radius", "outer_radius", "pocket_clearance")
 _OF_FLANGES = ("end_clearance", "corner_radius", "end_radius")
@@ -51,7 +51,7 @@ def given_over(tree: Mapping, path: Path, value, given: Mapping | None = None) -
     """
     if path[0] == _RANGES and path[1:]:
         return {**tree, _RANGES: with_range(tree.get(_RANGES), ".".join(path[1:]), value)}
-    for place in _voided(tree, path, value):
+    for place in _voided(tree, path, value, given or {}):
         if place[0] == _RANGES:
             tree = _without_ranges(tree, place[1])
         elif given is None or at(given, place) is None:
@@ -63,7 +63,8 @@ def merged(preset: Mapping, given: Mapping) -> Mapping:
     """Return the tree of a preset with all that a file gives over it."""
     tree = preset
     for path, value in leaves(given, preset):
-        tree = given_over(tree, path, value, given)
+        if value is not None or ".".join(path) not in diameters(Scene):  # a diameter that is null is not given
+            tree = given_over(tree, path, value, given)
     return tree
 
 
@@ -103,8 +104,8 @@ def _always_void() -> Mapping[Path, list[Path]]:
     return void
 
 
-def _voided(tree: Mapping, path: Path, value) -> Iterator[Path]:
-    """Yield what a field makes void: paths, and ``uncertainty`` with the beginning of the paths of ranges."""
+def _voided(tree: Mapping, path: Path, value, given: Mapping) -> Iterator[Path]:
+    """Yield what a field makes void: paths, and ``uncertainty`` with the beginning of the paths of ranges; arguments as of `given_over`."""
     yield from _always_void().get(path, ())
     before = at(tree, path)
     match path:
@@ -123,7 +124,8 @@ def _voided(tree: Mapping, path: Path, value) -> Iterator[Path]:
             if not has_lands:
                 yield _RANGES, "bearing.cage.guide_"
         case ("bearing", "flanges", "inner" | "outer" as ring) if value == "none":
-            other = at(tree, ("bearing", "flanges", "outer" if ring == "inner" else "inner"))
+            opposite = ("bearing", "flanges", "outer" if ring == "inner" else "inner")
+            other = at(given, opposite) or at(tree, opposite)
             gone = (f"{ring}_radius", *(_OF_FLANGES if other in (None, "none") else ()))
             yield from (("bearing", "flanges", field) for field in gone)
         case ("lubricant", "oil" | "grease" | "supply" as name):
