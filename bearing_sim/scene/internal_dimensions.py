@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from bearing_sim.scene.bundled import catalog_table
 from bearing_sim.scene.designation import Designation, DesignationError, MakersRow, makers_rows, parse_designation, roller_counts
 from bearing_sim.scene.errors import InvalidField
 from bearing_sim.scene.flanges import HEIGHT, estimated_clearance
@@ -49,11 +50,6 @@ _LONGEST = 0.88  # effective length of the rollers at most, over the width; assu
 _FULL_DIAMETER_RATIO, _FULL_INNER_FLANGE, _FULL_DEPTH, _FULL_FLANGE = 0.22, 0.8, 0.77, 0.2
 _DIAMETER_RATIO = {"10": 0.235, "4": 0.24}  # D_w over D - d, where not even the flanges are printed
 _OTHER_DIAMETER_RATIO = 0.27
-# Diameters of cylindrical rollers of the bearings whose raceways are both printed [mm].
-_PREFERRED = (
-    *(4, 4.5, 5, 5.5, 6, 6.5, 7, 7.5, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26),
-    *(28, 30, 32, 34, 36, 38, 40, 42, 45, 48, 50, 52, 54, 56, 60, 64, 68, 72, 75, 80),
-)
 _PARTNER = {"22": "2", "23": "3", "2": "22", "3": "23"}  # widths that share their raceways
 _SAME = 1e-6  # m
 
@@ -91,7 +87,8 @@ def is_high_capacity(row: MakersRow) -> bool:
 
 def preferred_diameter(diameter: float) -> float:
     """Return the nearest diameter of rollers that makers use [m]."""
-    return 1e-3 * min(_PREFERRED, key=lambda each: abs(each - 1e3 * diameter))
+    known = (float(row["diameter"]) for row in catalog_table("designations/roller_diameters"))
+    return 1e-3 * min(known, key=lambda each: abs(each - 1e3 * diameter))
 
 
 def count_by_gap(rules: DesignRules, roller_diameter: float, pitch_diameter: float) -> int:
