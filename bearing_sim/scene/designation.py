@@ -2,8 +2,9 @@
 """Designations of single row cylindrical roller bearings, such as ``NU 210 ECP/C3``, and the tables of the bearings that they name.
 
 The tables are in ``catalog/designations``: ``boundary.csv`` (ISO 15), ``ratings.csv`` (what makers print), ``rollers.csv`` (numbers of
-rollers), ``types.csv``, ``suffixes.csv`` and ``gost.csv`` (what letters and digits mean), ``iso_numbers.csv`` (other bearings); each says where it comes from.  Designations are those of makers and of GOST 3189
-(types of GOST 8328).  `bearing_tree` turns a designation into the block that a preset file would hold.
+rollers), ``types.csv``, ``suffixes.csv`` and ``gost.csv`` (what letters and digits mean), ``iso_numbers.csv`` (other bearings); each says where it
+comes from.  Designations are those of makers and of GOST 3189 (types of GOST 8328).  `bearing_tree` turns a designation into the block that a preset
+file would hold.
 """
 
 import difflib

@@ -16,6 +16,7 @@ from bearing_sim.scene.designation import Designation, DesignationError, MakersR
 from bearing_sim.scene.errors import InvalidField
 from bearing_sim.scene.flanges import HEIGHT, estimated_clearance
 from bearing_sim.scene.quantity import to_si
+from bearing_sim.scene.ratings import Ratings
 from bearing_sim.scene.tree import at, parts, without
 
 STEEL_DENSITY = 7850.0
@@ -52,6 +53,7 @@ _DIAMETER_RATIO = {"10": 0.235, "4": 0.24}  # D_w over D - d, where not even the
 _OTHER_DIAMETER_RATIO = 0.27
 _PARTNER = {"22": "2", "23": "3", "2": "22", "3": "23"}  # widths that share their raceways
 _SAME = 1e-6  # m
+_NOT_PRINTED = MakersRow("", "", Ratings(), None, None, None, None)
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,7 @@ class Section:
     inner_raceway, outer_raceway : diameters F and E.
     roller_diameter, roller_length, count : D_w, effective length, Z.
     inner_flange, outer_flange : diameters d_1 and D_1 of flanges, where the rings have some.
-    row : of the maker whose figures these are; None where no maker of the tables prints the bearing.
+    row : of the maker whose figures these are; without a maker's name where none of the tables prints the bearing.
     count_source : where Z is from.
     estimated : fields that follow from rules.
     """
@@ -75,7 +77,7 @@ class Section:
     count: int
     inner_flange: float
     outer_flange: float
-    row: MakersRow | None
+    row: MakersRow
     count_source: str
     estimated: tuple[dict, ...]
 
@@ -113,7 +115,7 @@ def section_of(designation: Designation) -> Section:
     rows = makers_rows().get((designation.series, bore, designation.is_full_complement), ())
     if designation.high_capacity and any(map(is_high_capacity, rows)):
         rows = tuple(row for row in rows if is_high_capacity(row))
-    row = next((each for each in rows if each.inner_raceway or each.outer_raceway), rows[0] if rows else None)
+    row = next((each for each in rows if each.inner_raceway or each.outer_raceway), rows[0] if rows else _NOT_PRINTED)
     return _full_section(designation, row, rows) if designation.is_full_complement else _caged_section(designation, row, bore)
 
 
@@ -145,15 +147,14 @@ def known_count(series: str, bore: float, inner_raceway: float, outer_raceway: f
     return None
 
 
-def _caged_section(designation: Designation, row: MakersRow | None, bore: int) -> Section:
+def _caged_section(designation: Designation, row: MakersRow, bore: int) -> Section:
     boundary, estimated = designation.boundary, []
-    rules = HIGH_CAPACITY if row is not None and is_high_capacity(row) else STANDARD
-    outer = None if row is None else printed_outer_raceway(designation.series, bore, row)
-    inner = None if row is None else row.inner_raceway
+    rules = HIGH_CAPACITY if is_high_capacity(row) else STANDARD
+    outer, inner = printed_outer_raceway(designation.series, bore, row), row.inner_raceway
     if inner is not None and outer is not None:
         diameter = (outer - inner) / 2.0
     else:
-        diameter = None if row is None else diameter_by_flange(rules, row)
+        diameter = diameter_by_flange(rules, row)
         by, low, high = "flange of the outer ring, to the next preferred diameter; within 8 % for 95 % of those printed", 0.92, 1.08
         if diameter is None:
             ratio = _DIAMETER_RATIO.get(designation.series, _OTHER_DIAMETER_RATIO)
@@ -181,24 +182,22 @@ def _caged_section(designation: Designation, row: MakersRow | None, bore: int) -
                 count + rules.count_error,
             )
         )
-    static = None if row is None else row.ratings.static
-    length = _length(static, count, diameter, pitch, rules.length_ratio * boundary.width, estimated, boundary.width)
+    length = _length(row.ratings.static, count, diameter, pitch, rules.length_ratio * boundary.width, estimated, boundary.width)
     return Section(
         inner,
         outer,
         diameter,
         length,
         count,
-        _printed(row, "inner_flange", inner + 2.0 * rules.inner_flange * diameter, inner, outer),
-        _printed(row, "outer_flange", outer - 2.0 * rules.outer_flange * diameter, inner, outer),
+        _printed(row.inner_flange, inner + 2.0 * rules.inner_flange * diameter, inner, outer),
+        _printed(row.outer_flange, outer - 2.0 * rules.outer_flange * diameter, inner, outer),
         row,
         source,
         tuple(estimated),
     )
 
 
-def _printed(row: MakersRow | None, name: str, otherwise: float, inner: float, outer: float) -> float:
-    value = None if row is None else getattr(row, name)
+def _printed(value: float | None, otherwise: float, inner: float, outer: float) -> float:
     return value if value is not None and inner < value < outer else otherwise
 
 
@@ -213,7 +212,7 @@ def _length(static, count, diameter, pitch, otherwise, estimated, width) -> floa
     return round(min(length_by_static_rating(static, count, diameter, pitch), _LONGEST * width), 5)
 
 
-def _full_section(designation: Designation, row: MakersRow | None, rows: tuple[MakersRow, ...]) -> Section:
+def _full_section(designation: Designation, row: MakersRow, rows: tuple[MakersRow, ...]) -> Section:
     """Return the inside of a full-complement bearing: E, d_1 and D_1 are printed, the flanges of both rings are taken as equally high."""
     outer = next((each.outer_raceway for each in rows if each.outer_raceway is not None), None)
     low = next((each.inner_flange for each in rows if each.inner_flange is not None), None)
@@ -234,9 +233,8 @@ def _full_section(designation: Designation, row: MakersRow | None, rows: tuple[M
     pitch = inner + diameter
     count = full_count(diameter, pitch)
     estimated.append(_estimate("roller.count", "as many as fill the pitch circle, or one less", count - 1, count))
-    static = None if row is None else row.ratings.static
     width = designation.boundary.width
-    length = _length(static, count, diameter, pitch, FULL_COMPLEMENT_LENGTH * width, estimated, width)
+    length = _length(row.ratings.static, count, diameter, pitch, FULL_COMPLEMENT_LENGTH * width, estimated, width)
     inner_flange = low if inner < low < outer else inner + 2.0 * _FULL_FLANGE * diameter
     outer_flange = high if high is not None else outer - 2.0 * _FULL_FLANGE * diameter
     return Section(inner, outer, diameter, length, count, inner_flange, outer_flange, row, "estimated", tuple(estimated))
@@ -481,12 +479,10 @@ def bearing_tree(designation: Designation | str | int) -> dict[str, Any]:
         "flanges": _flanges_tree(designation, section),
         "estimated": estimated,
     }
-    if section.row is not None:
+    if section.row.maker:
         names = ("dynamic", "static", "fatigue_limit", "minimum_load_factor", "reference_speed", "limiting_speed")
-        found = {name: getattr(section.row.ratings, name) for name in names}
-        tree["ratings"] = {
-            name: f"{value * 30 / math.pi:.6g} rpm" if name.endswith("speed") else value for name, value in found.items() if value is not None
-        }
+        found = {name: value for name in names if (value := getattr(section.row.ratings, name)) is not None}
+        tree["ratings"] = {name: f"{value * 30 / math.pi:.6g} rpm" if name.endswith("speed") else value for name, value in found.items()}
     return tree
 
 
@@ -513,7 +509,7 @@ def _inner_ring_mass(designation: Designation, section: Section) -> float:
 def _source(section: Section, boundary, made: str, designation: Designation) -> str:
     row = section.row
     dimensions = f"d, D, B: ISO 15, as printed by {boundary.sources.replace(' ', ', ')}"
-    if row is None:
+    if not row.maker:
         printed = "no maker of the tables prints its ratings; C, C_0 and C_u by ISO 281 and ISO 76"
     else:
         printed = (

@@ -296,7 +296,7 @@ def _with_level(tree: Mapping, origin: str) -> Mapping:
         errors = {each.want: each.error for each in scene.wanted_errors}
         front = read_kept_tradeoffs(scene) if named is None else _front(named, origin)
         for setting in candidates(scene, errors, front):
-            chosen = _with_setting(tree, setting)
+            chosen = overridden({**tree, "level": setting.level}, setting.overrides)
             if _is_valid(chosen):
                 return {**chosen, "level_reason": reason_of(setting, errors, front.at(scene), origin)}
         found = without_measurement(scene, errors, front, origin)
@@ -316,11 +316,6 @@ def _front(named: str, origin: str) -> Tradeoffs:
 def _refused(field: str, value: object, reason: str) -> ValidationError:
     detail = {"type": PydanticCustomError("refused", "{reason}", {"reason": reason}), "loc": (field,), "input": value}
     return ValidationError.from_exception_data("Scene", [detail])
-
-
-def _with_setting(tree: Mapping, setting: Setting) -> dict:
-    """Return a scene's tree at the level and with the overrides of a measured setting."""
-    return overridden({**tree, "level": setting.level}, setting.overrides)
 
 
 def _is_valid(tree: Mapping) -> bool:

@@ -5,13 +5,12 @@ An oil is a viscosity class (``ISO VG 68``, ``ISO VG 68 PAO``) or an entry of th
 catalogue (``lithium NLGI 2``, ``SKF LGMT 2``).  Capitals, blanks and punctuation do not matter.  ``{preset: NAME, ...}`` changes single fields.
 """
 
-import difflib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 from bearing_sim.files.yaml_text import values_of
 from bearing_sim.scene.bundled import bundled_names, bundled_text
-from bearing_sim.scene.errors import InvalidField
+from bearing_sim.scene.errors import InvalidField, did_you_mean
 from bearing_sim.scene.viscosity_index import ISO_VISCOSITY_CLASSES
 
 _BASE_WORDS = {"mineral": "mineral", "pao": "pao", "ester": "ester", "pag": "pag", "pg": "pag", "polyglycol": "pag"}
@@ -60,17 +59,10 @@ def class_block(name: str) -> tuple[dict | None, str]:
         nearest = min(ISO_VISCOSITY_CLASSES, key=lambda each: abs(each - number))
         return None, f"ISO 3448 has no class {number}; the nearest is ISO VG {nearest}; all: {', '.join(map(str, ISO_VISCOSITY_CLASSES))}"
     if word and word not in _BASE_WORDS:
-        return None, f"unknown kind of base oil {found[2]!r}{nearest_word(word, _BASE_WORDS)}; known: mineral, PAO, ester, PAG"
+        return None, f"unknown kind of base oil {found[2]!r}{did_you_mean(word, _BASE_WORDS)}; known: mineral, PAO, ester, PAG"
     base = _BASE_WORDS.get(word, "mineral")
     label = f"ISO VG {number}" if base == "mineral" else f"ISO VG {number} {'ester' if base == 'ester' else base.upper()}"
     return {"law": "custom", "name": label, "source": _CLASS_SOURCE, "base": base, "viscosity_40": f"{ISO_VISCOSITY_CLASSES[number]} mm^2/s"}, ""
-
-
-def nearest_word(word: str, known: Iterable[str]) -> str:
-    """Return ``" (did you mean ...?)"`` for the nearest known word, whatever its capitals, or an empty text."""
-    by_fold = {each.casefold(): each for each in known}
-    close = difflib.get_close_matches(word.casefold(), list(by_fold), n=1)
-    return f" (did you mean {by_fold[close[0]]!r}?)" if close else ""
 
 
 def _oil_block(given: object, path: str) -> tuple[dict, list[InvalidField]]:
@@ -103,7 +95,7 @@ def _named_oil(name: str) -> tuple[dict, str]:
         return _entry(entry), ""
     written = [*known, *(f"ISO VG {number}" for number in ISO_VISCOSITY_CLASSES), "MIL-PRF-7808", "MIL-PRF-23699", "DEF STAN 91-101"]
     reason = (
-        f"not in the catalog{nearest_word(name, written)}; known: ISO VG 2 to 3200, alone or with mineral, PAO, ester or PAG behind it; "
+        f"not in the catalog{did_you_mean(name, written)}; known: ISO VG 2 to 3200, alone or with mineral, PAO, ester or PAG behind it; "
         f"MIL-PRF-7808, MIL-PRF-23699, DEF STAN 91-101; {', '.join(known)}; or a block with viscosity_40 and what its data sheet says"
     )
     return _some_oil(), reason
@@ -138,7 +130,7 @@ def _with_grease(lubricant: Mapping, path: str) -> tuple[dict, list[InvalidField
         name, known = fields.pop("preset"), bundled_names("catalog/greases")
         entry = next((each for each in known if isinstance(name, str) and _words(each) == _words(name)), None)
         if entry is None:
-            near = nearest_word(name, [each.replace("_", " ") for each in known]) if isinstance(name, str) else ""
+            near = did_you_mean(name, [each.replace("_", " ") for each in known]) if isinstance(name, str) else ""
             reason = f"not a known grease{near}; known: {', '.join(known)}; or a block with thickener, nlgi and base_oil"
             errors.append(InvalidField(path if isinstance(given, str) else f"{path}.preset", repr(name), reason))
             block.setdefault("oil", _some_oil())
