@@ -189,8 +189,7 @@ def _store(scene, found, keep: bool, front: Path | None):
 
 def _write_chosen(out, scene, name: str, found, best, by_wants: bool) -> str:
     """Write the fields of a scene file that choose the recommended setting, or the fastest that keeps the errors in wants; say so."""
-    import yaml
-
+    from bearing_sim.scene.loader import fields_to_yaml
     from bearing_sim.scene.measured_tradeoffs import Tradeoffs
     from bearing_sim.scene.overrides import read_override
     from bearing_sim.scene.requirements import candidates
@@ -211,7 +210,7 @@ def _write_chosen(out, scene, name: str, found, best, by_wants: bool) -> str:
     measured = f"slip {in_digits(setting.errors['slip'], 2)} points, life {in_digits(100 * setting.errors['life'], 2)} %"
     title = f"# {setting.name}, chosen for {name} by bearing-sim trade on {course.name}: errors against {course.reference}: {measured}.\n"
     note_of_use = "# Fields of a scene file; they replace level and these fields there.\n"
-    out.write_text(title + note_of_use + yaml.safe_dump(fields, sort_keys=False))
+    out.write_text(title + note_of_use + fields_to_yaml(fields))
     return f"{out} has the fields of {setting.name}"
 
 

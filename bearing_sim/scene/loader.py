@@ -340,7 +340,12 @@ def with_setting(scene: Scene, setting: Setting) -> Scene:
 
 def scene_to_yaml(scene: Scene) -> str:
     """Return the whole scene as YAML in SI, rotational speeds with their unit; `scene_from_yaml` reads it back equal."""
-    return yaml.dump(_as_mapping(scene), Dumper=_LineDumper, sort_keys=False, allow_unicode=True)
+    return fields_to_yaml(_as_mapping(scene))
+
+
+def fields_to_yaml(tree: Mapping) -> str:
+    """Return blocks and fields of a scene file as YAML, in their order."""
+    return yaml.dump(tree, Dumper=_LineDumper, sort_keys=False, allow_unicode=True)
 
 
 def _as_mapping(scene: Scene) -> dict:
