@@ -16,7 +16,7 @@ from bearing_sim.recording.writer import McapSink
 from bearing_sim.runtime.governor import RECORD, Governor, governor_record, recorded_settings, settings_to_fall
 from bearing_sim.runtime.live import governor_of
 from bearing_sim.runtime.reproduction import reproduce
-from bearing_sim.scene.kept_front import KeptCourse, KeptFront, KeptSetting, complete_overrides
+from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting, Tradeoffs, complete_overrides
 from bearing_sim.simulation import Inputs, start_sample
 
 START = 1_700_000_000_000_000_000
@@ -30,7 +30,7 @@ def scene(*overrides):
 
 def setting(level, detail, factor, slip, life=0.01, overrides=()):
     errors = dict.fromkeys(NAMES, math.nan) | {"slip": slip, "life": life}
-    return KeptSetting(level, detail, complete_overrides(scene(f"level={level}", *overrides)), factor, errors)
+    return Setting(level, detail, complete_overrides(scene(f"level={level}", *overrides)), factor, errors)
 
 
 STEADY, SLIP = setting("steady", "table", 1860.0, 1.9, 0.12), setting("slip", "tolerances x 1", 15.0, 1.95, 0.12)
@@ -42,7 +42,7 @@ SPATIAL = setting("spatial", "tolerances x 1", 1.0, 0.047, 0.008)
 
 
 def front(*settings, extent=EVERYWHERE):
-    return KeptFront(None, (KeptCourse("manoeuvre", "planar", dict.fromkeys(NAMES, 0.0), extent, settings),))
+    return Tradeoffs(None, (MeasuredCourse("manoeuvre", "planar", dict.fromkeys(NAMES, 0.0), extent, settings),))
 
 
 ALL = front(STEADY, SLIP, COARSE, PLANAR, FINE, STEP, SPATIAL)

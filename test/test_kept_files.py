@@ -20,8 +20,8 @@ from bearing_sim.levels.steady import table_builder
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.levels.steady.table_builder import Quality, assembled, read_table, write_table
-from bearing_sim.scene import kept_front
-from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, front_path, read_front
+from bearing_sim.scene import measured_tradeoffs
+from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting, kept_path, read_kept_tradeoffs
 from bearing_sim.sweep.tasks import Journal, JournalInUse
 from bearing_sim.watchers.estimation.correction import Correction, read_correction, write_correction
 from bearing_sim.watchers.estimation.response import Domain, read_response, write_response
@@ -38,8 +38,9 @@ QUALITY = Quality(*(kind(1) for kind in Quality.__annotations__.values()))
 def _front(folder):
     errors = {"slip": 1.9, "largest_slip": 3.8, "load": math.nan}
     extent = {"shaft_speed": (1000.0, 5000.0), "radial_load": (400.0, 800.0), "oil_temperature": (370.0, 380.0)}
-    kept_front.keep(SCENE, KeptCourse("idle", "planar", errors, extent, (KeptSetting("slip", "tolerances x 1", ("a=1",), 12.0, errors),)))
-    return front_path(SCENE), lambda: read_front(SCENE)
+    setting = Setting("slip", "tolerances x 1", ("integration.fixed_step=null",), 12.0, errors)
+    measured_tradeoffs.keep(SCENE, MeasuredCourse("idle", "planar", errors, extent, (setting,)))
+    return kept_path(SCENE), lambda: read_kept_tradeoffs(SCENE)
 
 
 @cache
@@ -145,7 +146,7 @@ IN_THE_CACHE = ("front", "response", "table", "correction")
 @pytest.fixture(params=KINDS)
 def file(request, tmp_path, monkeypatch):
     """Return a kept file and the function that returns what it holds, None where that cannot be used."""
-    monkeypatch.setattr(kept_front, "FOLDER", tmp_path)
+    monkeypatch.setattr(measured_tradeoffs, "FOLDER", tmp_path)
     monkeypatch.setattr(kept, "_told", set())
     return KINDS[request.param](tmp_path)
 
@@ -178,7 +179,7 @@ def test_no_flipped_bit_and_no_cut_is_accepted_or_an_error_and_what_is_whole_is_
     ],
 )
 def test_what_cannot_be_used_is_said_once_with_its_file_and_reason(kind, spoil, reason, tmp_path, monkeypatch, caplog):
-    monkeypatch.setattr(kept_front, "FOLDER", tmp_path)
+    monkeypatch.setattr(measured_tradeoffs, "FOLDER", tmp_path)
     path, read = KINDS[kind](tmp_path)
     assert read() is not None and not caplog.messages
     spoil(path)
@@ -195,7 +196,7 @@ def test_an_absent_file_is_nothing_to_speak_of(tmp_path, caplog):
 
 
 def test_a_front_of_another_version_counts_as_none_and_a_new_one_takes_its_place(tmp_path, monkeypatch, caplog):
-    monkeypatch.setattr(kept_front, "FOLDER", tmp_path)
+    monkeypatch.setattr(measured_tradeoffs, "FOLDER", tmp_path)
     path, read = _front(tmp_path)
     version, contents = checked_contents(path.read_bytes(), "front")
     write_kept(path, with_checksum("front", version + 1, contents))

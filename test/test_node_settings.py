@@ -18,7 +18,7 @@ from bearing_sim.recording.writer import McapSink  # noqa: E402
 from bearing_sim.runtime.governor import RECORD, recorded_settings  # noqa: E402
 from bearing_sim.runtime.live import governor_of  # noqa: E402
 from bearing_sim.runtime.reproduction import reproduce  # noqa: E402
-from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, complete_overrides, front_path, keep  # noqa: E402
+from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting, complete_overrides, keep, kept_path  # noqa: E402
 from bearing_sim.scene.scene import tolerance_overrides  # noqa: E402
 
 FINEST, OVERRIDES = 0.002, ["level=planar", *tolerance_overrides(0.002)]  # a tenth of real time or less
@@ -27,16 +27,16 @@ FINEST, OVERRIDES = 0.002, ["level=planar", *tolerance_overrides(0.002)]  # a te
 def measured(level, factor, times_real_time, slip, life):
     scene = load_scene("deng2017_table1", [f"level={level}", *tolerance_overrides(factor)])
     errors = dict.fromkeys(NAMES, np.nan) | {"slip": slip, "life": life}
-    return KeptSetting(level, f"tolerances x {factor:g}", complete_overrides(scene), times_real_time, errors)
+    return Setting(level, f"tolerances x {factor:g}", complete_overrides(scene), times_real_time, errors)
 
 
 @pytest.fixture
 def front():
     scene = load_scene("deng2017_table1", OVERRIDES)
     settings = measured("planar", FINEST, 0.05, 0.0001, 0.0001), measured("planar", 3.0, 6.9, 0.06, 0.012), measured("slip", 1.0, 15.0, 1.9, 0.12)
-    keep(scene, KeptCourse("manoeuvre", "planar with tolerances x 0.001", dict.fromkeys(NAMES, 0.0), EVERYWHERE, settings))
+    keep(scene, MeasuredCourse("manoeuvre", "planar with tolerances x 0.001", dict.fromkeys(NAMES, 0.0), EVERYWHERE, settings))
     yield settings
-    front_path(scene).unlink()
+    kept_path(scene).unlink()
 
 
 @pytest.mark.long

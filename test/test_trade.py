@@ -19,9 +19,9 @@ from bearing_sim.cli.trade import _COURSES, measured_in_words, print_trade
 from bearing_sim.simulation import Simulation
 from bearing_sim.studies.trade import (
     NO_ERRORS,
+    Candidate,
     Errors,
     Results,
-    Setting,
     Trade,
     Traded,
     _Lowered,
@@ -36,7 +36,7 @@ from bearing_sim.studies.trade import _errors as errors
 from bearing_sim.studies.trade import _mean_slips as mean_slips
 from bearing_sim.studies.trade_course import OUTLINES, bin_edges, built_in, time_of_turns, turned, windows_of
 
-SETTING = Setting("slip", "tolerances x 1", ())
+SETTING = Candidate("slip", "tolerances x 1", ())
 SCENE = load_scene("deng2017_table1")
 COURSE = built_in("manoeuvre", SCENE)
 PAIRS = st.lists(st.tuples(st.floats(0.01, 1e5), st.floats(0.0, 10.0)), min_size=1, max_size=30)

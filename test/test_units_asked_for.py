@@ -9,8 +9,9 @@ from click.testing import CliRunner
 
 from bearing_sim.cli.main import main
 from bearing_sim.scene.fields import blocks
-from bearing_sim.scene.loader import SceneError, load_scene, require_units
+from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.mounting import clearance_limits
+from bearing_sim.scene.overrides import require_units
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import number_at
 

@@ -50,7 +50,7 @@ level_type = click.Choice(LEVELS)
 
 def _with_units(context: click.Context, parameter: click.Parameter, overrides: Sequence[str]) -> Sequence[str]:
     """Return the overrides of a scene; a quantity without a unit is refused."""
-    from bearing_sim.scene.loader import require_units
+    from bearing_sim.scene.overrides import require_units
 
     require_units(overrides)
     return overrides

@@ -18,7 +18,7 @@ from bearing_sim.cli.options import (
     quick_option,
     scene_options,
 )
-from bearing_sim.cli.outputs import OutputJournal
+from bearing_sim.cli.outputs import OutputFile, OutputJournal
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
@@ -72,6 +72,14 @@ _FASTER, _CLOSER = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
     "Keep the settings for this bearing and machine, for `level: auto` and the node's governor; --quick keeps nothing.",
     default=True,
 )
+@option("--front", "Add what is measured to this front file, for `front: PATH` in a scene with level: auto.", OutputJournal(), metavar="PATH")
+@option(
+    "--chosen",
+    "Write level, tolerances, step and slices of the recommended setting as fields of a scene file; without --factor and --error of the fastest "
+    "that keeps the errors in wants.",
+    OutputFile(".yaml", ".yml"),
+    metavar="PATH",
+)
 @csv_option("Write all settings to a table.")
 @picture_option("Draw error against speed")
 @json_option
@@ -93,6 +101,8 @@ def trade(
     journal,
     workers,
     keep,
+    front,
+    chosen,
     quick,
     **channels,
 ):
@@ -106,7 +116,9 @@ def trade(
     """
     from bearing_sim.simulation import IntegrationError
 
+    overrides = [*overrides, "front=null"]  # a front that is to be written need not be there yet
     scene = scene_of(scene_name, overrides)  # fails before anything is compiled
+    _require_use(scene, front, chosen, factor, error, quick)
     reading = mapping_name, joint, stamps, channels
     course = _course(course_name, scene, reading, windows, window_turns, longest_gap, quick)
     announce_compilation()
@@ -115,36 +127,91 @@ def trade(
     with Points("trade", 0) as points, as_usage_error(ValueError):
         try:
             found = trade(scene_name, overrides, levels, quick, points.update, against, course, journal and journal.path, workers)
-        except IntegrationError as error:
-            raise FailedRun(f"the reference failed: {error}") from None
-    kept = _keep(scene, found) if keep and not quick else None
+        except IntegrationError as failure:
+            raise FailedRun(f"the reference failed: {failure}") from None
+    kept, written = _store(scene, found, keep and not quick, front and front.path)
     best = recommend(found, factor, error) if factor is not None or error is not None else None
+    remarks = [f"added to {written.path} ({_courses_in(written)})"] if written is not None else []
+    if chosen is not None:
+        remarks.append(_write_chosen(chosen, scene, scene_name, found, best, by_wants=factor is None and error is None))
 
     def show():
         print_trade(scene_name, found)
         if kept is not None:
-            names = ", ".join(dict.fromkeys(course.name for course in kept.courses))
-            click.echo(f"kept for this bearing and machine ({names}): {kept.path}")
+            click.echo(f"kept for this bearing and machine ({_courses_in(kept)}): {kept.path}")
         _print_advice(found, factor, error, best)
 
-    report = _report(found) | {"recommended": best and best.setting.name, "kept": kept and str(kept.path)}
-    return Result(report, show, lambda draft: draw(draft, scene_name, found), rows_of(found))
+    report = _report(found) | {"recommended": best and best.setting.name, "kept": kept and str(kept.path), "front": written and str(written.path)}
+    return Result(report, show, lambda draft: draw(draft, scene_name, found), rows_of(found), remarks)
 
 
-def _keep(scene, found):
-    """Keep the settings of a trade for later; return what is kept for the bearing, or None where that cannot be or says nothing."""
-    from bearing_sim.scene.kept_front import keep
-    from bearing_sim.studies.trade import kept_course
+def _require_use(scene, front, chosen, factor, error, quick) -> None:
+    """Refuse, before anything is measured, a front that cannot be written and a choice by nothing."""
+    if front is not None and quick:
+        raise UsageError("--front: --quick measures too little for a front; leave one of them out")
+    if front is not None:
+        from bearing_sim.scene.measured_tradeoffs import front_to_extend
+
+        try:
+            front_to_extend(front.path, scene)
+        except ValueError as reason:
+            raise UsageError(f"--front {front}: {reason}") from None
+    if chosen is not None and factor is None and error is None and not scene.wanted_errors:
+        raise UsageError("--chosen: nothing says what to choose by; give --factor, --error, or errors in the scene's wants")
+
+
+def _courses_in(front) -> str:
+    return ", ".join(dict.fromkeys(course.name for course in front.courses))
+
+
+def _store(scene, found, keep: bool, front: Path | None):
+    """Keep the settings of a trade in the cache and in a front file; return what each holds then, or None."""
+    from bearing_sim.scene import measured_tradeoffs
+    from bearing_sim.studies.trade import measured_course
 
     if not found.is_complete:
-        level = found.reference_level
-        note(f"not kept: errors against level {level} say nothing of what it leaves out; leave out --against, or give planar")
-        return None
+        reason = f"errors against level {found.reference_level} say nothing of what it leaves out; leave out --against, or give planar"
+        if front is not None:
+            raise FailedRun(f"{front} is not written: {reason}")
+        if keep:
+            note(f"not kept: {reason}")
+        return None, None
+    course, kept = measured_course(found), None
     try:
-        return keep(scene, kept_course(found))
-    except OSError as error:
-        note(f"warning: the settings are not kept: {error}")
-        return None
+        kept = measured_tradeoffs.keep(scene, course) if keep else None
+    except OSError as failure:
+        note(f"warning: the settings are not kept: {failure}")
+    try:
+        return kept, front and measured_tradeoffs.add_to_front(front, scene, course)
+    except (ValueError, OSError) as failure:
+        raise FailedRun(f"{front} is not written: {failure}") from None
+
+
+def _write_chosen(out, scene, name: str, found, best, by_wants: bool) -> str:
+    """Write the fields of a scene file that choose the recommended setting, or the fastest that keeps the errors in wants; say so."""
+    from bearing_sim.scene.loader import fields_to_yaml
+    from bearing_sim.scene.measured_tradeoffs import Tradeoffs
+    from bearing_sim.scene.overrides import read_override
+    from bearing_sim.scene.requirements import candidates
+    from bearing_sim.scene.tree import changed
+    from bearing_sim.studies.trade import measured_course
+
+    course = measured_course(found)
+    if by_wants:
+        fitting = candidates(scene, {each.want: each.error for each in scene.wanted_errors}, Tradeoffs(out.path, (course,)))
+    else:
+        fitting = [one for one in course.settings if best is not None and (one.level, one.detail) == best.setting[:2]]
+    setting = next(iter(fitting), None)
+    if setting is None:
+        raise FailedRun(f"{out} is not written: no setting is that fast and that accurate")
+    fields = {"level": setting.level}
+    for override in setting.overrides:
+        fields = changed(fields, *read_override(override))
+    measured = f"slip {in_digits(setting.errors['slip'], 2)} points, life {in_digits(100 * setting.errors['life'], 2)} %"
+    title = f"# {setting.name}, chosen for {name} by bearing-sim trade on {course.name}: errors against {course.reference}: {measured}.\n"
+    note_of_use = "# Fields of a scene file; they replace level and these fields there.\n"
+    out.write_text(title + note_of_use + fields_to_yaml(fields))
+    return f"{out} has the fields of {setting.name}"
 
 
 def _course(name, scene, reading, windows, window_turns, longest_gap, quick):

@@ -50,7 +50,8 @@ from bearing_sim.inputs.log import InputLog, Series
 from bearing_sim.inputs.parquet_table import checksum, is_parquet, parquet_layout, parquet_records
 from bearing_sim.messages import topics
 from bearing_sim.recording.writer import McapFile
-from bearing_sim.scene.loader import InvalidField, SceneError, invalid_fields, read_named, yaml_mapping
+from bearing_sim.scene.field_errors import invalid_fields
+from bearing_sim.scene.loader import InvalidField, SceneError, read_named, yaml_mapping
 from bearing_sim.scene.quantity import check, quantity, record, to_si
 from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
@@ -75,7 +76,6 @@ _SHOWN = 60  # characters of a cell in a message
 
 _RESULTS = {topics.MEASURED: "cage_speed", topics.MEASURED_CLEARANCE: "running_clearance"}
 """The field of a mapping for each channel of what the model predicts and somebody has measured."""
-_LAWS = frozenset({"sum", "norm", "mass_times_acceleration", "gear_force", "constant"})
 
 
 def _column(si_unit: str, meaning: str) -> type:
@@ -428,7 +428,7 @@ def mapping_from_yaml(text: str, origin: str = "mapping", overrides: Iterable[st
     try:
         return TypeAdapter(Mapping).validate_python(tree, context={"written": True})
     except ValidationError as error:
-        raise SceneError(origin, invalid_fields(error, Mapping, _LAWS)) from None
+        raise SceneError(origin, invalid_fields(error, Mapping)) from None
 
 
 def _apply_override(tree: dict, override: str) -> None:

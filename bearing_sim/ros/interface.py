@@ -42,8 +42,8 @@ from bearing_sim.runtime.health import Condition, Phase, not_running
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
 from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene.fidelity import hint
-from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, read_front
 from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting, read_kept_tradeoffs
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import messages, with_values
 from bearing_sim.simulation import IntegrationError, Simulation
@@ -265,8 +265,8 @@ class BearingInterface:
         self._response: ResponseModel | None = None  # of the bearing to its uncertain fields
         self._awaited_response: Path | None = None  # where it will be
         self._governor: Governor | None = None
-        self._settings: list[KeptSetting] = []  # measured ones, along which the governor falls
-        self._courses: tuple[KeptCourse, ...] = ()  # that these were measured on
+        self._settings: list[Setting] = []  # measured ones, along which the governor falls
+        self._courses: tuple[MeasuredCourse, ...] = ()  # that these were measured on
         self._wants_governor = False
         self._new_governor: Governor | None = None  # made on the warm-up thread, taken over at the next review
         self._compiling: subprocess.Popen | None = None
@@ -314,7 +314,7 @@ class BearingInterface:
             self._response = kept_response(self.scene) if self.scene.estimation.is_asked else None
             simulation = warmed_up(self.scene)
             governs = self._shared.governor and not follows_clock(self._node)  # with sim time no time is skipped
-            kept = read_front(self.scene)
+            kept = read_kept_tradeoffs(self.scene)
             self._settings, self._courses = settings_to_fall(self.scene, kept), () if kept is None else kept.at(self.scene).courses
             self._wants_governor = governs  # made once the run has begun, which does not wait for the code of other levels
             self._simulation = simulation

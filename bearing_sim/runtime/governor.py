@@ -2,7 +2,7 @@
 """Keep real time by reducing fidelity: change to a faster setting when the solver is too slow, and back when it is fast enough.
 
 Settings are levels, or those that `bearing-sim trade` has measured on the bearing and this machine, from accurate to fast
-(`bearing_sim.scene.kept_front`); then the errors of the one that runs are known.  The criterion is the recent cost of ticks, simulated over
+(`bearing_sim.scene.measured_tradeoffs`); then the errors of the one that runs are known.  The criterion is the recent cost of ticks, simulated over
 wall seconds.  The ratio of costs between a setting and the one above was measured when the upper one last ran, so the cost of the present one
 predicts whether the upper one would keep real time.
 
@@ -21,8 +21,8 @@ import numpy as np
 from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.runtime.solver_threads import CommonPace
 from bearing_sim.scene.fidelity import NUMBERS, lower_levels
-from bearing_sim.scene.kept_front import KeptCourse, KeptFront, KeptSetting, complete_overrides, is_coarser
 from bearing_sim.scene.loader import with_setting
+from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting, Tradeoffs, complete_overrides, is_coarser
 from bearing_sim.scene.quantity import in_digits
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
@@ -59,7 +59,7 @@ class Governor:
     courses : that they were measured on.
     """
 
-    def __init__(self, ladder: Sequence[Simulation], patience: float = 5.0, settings: Sequence[KeptSetting] = (), courses: Sequence[KeptCourse] = ()):
+    def __init__(self, ladder: Sequence[Simulation], patience: float = 5.0, settings: Sequence[Setting] = (), courses: Sequence[MeasuredCourse] = ()):
         self._ladder, self._patience, self._settings, self._courses = list(ladder), patience, list(settings), tuple(courses)
         self._cost_ratios = [math.nan] * len(self._ladder)  # cost of a level over that of the one below
         self._begin(0)
@@ -223,19 +223,19 @@ class Governor:
         self._left_at = math.nan
 
 
-def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
+def settings_to_fall(scene: Scene, kept: Tradeoffs | None) -> list[Setting]:
     """Return the settings from that of a scene to the fastest on the kept front of its bearing; empty where nothing is kept for where it operates.
 
     Each is faster than the one before by a quarter at least, and on the front of the settings that the governor can use: at the scene's own level
     or a lower one that has everything the scene asks for; without a fixed step; and with a corrected table only where it is on
     disk.  Where the scene's own setting was not measured, those of its level are used that are surely faster: at least as fast as the
-    slowest that is coarser (`bearing_sim.scene.kept_front.is_coarser`).  Levels below all measured ones follow at the end, with errors that are not
-    known.
+    slowest that is coarser (`bearing_sim.scene.measured_tradeoffs.is_coarser`).  Levels below all measured ones follow at the end, with errors that
+    are not known.
 
     Parameters
     ----------
     scene : that runs.
-    kept : what is kept for its bearing (see `bearing_sim.scene.kept_front.read_front`), or None.
+    kept : what is kept for its bearing (see `bearing_sim.scene.measured_tradeoffs.read_kept_tradeoffs`), or None.
     """
     if kept is None or not (front := kept.at(scene)).courses:
         return []
@@ -244,7 +244,7 @@ def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
     measured = [one for one in front.settings() if one.level in usable and _is_adaptive(one) and not math.isnan(one.errors["slip"])]
     measured = [one for one in measured if not one.is_corrected or cached_table(with_setting(scene, one)) is not None]
     own = next((one for one in front.settings() if (one.level, one.overrides) == (scene.level, overrides)), None)
-    settings = [own or KeptSetting(scene.level, "as in the scene", overrides, math.nan, unknown)]
+    settings = [own or Setting(scene.level, "as in the scene", overrides, math.nan, unknown)]
     if own is not None:
         slowest = own.real_time_factor
     else:
@@ -260,11 +260,11 @@ def settings_to_fall(scene: Scene, kept: KeptFront | None) -> list[KeptSetting]:
     for level in usable:
         if NUMBERS[level] < lowest:
             lower = dataclasses.replace(scene, level=level, integration=adaptive)
-            settings.append(KeptSetting(level, "not measured", complete_overrides(lower), math.nan, unknown))
+            settings.append(Setting(level, "not measured", complete_overrides(lower), math.nan, unknown))
     return settings if len(settings) > 1 else []
 
 
-def _surely_faster(own: KeptSetting, front: KeptFront) -> float:
+def _surely_faster(own: Setting, front: Tradeoffs) -> float:
     """Return the real-time factor from which on settings are faster than one that was not measured: that of the slowest of its level that is coarser.
 
     It is infinite where none is coarser.
@@ -273,11 +273,11 @@ def _surely_faster(own: KeptSetting, front: KeptFront) -> float:
     return min((one.real_time_factor for one in coarser), default=math.inf)
 
 
-def _is_adaptive(setting: KeptSetting) -> bool:
+def _is_adaptive(setting: Setting) -> bool:
     return all(not each.startswith("integration.fixed_step=") or each.endswith("=null") for each in setting.overrides)
 
 
-def governor_record(settings: Sequence[KeptSetting], running: str) -> dict[str, str]:
+def governor_record(settings: Sequence[Setting], running: str) -> dict[str, str]:
     """Return the metadata record `RECORD` of a recording: the settings that its events name, with overrides and errors, and which one runs first."""
     stored = [
         {"name": one.name, "level": one.level, "overrides": one.overrides, "slip_error": one.errors["slip"], "life_error": one.errors["life"]}
@@ -286,7 +286,7 @@ def governor_record(settings: Sequence[KeptSetting], running: str) -> dict[str, 
     return {"settings": json.dumps(stored), "running": running or settings[0].name}
 
 
-def recorded_settings(record: Mapping[str, str]) -> tuple[dict[str, KeptSetting], str]:
+def recorded_settings(record: Mapping[str, str]) -> tuple[dict[str, Setting], str]:
     """Return the settings of a record of `governor_record` by name, the wanted one first, and the name of the one that ran first.
 
     Raises
@@ -295,7 +295,7 @@ def recorded_settings(record: Mapping[str, str]) -> tuple[dict[str, KeptSetting]
         The record is none of `governor_record`.
     """
     try:
-        found = {str(each["name"]): KeptSetting(each["level"], "", tuple(each["overrides"]), math.nan, {}) for each in json.loads(record["settings"])}
+        found = {str(each["name"]): Setting(each["level"], "", tuple(each["overrides"]), math.nan, {}) for each in json.loads(record["settings"])}
         return found, str(record["running"])
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"the settings of the governor in the recording cannot be read: {error!r}") from None

@@ -30,8 +30,8 @@ from bearing_sim.runtime.solver import Solver, WallTimeSolver
 from bearing_sim.runtime.solver_threads import SolverThreads
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.fidelity import lower_levels
-from bearing_sim.scene.kept_front import KeptCourse, KeptSetting
 from bearing_sim.scene.loader import with_setting
+from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.watchers.estimation.two_states import laws_of_table
@@ -72,7 +72,7 @@ def warmed_up(scene: Scene) -> Simulation:
     return simulation
 
 
-def governor_of(simulation: Simulation, settings: Sequence[KeptSetting] = (), courses: Sequence[KeptCourse] = ()) -> Governor | None:
+def governor_of(simulation: Simulation, settings: Sequence[Setting] = (), courses: Sequence[MeasuredCourse] = ()) -> Governor | None:
     """Return a governor over a simulation's settings, or its level and the levels of lower fidelity that support its scene; None if there are none.
 
     Their code is compiled or loaded here.  Without measured settings lower levels use the scene's tolerances, and level ``steady`` a plain table

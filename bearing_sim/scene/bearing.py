@@ -561,23 +561,3 @@ def play_errors(bearing) -> list[str]:
             f"{1e3 * roller.diameter:.6g} mm; {use}"
         )
     return errors
-
-
-def drop_other_lands(preset: dict, given: dict) -> None:
-    """Remove the land fields from a preset's cage if the file asks for another guidance, in place.
-
-    A cage that moves to the other ring keeps its body and the clearance and width of its lands.
-
-    Parameters
-    ----------
-    preset : block ``cage`` of the preset; modified.
-    given : block ``cage`` of the file.
-    """
-    guidance = given.get("guidance", preset.get("guidance", "outer_ring"))
-    if guidance == preset.get("guidance", "outer_ring"):
-        return
-    dropped = LAND_FIELDS if guidance in ("roller", "full_complement") else ("guide_radius",)
-    if guidance == "full_complement":
-        dropped += ("mass", "width", "inner_radius", "outer_radius", "pocket_clearance")
-    for name in dropped:
-        preset.pop(name, None)

@@ -7,7 +7,7 @@ kernels use.
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 
@@ -15,10 +15,11 @@ import numpy as np
 
 from bearing_sim.files.limits import CONTOUR_FILE, CONTOUR_POINTS, FileError, LimitError
 from bearing_sim.files.reading import read_text
+from bearing_sim.scene.errors import InvalidField
 from bearing_sim.scene.quantity import to_si
-from bearing_sim.scene.tree import at
 
 FORM_FIELDS = ("low_radius", "d_value", "lobes", "roundness", "low_points", "high_points", "contour", "contour_file")
+POINT_FORMS = (("contour", "contour_file"), ("low_points", "high_points"))
 UNREAD = "contour_file: its contents are missing; load_scene reads them"
 
 
@@ -333,34 +334,18 @@ def measured_spline(text: str, angle_unit: str | None = None, radius_unit: str |
     return spline
 
 
-_POINT_FORMS = (("contour", "contour_file"), ("low_points", "high_points"))
-
-
-def drop_other_forms(raceway: dict, given: Iterable[str]) -> None:
-    """Remove from a raceway's block the fields of other forms than that of the fields ``given`` over it, in place."""
-    for form in _POINT_FORMS:
-        if any(name in form for name in given):
-            kept = set(form) if form[0] == "low_points" else set(given)  # --set gives lows and highs one at a time; a file replaces its text, too
-            for name in FORM_FIELDS:
-                if name not in kept:
-                    raceway.pop(name, None)
-
-
-def with_contour_text(tree: Mapping) -> tuple[dict, tuple[str, str] | None]:
-    """Return the tree with the text of its contour file, and value and reason of the error if the file cannot be read.
+def with_contour_text(raceway: Mapping, path: str) -> tuple[Mapping, list[InvalidField]]:
+    """Return a block ``outer_raceway`` with the text of its contour file, and the error if that cannot be read.
 
     Only the name of the file is kept, not its path, so that recordings do not reveal the paths of the machine.
     """
-    tree, raceway = dict(tree), at(tree, "bearing.outer_raceway")
-    raceway = dict(raceway) if isinstance(raceway, Mapping) else {}
-    path = raceway.get("contour_file")
-    if not isinstance(path, str):
-        return tree, None
-    if raceway.get("contour") is None:
+    file = raceway.get("contour_file")
+    if not isinstance(file, str):
+        return raceway, []
+    text = raceway.get("contour")
+    if text is None:
         try:
-            raceway["contour"] = read_text(path, CONTOUR_FILE)
+            text = read_text(file, CONTOUR_FILE)
         except FileError as error:
-            return tree, (repr(path), error.reason)
-    raceway["contour_file"] = Path(path).name
-    tree["bearing"] = {**tree["bearing"], "outer_raceway": raceway}
-    return tree, None
+            return raceway, [InvalidField(f"{path}.contour_file", repr(file), error.reason)]
+    return {**raceway, "contour": text, "contour_file": Path(file).name}, []

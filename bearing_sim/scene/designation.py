@@ -2,8 +2,9 @@
 """Designations of single row cylindrical roller bearings, such as ``NU 210 ECP/C3``, and the tables of the bearings that they name.
 
 The tables are in ``catalog/designations``: ``boundary.csv`` (ISO 15), ``ratings.csv`` (what makers print), ``rollers.csv`` (numbers of
-rollers), ``types.csv`` and ``suffixes.csv`` (what letters mean); each says where it comes from.  Designations are those of makers and of GOST 3189
-(types of GOST 8328).  `bearing_tree` turns a designation into the block that a preset file would hold.
+rollers), ``types.csv``, ``suffixes.csv`` and ``gost.csv`` (what letters and digits mean), ``iso_numbers.csv`` (other bearings); each says where it
+comes from.  Designations are those of makers and of GOST 3189 (types of GOST 8328).  `bearing_tree` turns a designation into the block that a preset
+file would hold.
 """
 
 import difflib
@@ -38,53 +39,6 @@ _CYRILLIC = str.maketrans("ABEKMHOPCTXYLUDGJ", "АБЕКМНОРСТХУЛУДГ
 _LETTERS = re.compile(r"^([A-Z]{1,4})[\s_.-]*(\d{2}/\d{3}|\d{1,7})(?!\d)(.*)$", re.DOTALL)
 _INA = re.compile(r"^([RLZ]?SL)[\s-]*(\d\d)[\s-]*(\d{2}/\d{3}|\d{4})(?!\d)(.*)$", re.DOTALL)
 _DIGITS = re.compile(r"^(?:(ГОСТ|GOST|GOCT)[\s-]*)?(?:(\d?[ABАВ]?[\dMМHН]{0,2}[0-8TТ])\s?-\s?)?(\d{3,7})(/\d+)?(?![\d_])[\s-]*([0-9A-ZА-Я/., -]*)$")
-_GOST_TYPES = {  # construction digits, before type digit 2 (GOST 8328-75, GOST 5377-79): type, or what it is and the nearest type
-    "": "N",
-    "1": "NF",
-    "3": "NU",
-    "4": "NJ",
-    "9": "NUP",
-    "5": ("an NU bearing with an angle ring", "NJ"),
-    "6": ("an NJ bearing with an angle ring", "NUP"),
-    "10": ("a bearing without flanges on the outer ring but with two snap washers", "N"),
-    "29": ("a bearing without inner ring (RNU)", "NU"),
-    "50": ("a bearing without outer ring (RN)", "N"),
-}
-_GOST_SERIES = {"1": "10", "2": "2", "3": "3", "4": "4", "5": "22", "6": "23"}  # by the digit of the diameter series, width series normal (0)
-_GOST_CLEARANCES = {
-    **{"": "CC", "0": "CC1", "5": "CC2", "7": "CC3", "8": "CC4", "9": "CC5"},
-    **{digit: f"GOST{digit}" for digit in "16234"},
-}
-_GOST_SUFFIXES = {  # meaning, and the cage if it is one of `CAGES`; None where the model does not have it (GOST 3189-89, table 7)
-    "А": ("higher load capacity", ""),
-    "К": ("pressed steel cage", "J"),
-    "М": ("rollers or raceways with modified contact, which this model has anyway", ""),
-    "Л": ("brass cage; GOST does not say what guides it, taken as guided by the rollers", "M"),
-    "Е": ("cage of plastics, taken as polyamide guided by the rollers", "P"),
-    "У": ("special requirements, which the code does not spell out; without effect here", ""),
-    "Ш": ("vibration class, without effect here", ""),
-    "Т": ("temper of the rings, without effect here", ""),
-    "С": ("grease, without effect here: name it in the scene", ""),
-    "Х": ("case hardened steel, without effect here", ""),
-    "Н": ("heat-resistant steel, without effect here", ""),
-    "Э": ("steel with additives, without effect here", ""),
-    "Б": ("bronze cage, which is none of the kinds of cages", None),
-    "Г": ("solid steel or iron cage, which is none of the kinds of cages", None),
-    "Д": ("aluminium cage, which is none of the kinds of cages", None),
-    "Ю": ("stainless steel; its fatigue life is not known", None),
-    "Р": ("high-speed steel; give bearing.material", None),
-    "Я": ("hard metal, ceramics or glass; give bearing.material", None),
-}
-# Bearings whose number begins with its type by ISO, and what it is.
-_ISO_NUMBERS = (
-    (r"6\d{2,4}|16\d{3}|4[23]\d\d", "a deep groove ball bearing"),
-    (r"7\d{3,4}|3[23]\d\d", "an angular contact ball bearing"),
-    (r"1[0234]\d\d|2[23]\d\d|112\d\d|113\d\d", "a self-aligning ball bearing"),
-    (r"213\d\d|2[234][0-9]\d\d", "a spherical roller bearing"),
-    (r"3[0-3][0239]\d\d|3[01]3\d\d|33[01]\d\d", "a tapered roller bearing"),
-    (r"5[1-6][234]\d\d|511\d\d", "a thrust ball bearing"),
-    (r"8[19][12]\d\d|29[234]\d\d", "a thrust roller bearing"),
-)
 _CODES = {15: "02", 17: "03"}  # of bores that are no multiple of 5 mm, or below 20 mm
 _CLOSE = 3  # designations that a message proposes
 
@@ -269,6 +223,13 @@ def _suffixes() -> tuple[tuple[re.Pattern, str, str, str], ...]:
 
 
 @cache
+def _gost(*kinds: str) -> Mapping[str, tuple[str, str]]:
+    """Return value and meaning of the signs of GOST 3189 of these kinds in ``gost.csv``."""
+    rows = (row for row in catalog_table("designations/gost") if row["kind"] in kinds)
+    return types.MappingProxyType({row["sign"]: (row["value"], row["meaning"]) for row in rows})
+
+
+@cache
 def _other_types() -> Mapping[str, tuple[str, str]]:
     """Return what bearings are whose type is not of `TYPES`, and the nearest of `TYPES`, by the letters of the type."""
     return types.MappingProxyType({row["type"]: (row["what"], row["nearest"]) for row in catalog_table("designations/types")})
@@ -376,30 +337,31 @@ def _designation(kind: str, series: str, bore: int, read: "_Suffixes", notes: li
 def _parse_number(plain: str, gost: str, before: str, digits: str, bore: str, after: str) -> Designation:
     """Return the bearing of a number by GOST 3189; raise `DesignationError` if it is another, or one of ISO by the same digits."""
     suffixes = after.strip(" -.,/")
-    iso = next((what for form, what in _ISO_NUMBERS if re.fullmatch(form, digits)), None)
-    kind = _GOST_TYPES.get(digits[:-4].lstrip("0")) if len(digits) >= 4 and digits[-4] == "2" and len(digits) <= 6 else None
+    iso = next((row["what"] for row in catalog_table("designations/iso_numbers") if re.fullmatch(row["pattern"], digits)), None)
+    is_roller = 4 <= len(digits) <= 6 and digits[-4] == "2"
+    kind, other = _gost("type").get(digits[:-4].lstrip("0"), ("", "")) if is_roller else ("", "")
     is_gost = bool(gost or before or re.search("[Б-ДЖЗИЙЛПУФЦ-Я]", suffixes))
-    if iso is not None and (kind is None or not is_gost):
+    series = _gost("series").get(digits[-3], ("",))[0]
+    if iso is not None and not (kind and is_gost):
         size, name = int(digits[-2:]), f"{digits} {suffixes}".rstrip()
-        if isinstance(kind, str) and (series := _GOST_SERIES.get(digits[-3])) is not None:
+        if kind and not other and series:
             raise DesignationError(
                 f"{name} is {iso} by ISO, and {kind} {series}{digits[-2:]} by GOST 8328; which one is meant? "
                 f"Write {kind} {series}{digits[-2:]}, or GOST {digits}"
             )
-        other = f" by ISO, {kind[0]} by GOST" if isinstance(kind, tuple) else ", not a cylindrical roller bearing"
-        raise DesignationError(f"{name}: {iso}{other}{_nearest('NU', '', _bore_of_code(size))}")
-    if kind is None:
+        found = f" by ISO, {other} by GOST" if other else ", not a cylindrical roller bearing"
+        raise DesignationError(f"{name}: {iso}{found}{_nearest('NU', '', _bore_of_code(size))}")
+    if not kind:
         rows = len(digits) == 7 and digits[-4] == "2"
         reason = "by GOST of another width series, or in two rows" if rows else "no number of ISO or GOST that can be read"
         raise DesignationError(f"{plain}: {reason}; expected a designation such as NU 210 ECP/C3, or one by GOST such as 42210")
-    series = _GOST_SERIES.get(digits[-3])
-    if series is None or bore:
+    if not series or bore:
         raise DesignationError(
-            f"{plain}: the tables have no diameter series {digits[-3]} of GOST; they have {', '.join(_GOST_SERIES)}"
-            f"{_nearest(kind if isinstance(kind, str) else kind[1], '', _bore_of_code(int(digits[-2:])))}"
+            f"{plain}: the tables have no diameter series {digits[-3]} of GOST; they have {', '.join(_gost('series'))}"
+            f"{_nearest(kind, '', _bore_of_code(int(digits[-2:])))}"
         )
-    if not isinstance(kind, str):
-        raise DesignationError(f"{plain}: by GOST {kind[0]}{_nearest(kind[1], series, _bore_of_code(int(digits[-2:])))}")
+    if other:
+        raise DesignationError(f"{plain}: by GOST {other}{_nearest(kind, series, _bore_of_code(int(digits[-2:])))}")
     series, size = _series_and_bore(kind, series + digits[-2:])
     what = f"{plain}, by GOST {kind} {_digits(series, size)}"
     read = _read_gost(what, before, suffixes)
@@ -420,18 +382,18 @@ def _read_gost(what: str, before: str, suffixes: str) -> "_Suffixes":
             f"{what}: {before}- is none of the marks of GOST 3189; expected digits of clearance group and precision class, such as 76-"
         )
     group, precision = marks.groups() if marks is not None else ("", "")
-    if group not in _GOST_CLEARANCES:
+    if group not in _gost("clearance"):
         raise DesignationError(f"{what}: clearance group {group} is not one of GOST 24810; give bearing.clearance in the scene")
-    read.clearance = _GOST_CLEARANCES[group]
+    read.clearance = _gost("clearance")[group][0]
     if precision in ("2", "4", "5", "6"):
         read.unmodelled.append(f"P{precision}")
         read.notes.append(f"precision class {precision}, without effect here")
     refused, unknown = [], []
     for letter, number in re.findall(r"([^\d\s.,/-])(\d*)", suffixes.translate(_CYRILLIC)):
-        meaning, cage = _GOST_SUFFIXES.get(letter, ("", ""))
+        cage, meaning = _gost("suffix", "refused").get(letter, ("", ""))
         if not meaning:
             unknown.append(letter + number)
-        elif cage is None:
+        elif letter in _gost("refused"):
             refused.append(f"{letter}: {meaning}")
         elif cage and read.cage:
             raise DesignationError(f"{what}: two cages, {read.cage} and {cage}; give one")

@@ -6,23 +6,22 @@ no exception worth a rule: it is the curvature of an arc, of which nobody gives 
 diameter, E, of a raceway without lobes.
 """
 
-import copy
 import types
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cache
 from typing import NamedTuple
 
 from pydantic_core import PydanticCustomError
 
-from bearing_sim.scene.quantity import Quantity
-from bearing_sim.scene.tree import at
-from bearing_sim.scene.uncertainty import flattened, quantities
+from bearing_sim.scene.errors import InvalidField
+from bearing_sim.scene.quantity import Quantity, to_si
+from bearing_sim.scene.tree import at, changed, parts, without
+from bearing_sim.scene.uncertainty import quantities
 
 ROUND_RACEWAY = "bearing.outer_raceway.diameter"
 """Path of the diameter of a raceway without lobes, E."""
 _LOW_RADIUS = "bearing.outer_raceway.low_radius"
 _NO_DIAMETER = ("crown_radius",)
-_ENDS = ("low", "high", "mode")  # of a range
 
 
 class Diameter(NamedTuple):
@@ -36,10 +35,6 @@ class Diameter(NamedTuple):
 
     radius: str
     quantity: Quantity
-
-    def halved(self, value) -> float:
-        """Return half of a written diameter [m]; raises as `Quantity.read`."""
-        return self.quantity.read(value, written=True) / 2
 
 
 @cache
@@ -57,32 +52,40 @@ def diameters(scene_type: type) -> Mapping[str, Diameter]:
     return types.MappingProxyType(found)
 
 
-def with_radii(tree: Mapping, scene_type: type) -> tuple[dict, list[tuple[str, str, str]]]:
-    """Return a scene's tree with radii instead of diameters, also in the block ``uncertainty``, and (path, value, reason) of each error.
-
-    A diameter in error is left out, so that its radius is missing.
-    """
-    if not any(_diameters_in(tree, scene_type)) and not _ranges_in(tree, scene_type):
-        return dict(tree), []
-    tree, errors = copy.deepcopy(dict(tree)), []
-    for path, block in _diameters_in(tree, scene_type):
-        found, given = diameters(scene_type)[path], block.pop(path.rpartition(".")[2])
-        name = found.radius.rpartition(".")[2]
+def with_radii(tree: Mapping, scene_type: type) -> tuple[Mapping, list[InvalidField]]:
+    """Return a scene's tree with radii instead of diameters, and the errors; a diameter in error is left out, so that its radius is missing."""
+    errors = []
+    for path, (radius, quantity) in diameters(scene_type).items():
+        given, known = at(tree, parts(path)), at(tree, parts(radius))
+        tree = without(tree, parts(path))
         if given is None:
             continue
-        if block.get(name) is not None:
-            errors.append((path, repr(given), f"{name} is given, too ({block[name]!r}); give one of the two, and leave the other out (null)"))
+        if known is not None:
+            reason = f"{parts(radius)[-1]} is given, too ({known!r}); give one of the two, and leave the other out (null)"
+            errors.append(InvalidField(path, repr(given), reason))
             continue
+        if path == ROUND_RACEWAY and _has_lobes(at(tree, parts(path)[:-1])):
+            errors.append(InvalidField(path, "", "this raceway has lobes, and no one diameter; give low_diameter or low_radius"))
         try:
-            block[name] = found.halved(given)
+            tree = changed(tree, parts(radius), quantity.read(given, written=True) / 2)
         except PydanticCustomError as error:
-            errors.append((path, repr(given), error.message()))
-    return tree, errors + _convert_ranges(tree, scene_type)
+            errors.append(InvalidField(path, repr(given), error.message()))
+    return tree, errors
 
 
-def gives_round_raceway(tree: Mapping) -> bool:
-    """Whether a tree gives the outer raceway by one diameter, which a raceway with lobes has not."""
-    return at(tree, ROUND_RACEWAY) is not None
+def _has_lobes(raceway: Mapping) -> bool:
+    """Whether a block ``outer_raceway`` has high points or a D value above zero; False for what cannot be read."""
+    try:
+        return bool(raceway.get("high_points")) or to_si(raceway.get("d_value") or 0.0, "m") > 0.0
+    except ValueError:
+        return False
+
+
+@cache
+def ranged(scene_type: type) -> Mapping[str, tuple[str, Quantity, float]]:
+    """Return what may have a range in a file, as `bearing_sim.scene.uncertainty.read_ranges` takes it."""
+    given = {path: (found.radius, found.quantity, 0.5) for path, found in diameters(scene_type).items()}
+    return given | {path: (path, declared, 1.0) for path, declared in quantities(scene_type).items()}
 
 
 def override_by_radius(path: str, value, scene_type: type) -> tuple[str, object]:
@@ -91,59 +94,6 @@ def override_by_radius(path: str, value, scene_type: type) -> tuple[str, object]
     if found is None or value is None or path == ROUND_RACEWAY:  # whether that raceway is round is not known before presets are read
         return path, value
     try:
-        return found.radius, found.halved(value)
+        return found.radius, found.quantity.read(value, written=True) / 2
     except PydanticCustomError:
         return path, value
-
-
-def forget_counterpart(block: dict, path: str, scene_type: type) -> None:
-    """Remove from a block the diameter of a radius that an override sets, or the radius of a diameter, in place."""
-    for diameter, found in diameters(scene_type).items():
-        if path in (diameter, found.radius):
-            for other in {diameter, found.radius} - {path}:
-                block.pop(other.rpartition(".")[2], None)
-
-
-def _diameters_in(tree: Mapping, scene_type: type) -> Iterator[tuple[str, Mapping]]:
-    """Yield path and block of every diameter in a tree."""
-    for path in diameters(scene_type):
-        place, _, name = path.rpartition(".")
-        block = at(tree, place)
-        if isinstance(block, Mapping) and name in block:
-            yield path, block
-
-
-def _ranges_in(tree: Mapping, scene_type: type) -> list[str]:
-    given = tree.get("uncertainty")
-    return [path for path in flattened(given) if path in diameters(scene_type)] if isinstance(given, Mapping) else []
-
-
-def _convert_ranges(tree: dict, scene_type: type) -> list[tuple[str, str, str]]:
-    """Replace ranges of diameters by those of radii, in place; return the errors."""
-    errors, ranges = [], flattened(tree["uncertainty"]) if _ranges_in(tree, scene_type) else {}
-    for path in [path for path in ranges if path in diameters(scene_type)]:
-        found, value = diameters(scene_type)[path], ranges.pop(path)
-        if found.radius in ranges:
-            errors.append((f"uncertainty.{path}", "", f"{found.radius} has a range, too; give one of the two"))
-        elif value is not None:
-            ranges[found.radius], wrong = _halved_range(f"uncertainty.{path}", value, found)
-            errors += wrong
-    if ranges:
-        tree["uncertainty"] = ranges
-    return errors
-
-
-def _halved_range(where: str, value, found: Diameter) -> tuple[object, list[tuple[str, str, str]]]:
-    """Return a range as the file gives it, each end halved, and the errors of its ends; null if an end is in error."""
-    ends = dict(zip(_ENDS, value)) if isinstance(value, (list, tuple)) else dict(value) if isinstance(value, Mapping) else {}
-    errors = []
-    for name, given in ends.items():
-        if given is None or isinstance(value, Mapping) and name not in _ENDS:
-            continue
-        try:
-            ends[name] = found.halved(given)
-        except PydanticCustomError as error:
-            errors.append((f"{where}.{name}", repr(given), error.message()))
-    if errors:
-        return None, errors
-    return (list(ends.values()) if isinstance(value, (list, tuple)) else ends or value), []

@@ -39,6 +39,7 @@ class SceneError(ValueError):
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return ``" (did you mean ...?)"`` for the nearest known word, or an empty text."""
-    close = difflib.get_close_matches(word, list(known), n=1) if len(word) <= _LONGEST_WORD else []
-    return f" (did you mean {close[0]!r}?)" if close else ""
+    """Return ``" (did you mean ...?)"`` for the nearest known word, whatever its capitals, or an empty text."""
+    by_fold = {each.casefold(): each for each in known}
+    close = difflib.get_close_matches(word.casefold(), list(by_fold), n=1) if len(word) <= _LONGEST_WORD else []
+    return f" (did you mean {by_fold[close[0]]!r}?)" if close else ""

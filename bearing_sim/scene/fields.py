@@ -14,7 +14,7 @@ import sys
 import tokenize
 import types
 import typing
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
 
@@ -60,6 +60,47 @@ class Block(NamedTuple):
 
 
 @cache
+def hints_of(record: type) -> Mapping[str, object]:
+    """Return the type hints of a record's fields by name, with their annotations; none for what is no record."""
+    return typing.get_type_hints(record, include_extras=True) if dataclasses.is_dataclass(record) else {}
+
+
+def type_parts(hint: object) -> tuple[list, list]:
+    """Return the alternatives of a type hint, unions and annotations taken apart, and all metadata on the way."""
+    if typing.get_origin(hint) is typing.Annotated:
+        inner, *metadata = typing.get_args(hint)
+        alternatives, more = type_parts(inner)
+        return alternatives, [*metadata, *more]
+    if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
+        taken = [type_parts(option) for option in typing.get_args(hint)]
+        return [option for options, _ in taken for option in options], [item for _, metadata in taken for item in metadata]
+    return [hint], []
+
+
+def records_in(hint: object) -> list[type]:
+    """Return the record types in a type hint, also as elements of a tuple."""
+    options = [typing.get_args(option)[0] if typing.get_origin(option) is tuple else option for option in type_parts(hint)[0]]
+    return [option for option in options if dataclasses.is_dataclass(option)]
+
+
+def tags_of(record: type) -> tuple[str, ...]:
+    """Return the values of the field ``law`` that select a record among those that may stand at its place."""
+    return typing.get_args(hints_of(record).get("law"))
+
+
+def declared_in(path: str, hint: object) -> Iterator[tuple[str, Quantity]]:
+    """Yield the declarations of all quantities in a type hint, such as a record, by dotted paths that begin with ``path``."""
+    options, metadata = type_parts(hint)
+    declared = [note for note in metadata if isinstance(note, Quantity)]
+    if declared:
+        yield path, declared[0]
+        return
+    for option in options:
+        for name, inner in hints_of(option).items():
+            yield from declared_in(f"{path}.{name}", inner)
+
+
+@cache
 def blocks(record: type, path: str = "", law: str = "") -> tuple[Block, ...]:
     """Return a record and all records inside it, in order, each at its place below ``path``.
 
@@ -68,7 +109,7 @@ def blocks(record: type, path: str = "", law: str = "") -> tuple[Block, ...]:
     LookupError
         A field has no meaning.
     """
-    hints, comments, facts, inner = typing.get_type_hints(record, include_extras=True), _comments(record), [], []
+    hints, comments, facts, inner = hints_of(record), _comments(record), [], []
     for field in dataclasses.fields(record):
         if field.name == "law":
             continue
@@ -83,13 +124,13 @@ def blocks(record: type, path: str = "", law: str = "") -> tuple[Block, ...]:
 
 def _facts(field: dataclasses.Field, place: str, hint, comment: str) -> tuple[FieldFacts, list[tuple[type, str, str]]]:
     """Return one field, and the records inside it, each with its place and its law."""
-    alternatives, metadata = _parts(hint)
+    alternatives, metadata = type_parts(hint)
     quantity = next((item for item in metadata if isinstance(item, Quantity)), None)
     records = [option for option in alternatives if dataclasses.is_dataclass(option)]
     element = next((typing.get_args(option)[0] for option in alternatives if typing.get_origin(option) is tuple), None)
     choices = [str(choice) for option in alternatives if typing.get_origin(option) is typing.Literal for choice in typing.get_args(option)]
     if element is not None and quantity is None:
-        quantity = next((item for item in _parts(element)[1] if isinstance(item, Quantity)), None)
+        quantity = next((item for item in type_parts(element)[1] if isinstance(item, Quantity)), None)
     held = records or ([element] if dataclasses.is_dataclass(element) else [])
     first_sentence = re.split(r"(?<=[.;:])\s", prose(held[0].__doc__))[0].rstrip(".;:") if len(held) == 1 else ""
     inner = []
@@ -136,18 +177,6 @@ def _parsed(module: str) -> tuple[ast.Module, dict[int, tokenize.TokenInfo]]:
     source = inspect.getsource(sys.modules[module])
     tokens = tokenize.generate_tokens(io.StringIO(source).readline)
     return ast.parse(source), {token.start[0]: token for token in tokens if token.type == tokenize.COMMENT}
-
-
-def _parts(hint: object) -> tuple[list, list]:
-    """Return the alternatives of a type hint, unions and annotations taken apart, and all metadata on the way."""
-    if typing.get_origin(hint) is typing.Annotated:
-        inner, *metadata = typing.get_args(hint)
-        alternatives, more = _parts(inner)
-        return alternatives, [*metadata, *more]
-    if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
-        taken = [_parts(option) for option in typing.get_args(hint)]
-        return [option for options, _ in taken for option in options], [item for _, metadata in taken for item in metadata]
-    return [hint], []
 
 
 def _default(field: dataclasses.Field, quantity: Quantity | None) -> str:

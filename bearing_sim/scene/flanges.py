@@ -11,7 +11,6 @@ corner radius of ``CORNER`` times the roller's diameter (*assumptions*; `uncerta
 """
 
 import math
-from collections.abc import Mapping
 from typing import Literal, NamedTuple
 
 from bearing_sim.scene.quantity import quantity, record
@@ -121,23 +120,6 @@ def flange_errors(bearing) -> list[str]:
                     f"{1e3 * high / slope:.6g} mm"
                 )
     return errors
-
-
-def drop_absent_flanges(preset: dict, given: Mapping) -> None:
-    """Remove from a preset's flanges the sizes of those that the file takes away, in place.
-
-    Parameters
-    ----------
-    preset : block ``flanges`` of the preset; modified.
-    given : block ``flanges`` of the file.
-    """
-    sides = {ring: given.get(ring, preset.get(ring, "none")) for ring in ("inner", "outer")}
-    for ring in sides:
-        if sides[ring] == "none":
-            preset.pop(f"{ring}_radius", None)
-    if set(sides.values()) == {"none"}:
-        for name in ("end_clearance", "corner_radius", "end_radius"):
-            preset.pop(name, None)
 
 
 def axial_errors(scene) -> list[str]:

@@ -11,10 +11,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from bearing_sim.scene.bundled import catalog_table
 from bearing_sim.scene.designation import Designation, DesignationError, MakersRow, makers_rows, parse_designation, roller_counts
+from bearing_sim.scene.errors import InvalidField
 from bearing_sim.scene.flanges import HEIGHT, estimated_clearance
 from bearing_sim.scene.quantity import to_si
-from bearing_sim.scene.tree import at
+from bearing_sim.scene.ratings import Ratings
+from bearing_sim.scene.tree import at, parts, without
 
 STEEL_DENSITY = 7850.0
 CAGE_DENSITIES = {"polyamide": 1320.0, "steel": 7850.0, "brass": 8400.0}  # kg/m^3, of the materials of the catalogue with these names
@@ -48,13 +51,9 @@ _LONGEST = 0.88  # effective length of the rollers at most, over the width; assu
 _FULL_DIAMETER_RATIO, _FULL_INNER_FLANGE, _FULL_DEPTH, _FULL_FLANGE = 0.22, 0.8, 0.77, 0.2
 _DIAMETER_RATIO = {"10": 0.235, "4": 0.24}  # D_w over D - d, where not even the flanges are printed
 _OTHER_DIAMETER_RATIO = 0.27
-# Diameters of cylindrical rollers of the bearings whose raceways are both printed [mm].
-_PREFERRED = (
-    *(4, 4.5, 5, 5.5, 6, 6.5, 7, 7.5, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26),
-    *(28, 30, 32, 34, 36, 38, 40, 42, 45, 48, 50, 52, 54, 56, 60, 64, 68, 72, 75, 80),
-)
 _PARTNER = {"22": "2", "23": "3", "2": "22", "3": "23"}  # widths that share their raceways
 _SAME = 1e-6  # m
+_NOT_PRINTED = MakersRow("", "", Ratings(), None, None, None, None)
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ class Section:
     inner_raceway, outer_raceway : diameters F and E.
     roller_diameter, roller_length, count : D_w, effective length, Z.
     inner_flange, outer_flange : diameters d_1 and D_1 of flanges, where the rings have some.
-    row : of the maker whose figures these are; None where no maker of the tables prints the bearing.
+    row : of the maker whose figures these are; without a maker's name where none of the tables prints the bearing.
     count_source : where Z is from.
     estimated : fields that follow from rules.
     """
@@ -78,7 +77,7 @@ class Section:
     count: int
     inner_flange: float
     outer_flange: float
-    row: MakersRow | None
+    row: MakersRow
     count_source: str
     estimated: tuple[dict, ...]
 
@@ -90,7 +89,8 @@ def is_high_capacity(row: MakersRow) -> bool:
 
 def preferred_diameter(diameter: float) -> float:
     """Return the nearest diameter of rollers that makers use [m]."""
-    return 1e-3 * min(_PREFERRED, key=lambda each: abs(each - 1e3 * diameter))
+    known = (float(row["diameter"]) for row in catalog_table("designations/roller_diameters"))
+    return 1e-3 * min(known, key=lambda each: abs(each - 1e3 * diameter))
 
 
 def count_by_gap(rules: DesignRules, roller_diameter: float, pitch_diameter: float) -> int:
@@ -115,7 +115,7 @@ def section_of(designation: Designation) -> Section:
     rows = makers_rows().get((designation.series, bore, designation.is_full_complement), ())
     if designation.high_capacity and any(map(is_high_capacity, rows)):
         rows = tuple(row for row in rows if is_high_capacity(row))
-    row = next((each for each in rows if each.inner_raceway or each.outer_raceway), rows[0] if rows else None)
+    row = next((each for each in rows if each.inner_raceway or each.outer_raceway), rows[0] if rows else _NOT_PRINTED)
     return _full_section(designation, row, rows) if designation.is_full_complement else _caged_section(designation, row, bore)
 
 
@@ -147,15 +147,14 @@ def known_count(series: str, bore: float, inner_raceway: float, outer_raceway: f
     return None
 
 
-def _caged_section(designation: Designation, row: MakersRow | None, bore: int) -> Section:
+def _caged_section(designation: Designation, row: MakersRow, bore: int) -> Section:
     boundary, estimated = designation.boundary, []
-    rules = HIGH_CAPACITY if row is not None and is_high_capacity(row) else STANDARD
-    outer = None if row is None else printed_outer_raceway(designation.series, bore, row)
-    inner = None if row is None else row.inner_raceway
+    rules = HIGH_CAPACITY if is_high_capacity(row) else STANDARD
+    outer, inner = printed_outer_raceway(designation.series, bore, row), row.inner_raceway
     if inner is not None and outer is not None:
         diameter = (outer - inner) / 2.0
     else:
-        diameter = None if row is None else diameter_by_flange(rules, row)
+        diameter = diameter_by_flange(rules, row)
         by, low, high = "flange of the outer ring, to the next preferred diameter; within 8 % for 95 % of those printed", 0.92, 1.08
         if diameter is None:
             ratio = _DIAMETER_RATIO.get(designation.series, _OTHER_DIAMETER_RATIO)
@@ -183,24 +182,22 @@ def _caged_section(designation: Designation, row: MakersRow | None, bore: int) -
                 count + rules.count_error,
             )
         )
-    static = None if row is None else row.ratings.static
-    length = _length(static, count, diameter, pitch, rules.length_ratio * boundary.width, estimated, boundary.width)
+    length = _length(row.ratings.static, count, diameter, pitch, rules.length_ratio * boundary.width, estimated, boundary.width)
     return Section(
         inner,
         outer,
         diameter,
         length,
         count,
-        _printed(row, "inner_flange", inner + 2.0 * rules.inner_flange * diameter, inner, outer),
-        _printed(row, "outer_flange", outer - 2.0 * rules.outer_flange * diameter, inner, outer),
+        _printed(row.inner_flange, inner + 2.0 * rules.inner_flange * diameter, inner, outer),
+        _printed(row.outer_flange, outer - 2.0 * rules.outer_flange * diameter, inner, outer),
         row,
         source,
         tuple(estimated),
     )
 
 
-def _printed(row: MakersRow | None, name: str, otherwise: float, inner: float, outer: float) -> float:
-    value = None if row is None else getattr(row, name)
+def _printed(value: float | None, otherwise: float, inner: float, outer: float) -> float:
     return value if value is not None and inner < value < outer else otherwise
 
 
@@ -215,7 +212,7 @@ def _length(static, count, diameter, pitch, otherwise, estimated, width) -> floa
     return round(min(length_by_static_rating(static, count, diameter, pitch), _LONGEST * width), 5)
 
 
-def _full_section(designation: Designation, row: MakersRow | None, rows: tuple[MakersRow, ...]) -> Section:
+def _full_section(designation: Designation, row: MakersRow, rows: tuple[MakersRow, ...]) -> Section:
     """Return the inside of a full-complement bearing: E, d_1 and D_1 are printed, the flanges of both rings are taken as equally high."""
     outer = next((each.outer_raceway for each in rows if each.outer_raceway is not None), None)
     low = next((each.inner_flange for each in rows if each.inner_flange is not None), None)
@@ -236,9 +233,8 @@ def _full_section(designation: Designation, row: MakersRow | None, rows: tuple[M
     pitch = inner + diameter
     count = full_count(diameter, pitch)
     estimated.append(_estimate("roller.count", "as many as fill the pitch circle, or one less", count - 1, count))
-    static = None if row is None else row.ratings.static
     width = designation.boundary.width
-    length = _length(static, count, diameter, pitch, FULL_COMPLEMENT_LENGTH * width, estimated, width)
+    length = _length(row.ratings.static, count, diameter, pitch, FULL_COMPLEMENT_LENGTH * width, estimated, width)
     inner_flange = low if inner < low < outer else inner + 2.0 * _FULL_FLANGE * diameter
     outer_flange = high if high is not None else outer - 2.0 * _FULL_FLANGE * diameter
     return Section(inner, outer, diameter, length, count, inner_flange, outer_flange, row, "estimated", tuple(estimated))
@@ -368,37 +364,43 @@ def cage_tree(name: str, space: CageSpace, guiding_ring: str = "outer_ring") -> 
     return tree, list(_cage_estimates(tree, rule))
 
 
-def with_cage_of_kind(bearing: Mapping) -> tuple[dict, str]:
+def with_cage_of_kind(bearing: Mapping, where: str) -> tuple[Mapping, list[InvalidField]]:
     """Return a block ``bearing`` whose cage, given by its kind, is a block with estimates, and why it cannot be; as it is if no kind is given.
 
     Parameters
     ----------
     bearing : as a file has it, with radii; its ``cage`` is a kind, such as ``P``, or a block with a ``preset`` and what differs.
+    where : dotted path of the block.
     """
-    given = bearing.get("cage")
-    kind = given.get("preset") if isinstance(given, Mapping) else given
+    given = at(bearing, ("cage",))
     if given is None:
-        return {name: value for name, value in bearing.items() if name != "cage"}, ""
-    if isinstance(given, Mapping) and "preset" not in given:
-        return dict(bearing), ""
+        return without(bearing, ("cage",)), []
+    own = without(given, ("preset",))
+    if isinstance(given, Mapping) and own is given:
+        return bearing, []
+    kind, own = (given["preset"], own) if isinstance(given, Mapping) else (given, {})
+    reason = ""
     if not isinstance(kind, str) or kind.strip().upper() not in CAGE_RULES:
-        return dict(bearing), f"{kind!r} is no kind of cage; expected one of {', '.join(CAGE_RULES)}, or a block"
-    try:
-        space = _space_of(bearing)
-    except ValueError as error:
-        return dict(bearing), f"a cage of kind {kind} is estimated from rollers and raceway, but {error}"
-    on_inner_ring = at(bearing, "flanges.inner") not in (None, "none") and at(bearing, "flanges.outer") in (None, "none")
+        reason = f"{kind!r} is no kind of cage; expected one of {', '.join(CAGE_RULES)}, or a block"
+    else:
+        try:
+            space = _space_of(bearing)
+        except ValueError as error:
+            reason = f"a cage of kind {kind} is estimated from rollers and raceway, but {error}"
+    if reason:
+        return bearing, [InvalidField(f"{where}.cage", "", reason)]
+    on_inner_ring = at(bearing, ("flanges", "inner")) not in (None, "none") and at(bearing, ("flanges", "outer")) in (None, "none")
     cage, estimates = cage_tree(kind.strip().upper(), space, "inner_ring" if on_inner_ring else "outer_ring")
-    own = {name: value for name, value in given.items() if name != "preset"} if isinstance(given, Mapping) else {}
-    marks = [each for each in estimates if each["field"].removeprefix("cage.") not in own]
-    return {**bearing, "cage": {**cage, **own}, "estimated": [*(bearing.get("estimated") or ()), *marks]}, ""
+    marks, known = [each for each in estimates if each["field"].removeprefix("cage.") not in own], bearing.get("estimated")
+    estimated = [*known, *marks] if isinstance(known, (list, tuple)) else marks if known is None else known
+    return {**bearing, "cage": {**cage, **own}, "estimated": estimated}, []
 
 
 def _space_of(bearing: Mapping) -> CageSpace:
     """Return where a cage has to fit in a bearing that a file gives; raise ValueError where a dimension is missing or is none."""
 
     def length(path: str, otherwise: float | None = None) -> float:
-        given = at(bearing, path)
+        given = at(bearing, parts(path))
         if given is None and otherwise is not None:
             return otherwise
         if given is None:
@@ -477,12 +479,10 @@ def bearing_tree(designation: Designation | str | int) -> dict[str, Any]:
         "flanges": _flanges_tree(designation, section),
         "estimated": estimated,
     }
-    if section.row is not None:
+    if section.row.maker:
         names = ("dynamic", "static", "fatigue_limit", "minimum_load_factor", "reference_speed", "limiting_speed")
-        found = {name: getattr(section.row.ratings, name) for name in names}
-        tree["ratings"] = {
-            name: f"{value * 30 / math.pi:.6g} rpm" if name.endswith("speed") else value for name, value in found.items() if value is not None
-        }
+        found = {name: value for name in names if (value := getattr(section.row.ratings, name)) is not None}
+        tree["ratings"] = {name: f"{value * 30 / math.pi:.6g} rpm" if name.endswith("speed") else value for name, value in found.items()}
     return tree
 
 
@@ -509,7 +509,7 @@ def _inner_ring_mass(designation: Designation, section: Section) -> float:
 def _source(section: Section, boundary, made: str, designation: Designation) -> str:
     row = section.row
     dimensions = f"d, D, B: ISO 15, as printed by {boundary.sources.replace(' ', ', ')}"
-    if row is None:
+    if not row.maker:
         printed = "no maker of the tables prints its ratings; C, C_0 and C_u by ISO 281 and ISO 76"
     else:
         printed = (

@@ -5,10 +5,12 @@ An oil is a viscosity class (``ISO VG 68``, ``ISO VG 68 PAO``) or an entry of th
 catalogue (``lithium NLGI 2``, ``SKF LGMT 2``).  Capitals, blanks and punctuation do not matter.  ``{preset: NAME, ...}`` changes single fields.
 """
 
-import difflib
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 
+from bearing_sim.files.yaml_text import values_of
+from bearing_sim.scene.bundled import bundled_names, bundled_text
+from bearing_sim.scene.errors import InvalidField, did_you_mean
 from bearing_sim.scene.viscosity_index import ISO_VISCOSITY_CLASSES
 
 _BASE_WORDS = {"mineral": "mineral", "pao": "pao", "ester": "ester", "pag": "pag", "pg": "pag", "polyglycol": "pag"}
@@ -19,11 +21,9 @@ _ALIASES = {"milprf7808": "mil_l_7808", "milprf23699": "mil_l_23699"}
 _OPTIONAL_WORDS = {"grease", "mineral", "oil", "nlgi", "skf", "mobil", "and", "soap"}
 _SAME_WORDS = {"sulphonate": "sulfonate", "urea": "polyurea", "diurea": "polyurea", "aluminum": "aluminium", "li": "lithium"}
 _VISCOSITIES = ("viscosity_100", "viscosity_index")
-Error = tuple[str, str, str]
-"""Path, value and reason."""
 
 
-def with_named_lubricants(lubricant: Mapping, names: Callable[[str], list[str]], read: Callable[[str, str], dict]) -> tuple[dict, list[Error]]:
+def with_named_lubricants(lubricant: Mapping, path: str) -> tuple[dict, list[InvalidField]]:
     """Return a block ``lubricant`` whose oil and grease are blocks, and the errors in their names.
 
     An oil whose name is unknown is replaced by some oil, so that the rest of the block can be checked.
@@ -31,40 +31,15 @@ def with_named_lubricants(lubricant: Mapping, names: Callable[[str], list[str]],
     Parameters
     ----------
     lubricant : as a user writes it.
-    names : returns the names of a kind of catalogue entries, ``oils`` or ``greases``.
-    read : returns an entry by its kind and name.
+    path : of the block.
     """
     block, errors = dict(lubricant), []
     if block.get("grease") is not None:
-        errors += _resolve_grease(block, names, read)
+        block, errors = _with_grease(block, f"{path}.grease")
     if "oil" in block:
-        block["oil"], found = _oil_block(block["oil"], "lubricant.oil", names, read)
+        block["oil"], found = _oil_block(block["oil"], f"{path}.oil")
         errors += found
     return block, errors
-
-
-def keep_one_lubricant(lubricant: dict, given: str, value: object) -> None:
-    """Remove from a block ``lubricant`` what an override of its oil, its grease or its supply makes void, in place.
-
-    Parameters
-    ----------
-    lubricant : with the override applied.
-    given : name of the field that was given, ``oil``, ``grease`` or ``supply``.
-    value : that it was given.
-    """
-    supply = lubricant.get("supply")
-    law = supply.get("law") if isinstance(supply, Mapping) else supply
-    if given == "oil":
-        lubricant.pop("grease", None)
-        if law == "grease":
-            lubricant.pop("supply")
-    elif given == "grease" and value is not None:
-        if isinstance(value, str) or isinstance(value, Mapping) and {"preset", "base_oil"} & set(value):
-            lubricant.pop("oil", None)
-        if law != "grease":
-            lubricant.pop("supply", None)
-    elif given == "supply" and law != "grease":
-        lubricant.pop("grease", None)
 
 
 def class_block(name: str) -> tuple[dict | None, str]:
@@ -84,59 +59,54 @@ def class_block(name: str) -> tuple[dict | None, str]:
         nearest = min(ISO_VISCOSITY_CLASSES, key=lambda each: abs(each - number))
         return None, f"ISO 3448 has no class {number}; the nearest is ISO VG {nearest}; all: {', '.join(map(str, ISO_VISCOSITY_CLASSES))}"
     if word and word not in _BASE_WORDS:
-        return None, f"unknown kind of base oil {found[2]!r}{nearest_word(word, _BASE_WORDS)}; known: mineral, PAO, ester, PAG"
+        return None, f"unknown kind of base oil {found[2]!r}{did_you_mean(word, _BASE_WORDS)}; known: mineral, PAO, ester, PAG"
     base = _BASE_WORDS.get(word, "mineral")
     label = f"ISO VG {number}" if base == "mineral" else f"ISO VG {number} {'ester' if base == 'ester' else base.upper()}"
     return {"law": "custom", "name": label, "source": _CLASS_SOURCE, "base": base, "viscosity_40": f"{ISO_VISCOSITY_CLASSES[number]} mm^2/s"}, ""
 
 
-def nearest_word(word: str, known: Iterable[str]) -> str:
-    """Return ``" (did you mean ...?)"`` for the nearest known word, whatever its capitals, or an empty text."""
-    by_fold = {each.casefold(): each for each in known}
-    close = difflib.get_close_matches(word.casefold(), list(by_fold), n=1)
-    return f" (did you mean {by_fold[close[0]]!r}?)" if close else ""
-
-
-def _oil_block(given: object, path: str, names, read) -> tuple[dict, list[Error]]:
+def _oil_block(given: object, path: str) -> tuple[dict, list[InvalidField]]:
     """Return the block of an oil that is named, or that has a preset, or that is a block already."""
-    if not isinstance(given, str | Mapping):
-        return _some_oil(names, read), [(path, repr(given), "expected the name of an oil, such as 'ISO VG 68', or a block")]
-    if isinstance(given, str):
-        preset, reason = _named_oil(given, names, read)
-        return preset, [(path, repr(given), reason)] if reason else []
-    if "preset" in given:
-        name, rest = given["preset"], {key: value for key, value in given.items() if key != "preset"}
-        preset, reason = _named_oil(name, names, read) if isinstance(name, str) else (_some_oil(names, read), "expected the name of an oil")
-        if set(_VISCOSITIES) & set(rest):
-            preset = {key: value for key, value in preset.items() if key not in _VISCOSITIES}
-        return {**preset, **rest}, [(f"{path}.preset", repr(name), reason)] if reason else []
-    if "law" in given:
-        return dict(given), []
-    return {"law": "custom" if {"viscosity_40", "viscosity_index", "base"} & set(given) and "viscosity" not in given else "fitted", **given}, []
+    if isinstance(given, Mapping) and "preset" not in given:
+        by_sheet = {"viscosity_40", "viscosity_index", "base"} & set(given) and "viscosity" not in given
+        return {"law": "custom" if by_sheet else "fitted", **given}, []
+    is_block = isinstance(given, Mapping)
+    name, rest = (given["preset"], {key: value for key, value in given.items() if key != "preset"}) if is_block else (given, {})
+    if isinstance(name, str):
+        preset, reason = _named_oil(name)
+    else:
+        preset, reason = _some_oil(), "expected the name of an oil" if is_block else "expected the name of an oil, such as 'ISO VG 68', or a block"
+    if set(_VISCOSITIES) & set(rest):
+        preset = {key: value for key, value in preset.items() if key not in _VISCOSITIES}
+    return {**preset, **rest}, [InvalidField(f"{path}.preset" if is_block else path, repr(name), reason)] if reason else []
 
 
-def _named_oil(name: str, names, read) -> tuple[dict, str]:
+def _named_oil(name: str) -> tuple[dict, str]:
     """Return the block of a named oil and an empty text, or some oil and the reason why there is none of that name."""
     block, reason = class_block(name)
     if block is not None or reason:
-        return block or _some_oil(names, read), reason
-    known = names("oils")
+        return block or _some_oil(), reason
+    known = bundled_names("catalog/oils")
     if name.strip() == "custom":
-        return _some_oil(names, read), "expected a block: law: custom, viscosity_40, viscosity_100 or viscosity_index, and what its data sheet says"
+        return _some_oil(), "expected a block: law: custom, viscosity_40, viscosity_100 or viscosity_index, and what its data sheet says"
     key = _key(name)
     entry = next((each for each in known if _key(each) == _key(_ALIASES.get(key, key))), None)
     if entry is not None:
-        return {"law": "fitted", **read("oils", entry)}, ""
+        return _entry(entry), ""
     written = [*known, *(f"ISO VG {number}" for number in ISO_VISCOSITY_CLASSES), "MIL-PRF-7808", "MIL-PRF-23699", "DEF STAN 91-101"]
     reason = (
-        f"not in the catalog{nearest_word(name, written)}; known: ISO VG 2 to 3200, alone or with mineral, PAO, ester or PAG behind it; "
+        f"not in the catalog{did_you_mean(name, written)}; known: ISO VG 2 to 3200, alone or with mineral, PAO, ester or PAG behind it; "
         f"MIL-PRF-7808, MIL-PRF-23699, DEF STAN 91-101; {', '.join(known)}; or a block with viscosity_40 and what its data sheet says"
     )
-    return _some_oil(names, read), reason
+    return _some_oil(), reason
 
 
-def _some_oil(names, read) -> dict:
-    return {"law": "fitted", **read("oils", names("oils")[0])}
+def _entry(oil: str) -> dict:
+    return {"law": "fitted", **values_of(bundled_text("catalog/oils", oil))}
+
+
+def _some_oil() -> dict:
+    return _entry(bundled_names("catalog/oils")[0])
 
 
 def _key(name: str) -> str:
@@ -149,36 +119,32 @@ def _words(name: str) -> frozenset[str]:
     return frozenset(_SAME_WORDS.get(word, word) for word in found) - _OPTIONAL_WORDS
 
 
-def _resolve_grease(block: dict, names, read) -> list[Error]:
-    """Replace a block's grease by its record's fields, and put its base oil where the block's oil stands, in place."""
-    given, errors = block["grease"], []
+def _with_grease(lubricant: Mapping, path: str) -> tuple[dict, list[InvalidField]]:
+    """Return a block ``lubricant`` with the fields of its grease's record, and with the grease's base oil as its oil; and the errors."""
+    given, errors, block = lubricant["grease"], [], {name: value for name, value in lubricant.items() if name != "grease"}
     if not isinstance(given, str | Mapping):
-        errors.append(("lubricant.grease", repr(given), "expected the name of a grease, such as 'lithium NLGI 2', or a block"))
-        del block["grease"]
-        block.setdefault("oil", _some_oil(names, read))
-        return errors
-    path = "lubricant.grease" if isinstance(given, str) else "lubricant.grease.preset"
+        error = InvalidField(path, repr(given), "expected the name of a grease, such as 'lithium NLGI 2', or a block")
+        return {"oil": _some_oil(), **block}, [error]
     fields = {"preset": given} if isinstance(given, str) else dict(given)
     if "preset" in fields:
-        name, known = fields.pop("preset"), names("greases")
+        name, known = fields.pop("preset"), bundled_names("catalog/greases")
         entry = next((each for each in known if isinstance(name, str) and _words(each) == _words(name)), None)
         if entry is None:
-            told = nearest_word(name, [each.replace("_", " ") for each in known]) if isinstance(name, str) else ""
-            hint = "or a block with thickener, nlgi and base_oil"
-            errors.append((path, repr(name), f"not a known grease{told}; known: {', '.join(known)}; {hint}"))
-            block.setdefault("oil", _some_oil(names, read))
+            near = did_you_mean(name, [each.replace("_", " ") for each in known]) if isinstance(name, str) else ""
+            reason = f"not a known grease{near}; known: {', '.join(known)}; or a block with thickener, nlgi and base_oil"
+            errors.append(InvalidField(path if isinstance(given, str) else f"{path}.preset", repr(name), reason))
+            block.setdefault("oil", _some_oil())
         else:
-            preset = read("greases", entry)
-            if "oil" in block or "base_oil" in fields:
+            preset = values_of(bundled_text("catalog/greases", entry))
+            if "oil" in block:
                 preset.pop("base_oil", None)
             fields = {**preset, **fields}
     base_oil = fields.pop("base_oil", None)
     if base_oil is not None and "oil" in block:
-        errors.append(("lubricant.grease.base_oil", "", "lubricant.oil is the grease's base oil; give one of them"))
+        errors.append(InvalidField(f"{path}.base_oil", "", "lubricant.oil is the grease's base oil; give one of them"))
     elif base_oil is not None:
         block["oil"] = base_oil
     if "oil" not in block:
-        errors.append(("lubricant.oil", "", "missing; give the base oil of the grease, such as oil: ISO VG 100"))
-        block["oil"] = _some_oil(names, read)
-    block["grease"] = fields
-    return errors
+        errors.append(InvalidField("lubricant.oil", "", "missing; give the base oil of the grease, such as oil: ISO VG 100"))
+        block["oil"] = _some_oil()
+    return {**block, "grease": fields}, errors

@@ -23,12 +23,8 @@ CLEARANCE_GROUPS = ("C2", "CN", "C3", "C4", "C5")
 """Groups of ISO 5753-1."""
 CLEARANCE_PARTS = tuple(f"{group}{part}" for group in CLEARANCE_GROUPS for part in "LMHP" if group + part != "C5P")
 """Parts of groups (SKF): L and H the lower and the upper half, M the middle, P the upper half and the lower half of the next group."""
-OTHER_CLEARANCES = {
-    **{"CT": "electric motors, interchangeable rings; NSK", "CM": "electric motors, matched rings; NSK, NTN"},
-    **{name: "matched rings; NSK, GOST 24810" for name in ("CC1", "CC2", "CC", "CC3", "CC4", "CC5")},
-    **{name: "interchangeable rings; GOST 24810" for name in ("GOST1", "GOST6", "GOST2", "GOST3", "GOST4")},
-}
-"""Groups beside those of ISO 5753-1, and what they are for (``catalog/designations/clearances.csv``)."""
+OTHER_CLEARANCES = {row["group"]: row["meaning"] for row in catalog_table("designations/clearance_groups")}
+"""Groups beside those of ISO 5753-1, and what they are for (``catalog/designations/clearance_groups.csv``)."""
 LARGEST_BORE = 1.0  # for which ISO 5753-1 has clearances [m]
 
 

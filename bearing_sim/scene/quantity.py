@@ -104,15 +104,9 @@ def _as_float(value: numbers.Real, unit: str) -> float:
 SPEED = "rad/s"
 """Unit of rotational speeds, which people write in turns as often as in angles."""
 
-# What people write for turns in a unit of time, without blanks and in lower case, in pint's spelling.
-_TURNS = {
-    **dict.fromkeys(("rpm", "1/min", "/min", "min^-1", "min-1", "min**-1", "min⁻¹", "r/min", "rev/min", "u/min", "turn/min", "turns/min"), "rpm"),
-    **dict.fromkeys(("hz", "1/s", "/s", "s^-1", "s-1", "s**-1", "s⁻¹", "rps", "r/s", "rev/s", "u/s", "turn/s", "turns/s"), "revolution/s"),
-    **dict.fromkeys(("krpm", "1000/min"), "kilorevolution/min"),
-    "khz": "kilorevolution/s",
-}
-# By the unit that is expected; to pint a mil is an angle.
-_MEANT = {SPEED: _TURNS, "m": dict.fromkeys(("mil", "mils"), "thou")}
+_MEANT: dict[str, dict[str, str]] = {}  # pint's spelling of what people write, by the unit that is expected
+for _row in catalog_table("tables/spellings"):
+    _MEANT.setdefault(_row["kind"], {})[_row["written"]] = _row["means"]
 _ZERO_CELSIUS = 273.15  # [K]
 _USUAL: dict[str, dict[str, float]] = {}  # SI over the usual units, by the unit that is expected
 _PROPOSED: dict[str, list[str]] = {}  # those that a message proposes

@@ -27,10 +27,10 @@ from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.mounting import Mounting, mounting_errors
 from bearing_sim.scene.quantity import check, quantity, record
 from bearing_sim.scene.ratings import rate
+from bearing_sim.scene.requirements import MEASURED
 from bearing_sim.scene.support import Support, support_errors
 from bearing_sim.scene.uncertainty import Range, messages, nearest, quantities, range_errors, with_values
 from bearing_sim.scene.vibration import VibrationInput
-from bearing_sim.scene.wants import MEASURED
 from bearing_sim.scene.watchers import watcher_errors
 
 NO_CLEARANCE_LIMIT = -1e-3
@@ -193,12 +193,6 @@ class TemperatureResidualDetection:
         return _detection_errors(self)
 
 
-def _out_of_order(name: str, warning: float, relation: str, error: float, unit: str) -> str:
-    """Return why the warning of a quantity could never come before its error; numbers in the unit."""
-    shown = f"{name}_warning: {warning:g}{unit} is {relation} {name}_error, {error:g}{unit}"
-    return f"{shown}, so that no warning could come before the error; change the other one first, or both at once"
-
-
 @record
 class Thresholds:
     """When the condition is a warning or an error."""
@@ -234,21 +228,19 @@ class Thresholds:
 
     @check
     def _warnings_come_before_errors(self) -> list[str]:
-        errors = []
-        for name, is_off, factor, unit in (("slip", None, 100.0, " %"), ("pocket_force", None, 1.0, " N")):
+        errors, rising, falling = [], (1.0, "above"), (-1.0, "below")
+        for name, is_off, factor, unit, (sense, relation) in (
+            ("slip", None, 100.0, " %", rising),
+            ("pocket_force", None, 1.0, " N", rising),
+            ("life", 0.0, 1.0, " h", falling),
+            ("remaining_life", 0.0, 1.0, " h", falling),
+            ("lambda", 0.0, 1.0, "", falling),
+            ("clearance", NO_CLEARANCE_LIMIT, 1e6, " um", falling),
+        ):
             warning, error = getattr(self, f"{name}_warning"), getattr(self, f"{name}_error")
-            if is_off not in (warning, error) and warning > error:
-                errors.append(_out_of_order(name, factor * warning, "above", factor * error, unit))
-        falling = (
-            ("life", 0.0, 1.0, " h"),
-            ("remaining_life", 0.0, 1.0, " h"),
-            ("lambda", 0.0, 1.0, ""),
-            ("clearance", NO_CLEARANCE_LIMIT, 1e6, " um"),
-        )
-        for name, is_off, factor, unit in falling:
-            warning, error = getattr(self, f"{name}_warning"), getattr(self, f"{name}_error")
-            if is_off not in (warning, error) and warning < error:
-                errors.append(_out_of_order(name, factor * warning, "below", factor * error, unit))
+            if is_off not in (warning, error) and sense * warning > sense * error:
+                shown = f"{name}_warning: {factor * warning:g}{unit} is {relation} {name}_error, {factor * error:g}{unit}"
+                errors.append(f"{shown}, so that no warning could come before the error; change the other one first, or both at once")
         return errors
 
 
@@ -373,6 +365,9 @@ class Scene:
     # errors, such as {slip: 0.3 %, life: 5 %}, asks for the fastest setting whose errors `bearing-sim trade` has measured to be below them.
     wants: tuple[Literal[tuple(WANTS)], ...] = ()
     wanted_errors: tuple[WantedError, ...] = ()  # those of a mapping wants, which a file gives there
+    # path, from the folder of the scene file, of what `bearing-sim trade --front` measured: `level: auto` with errors in wants chooses by it, on
+    # every machine alike; None: by what this machine has kept, which level_reason says; a loaded scene has the level and no front
+    front: str | None = None
     level_reason: str = ""  # why the level was chosen, filled in for `level: auto`
     bearing: Bearing
     lubricant: Lubricant

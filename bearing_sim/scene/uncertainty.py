@@ -15,7 +15,6 @@ import difflib
 import itertools
 import math
 import types
-import typing
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, Literal
@@ -24,13 +23,16 @@ from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
 from bearing_sim.scene.bearing import Bearing
+from bearing_sim.scene.errors import InvalidField
 from bearing_sim.scene.fidelity import WHIRLING
+from bearing_sim.scene.fields import declared_in, hints_of
 from bearing_sim.scene.mounting import clearance_limits
 from bearing_sim.scene.quantity import SPEED, Quantity, check, record
 
 _MOST_ERRORS = 50  # that are listed
 _LONGEST_PATH = 200  # characters of a path for which the nearest is looked for
 BLOCKS = ("bearing", "lubricant", "operating", "mounting", "heat", "support")  # of a scene; their quantities may have ranges
+_IN_WORDS = f"{', '.join(BLOCKS[:-1])} or {BLOCKS[-1]}"
 _ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
 _LOW_RADIUS = "outer_raceway.low_radius"
 _CLEARANCE = "bearing.clearance"
@@ -83,24 +85,8 @@ class Range:
 @cache
 def quantities(scene_type: type) -> Mapping[str, Quantity]:
     """Return the declarations of all quantities that may have a range, by dotted path, including those of alternative records."""
-    hints = typing.get_type_hints(scene_type, include_extras=True)
+    hints = hints_of(scene_type)
     return types.MappingProxyType({path: found for name in BLOCKS for path, found in declared_in(name, hints[name])})
-
-
-def declared_in(path: str, hint) -> Iterator[tuple[str, Quantity]]:
-    """Yield the declarations of all quantities in an annotation, such as a record, by dotted paths that begin with ``path``."""
-    declared = [note for note in getattr(hint, "__metadata__", ()) if isinstance(note, Quantity)]
-    if declared:
-        yield path, declared[0]
-        return
-    if typing.get_origin(hint) is typing.Annotated:
-        hint = typing.get_args(hint)[0]
-    if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
-        for option in typing.get_args(hint):
-            yield from declared_in(path, option)
-    elif dataclasses.is_dataclass(hint):
-        for name, inner in typing.get_type_hints(hint, include_extras=True).items():
-            yield from declared_in(f"{path}.{name}", inner)
 
 
 def nearest(path: str, known: Iterable[str]) -> str:
@@ -129,100 +115,102 @@ def flattened(block: Mapping, path: str = "") -> dict[str, Any]:
     return flat
 
 
-def override_range(tree: dict, keys: list[str], value) -> None:
-    """Apply the override ``uncertainty.FIELD=RANGE`` or ``uncertainty.FIELD.low=VALUE`` to a scene's tree, in place."""
-    given = tree.get("uncertainty") or {}
+def with_range(given, path: str, value) -> dict:
+    """Return a block ``uncertainty``, as `flattened` has it, with what an override gives: a range, or one of its ends or words.
+
+    Parameters
+    ----------
+    given : the block; what is none counts as empty.
+    path : of a field, or of a field and a name such as ``low`` in its range.
+    value : that it is given.
+    """
     block = flattened(given) if isinstance(given, Mapping) else {}
-    path = ".".join(keys[1:])
-    if keys[-1] in (*_ENDS, *_WORDS) and (inner := ".".join(keys[1:-1])) in block:
-        known = block[inner]
-        known = dict(zip(("low", "high"), known)) if isinstance(known, (list, tuple)) else dict(known)
-        block[inner] = known | {keys[-1]: value}
-    else:
-        block |= flattened({path: value})
-    tree["uncertainty"] = block
+    field, _, name = path.rpartition(".")
+    if name in (*_ENDS, *_WORDS) and field in block:
+        known = block[field]
+        return block | {field: {**(dict(zip(_ENDS, known)) if isinstance(known, (list, tuple)) else known), name: value}}
+    return block | flattened({path: value})
 
 
-def drop_ranges(tree: dict, beginning: str) -> None:
-    """Remove the ranges of fields whose path has this beginning from a scene's tree, in place, after an override removed the fields."""
-    given = tree.get("uncertainty")
-    if isinstance(given, Mapping):
-        tree["uncertainty"] = {path: value for path, value in flattened(given).items() if not path.startswith(beginning)}
-
-
-def read_ranges(given, scene_type: type, bore: float | None = None) -> tuple[list[dict], list[tuple[str, str, str]]]:
+def read_ranges(given, known: Mapping[str, tuple[str, Quantity, float]], bore: float | None = None) -> tuple[list[dict], list[InvalidField]]:
     """Read a block ``uncertainty`` into records in SI.
 
     Parameters
     ----------
     given : the block in the file.
-    scene_type : type of the scene.
+    known : by each path that a file may give: the field, the declaration of what is given, and the field over that, which is 1/2 of a diameter.
     bore : diameter of the bearing's bore [m], by which a group of clearance is read; None: not known.
 
     Returns
     -------
     ranges : the fields of each `Range`.
-    errors : (path, value, reason) of each error.
+    errors : all of them.
     """
-    if given is None:
-        return [], []
     if not isinstance(given, Mapping):
-        return [], [("uncertainty", repr(given), "expected a mapping of field to range, such as lubricant.mixture_fraction: [0.015, 0.05]")]
-    known, ranges, errors = quantities(scene_type), [], []
-    fields = flattened(given)
-    for number, (path, value) in enumerate(fields.items()):
+        return [], [
+            InvalidField("uncertainty", repr(given), "expected a mapping of field to range, such as lubricant.mixture_fraction: [0.015, 0.05]")
+        ]
+    fields, ranges, errors = flattened(given), {}, []
+    in_order = sorted(fields.items(), key=lambda item: known.get(item[0], item)[0] != item[0])  # diameters last
+    for number, (path, value) in enumerate(in_order):
         if len(errors) > _MOST_ERRORS:
-            errors.append(("uncertainty", "", f"{len(fields) - number} more fields were not looked at"))
+            errors.append(InvalidField("uncertainty", "", f"{len(fields) - number} more fields were not looked at"))
             break
+        where = f"uncertainty.{path}"
         if value is None:  # --set uncertainty.FIELD=null removes a range
             continue
-        where = f"uncertainty.{path}"
         if path not in known:
-            reason = f"unknown field{nearest(path, known)}; expected a quantity of {', '.join(BLOCKS[:-1])} or {BLOCKS[-1]}"
-            errors.append((where, "", reason))
+            fields_known = (each for each, (field, *_) in known.items() if each == field)
+            errors.append(InvalidField(where, "", f"unknown field{nearest(path, fields_known)}; expected a quantity of {_IN_WORDS}"))
             continue
-        entered, wrong = _entered(where, value, known[path], bore)
+        field, declared, factor = known[path]
+        if path != field and (field in ranges or fields.get(field) is not None):
+            errors.append(InvalidField(where, "", f"{field} has a range, too; give one of the two"))
+            continue
+        entered, wrong = _entered(where, value, declared, factor, bore)
+        if not wrong:
+            try:
+                Range(field=field, **entered)
+                ranges[field] = {"field": field, **entered}
+            except ValidationError as error:
+                wrong = [
+                    InvalidField(".".join([where, *map(str, each["loc"])]), "", each["msg"].removeprefix("Value error, ")) for each in error.errors()
+                ]
         errors += wrong
-        if wrong:
-            continue
-        try:
-            Range(field=path, **entered)
-        except ValidationError as error:
-            errors += [(".".join([where, *map(str, error["loc"])]), "", error["msg"].removeprefix("Value error, ")) for error in error.errors()]
-        else:
-            ranges.append({"field": path, **entered})
-    return ranges, errors
+    return list(ranges.values()), errors
 
 
-def _entered(where: str, value, declared: Quantity, bore: float | None) -> tuple[dict, list[tuple[str, str, str]]]:
+def _entered(where: str, value, declared: Quantity, factor: float, bore: float | None) -> tuple[dict, list[InvalidField]]:
     """Return the fields of one range in SI, and its errors.  A group of clearance stands for its least value, its largest or, as mode, its middle."""
     if isinstance(value, (list, tuple)):
         if len(value) != 2:
-            return {}, [(where, repr(value), "expected [low, high]")]
-        value = dict(zip(("low", "high"), value))
+            return {}, [InvalidField(where, repr(value), "expected [low, high]")]
+        value = dict(zip(_ENDS, value))
     if not isinstance(value, Mapping):
-        return {}, [(where, repr(value), "expected [low, high], or a block with low, high and optionally distribution, mode, source")]
+        return {}, [InvalidField(where, repr(value), "expected [low, high], or a block with low, high and optionally distribution, mode, source")]
+    names = (*_ENDS, *_WORDS)
     errors = [
-        (f"{where}.{name}", "", f"unknown field{nearest(str(name), (*_ENDS, *_WORDS))}; known here: {', '.join((*_ENDS, *_WORDS))}")
+        InvalidField(f"{where}.{name}", "", f"unknown field{nearest(str(name), names)}; known here: {', '.join(names)}")
         for name in value
-        if name not in (*_ENDS, *_WORDS)
+        if name not in names
     ]
-    errors += [(f"{where}.{name}", "", "missing") for name in ("low", "high") if value.get(name) is None]
+    errors += [InvalidField(f"{where}.{name}", "", "missing") for name in ("low", "high") if value.get(name) is None]
     entered = dict(value)
     for name in _ENDS:
         if value.get(name) is None:
             continue
         try:
-            entered[name] = declared.read(value[name], written=True)
-            if isinstance(entered[name], str):
+            end = declared.read(value[name], written=True)
+            if isinstance(end, str):
                 if bore is None:
                     raise ValueError("the group follows from the bore, bearing.inner_raceway.bore_radius, which is not given; give a length")
-                limits = clearance_limits(entered[name], bore)
-                entered[name] = {"low": limits.least, "high": limits.largest, "mode": limits.mean}[name]
+                limits = clearance_limits(end, bore)
+                end = {"low": limits.least, "high": limits.largest, "mode": limits.mean}[name]
+            entered[name] = factor * end
         except PydanticCustomError as error:
-            errors.append((f"{where}.{name}", repr(value[name]), error.message()))
+            errors.append(InvalidField(f"{where}.{name}", repr(value[name]), error.message()))
         except ValueError as error:
-            errors.append((f"{where}.{name}", repr(value[name]), str(error)))
+            errors.append(InvalidField(f"{where}.{name}", repr(value[name]), str(error)))
     return entered, errors
 
 

@@ -5,14 +5,8 @@ import math
 
 from bearing_sim.scene.bundled import catalog_table
 
-# Kinematic viscosity at 40 degC in the middle of each class, mm^2/s, by the class's number (ISO 3448:1992, table 1); a class reaches 10 % to
-# either side.
-ISO_VISCOSITY_CLASSES = {
-    **{2: 2.2, 3: 3.2, 5: 4.6, 7: 6.8},
-    **{number: float(number) for number in (10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500, 2200, 3200)},
-}
-
-
+ISO_VISCOSITY_CLASSES = {int(row["number"]): float(row["viscosity_40"]) for row in catalog_table("tables/iso_3448")}
+"""Kinematic viscosity at 40 degC in the middle of each class of ISO 3448 [mm^2/s], by the class's number."""
 _BEGIN = 2.0  # mm^2/s at 100 degC, where the standard begins
 
 

@@ -286,6 +286,7 @@ def _recording_part(recording: Recording) -> _Part:
     block = joined([_thinned(each, recording.samples) for each in blocks])
     course = course_of(blocks, scene, recording.path.name, recording.samples, (*DEFAULT_PANELS, "roller_load"))
     told = [] if recording.tally.is_whole else [f"the recording is used in part only: {recording.tally.text}"]
+    told += [scene.level_reason] if scene.level_reason else []
     told += [each.warning for each in _grouped(event for event in events if event.level > Level.OK)]
     last = float(blocks[-1]["time"][-1])  # that could be read
     duration = last - recording.first_time

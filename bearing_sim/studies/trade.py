@@ -22,8 +22,8 @@ from bearing_sim.levels.steady.table import Table, empty_table
 from bearing_sim.levels.steady.table_builder import obtain_table
 from bearing_sim.model.table_span import rounded_temperatures, spanning
 from bearing_sim.scene.fidelity import WHIRLING
-from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, complete_overrides
 from bearing_sim.scene.loader import SceneError, load_scene
+from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting, complete_overrides
 from bearing_sim.scene.scene import Integration, Scene, tolerance_overrides
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies.correction_points import obtain_corrected_table
@@ -44,7 +44,7 @@ _FIRST_REST, _LONGEST_REST, _RESTS = 20.0, 2000.0, 1e-4  # cage turns in which t
 _MORE_SOURCES = ("studies/trade_course.py", "studies/correction_points.py", "watchers/estimation/*.py")  # that results depend on
 
 
-class Setting(NamedTuple):
+class Candidate(NamedTuple):
     """One way to compute a scene, as overrides of its file."""
 
     level: str
@@ -97,7 +97,7 @@ NO_ERRORS = Errors(*[math.nan] * len(Errors._fields))
 class Traded(NamedTuple):
     """Measured speed and errors of one setting."""
 
-    setting: Setting
+    setting: Candidate
     real_time_factor: float
     errors: Errors
     failure: str = ""  # why there is no result, or empty
@@ -137,20 +137,20 @@ class Trade(NamedTuple):
         return self.course.measured
 
 
-def settings_of(level: str, quick: bool = False) -> list[Setting]:
+def settings_of(level: str, quick: bool = False) -> list[Candidate]:
     """Return the settings of a level: tolerances, fixed steps, numbers of slices; only one for a table."""
     if LEVELS[level].advance_profile is not None:
-        plain = Setting(level, "table", ("table.correction=none",))
-        return [plain] if quick else [plain, Setting(level, "table corrected by planar", ("table.correction=planar",))]
+        plain = Candidate(level, "table", ("table.correction=none",))
+        return [plain] if quick else [plain, Candidate(level, "table corrected by planar", ("table.correction=planar",))]
     found = [
-        Setting(level, f"tolerances x {factor:g}", tuple(tolerance_overrides(factor)) if factor != 1.0 else ())
+        Candidate(level, f"tolerances x {factor:g}", tuple(tolerance_overrides(factor)) if factor != 1.0 else ())
         for factor in ((1.0,) if quick else _FACTORS)
     ]
     if quick:
         return found
-    found += [Setting(level, f"step {step} us", (f"integration.fixed_step={step} us",)) for step in (5, 10, 20, 40)]
+    found += [Candidate(level, f"step {step} us", (f"integration.fixed_step={step} us",)) for step in (5, 10, 20, 40)]
     if level == "spatial":
-        found += [Setting(level, f"{count} slices", (f"bearing.roller.slices={count}",)) for count in (10, 20, 50, _MOST_SLICES)]
+        found += [Candidate(level, f"{count} slices", (f"bearing.roller.slices={count}",)) for count in (10, 20, 50, _MOST_SLICES)]
     return found
 
 
@@ -270,14 +270,14 @@ def recommend(found: Trade, factor: float | None = None, error: float | None = N
     return within[-1] if error is None else within[0]
 
 
-def kept_course(found: Trade) -> KeptCourse:
+def measured_course(found: Trade) -> MeasuredCourse:
     """Return what a trade leaves for later: its settings with a result, and where they were measured."""
     settings = [
-        KeptSetting(one.setting.level, one.setting.detail, one.overrides, one.real_time_factor, one.errors._asdict())
+        Setting(one.setting.level, one.setting.detail, one.overrides, one.real_time_factor, one.errors._asdict())
         for one in found.measured
         if not one.failure
     ]
-    return KeptCourse(found.course.name, found.reference, found.own_error._asdict(), found.course.extent(), tuple(settings))
+    return MeasuredCourse(found.course.name, found.reference, found.own_error._asdict(), found.course.extent(), tuple(settings))
 
 
 def _tasks(scene: Scene, course: Course, repeats: int) -> Iterator[Task]:
@@ -494,7 +494,7 @@ def _results(run: Sequence[dict]) -> list[Results]:
     return [Results(**{name: one[name] if name == "damage" else np.array(one[name]) for name in Results._fields}) for one in run]
 
 
-def _traded(setting: Setting, run: Sequence[dict], reference: Sequence[Results]) -> Traded:
+def _traded(setting: Candidate, run: Sequence[dict], reference: Sequence[Results]) -> Traded:
     if failure := _failure(run):
         return Traded(setting, math.nan, NO_ERRORS, failure)
     factor = sum(one["simulated"] for one in run) / max(sum(one["spent"] for one in run), 1e-9)

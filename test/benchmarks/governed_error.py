@@ -21,8 +21,8 @@ from bearing_sim.cli.options import json_option, set_option
 from bearing_sim.cli.reporting import print_json, print_rows
 from bearing_sim.runtime.governor import settings_to_fall
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
-from bearing_sim.scene.kept_front import read_front
 from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.measured_tradeoffs import read_kept_tradeoffs
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
 
@@ -72,7 +72,7 @@ def governed(scene: Scene, busy: int, stretch: float, stretches: int) -> dict:
     click.ClickException
         No front is kept where the scene operates.
     """
-    kept = read_front(scene)
+    kept = read_kept_tradeoffs(scene)
     settings = settings_to_fall(scene, kept)
     if not settings:
         raise click.ClickException(f"no front is kept for this bearing and machine; measure it with: bearing-sim trade {scene.name}")

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from bearing_sim import SceneError, load_scene
 from bearing_sim.cli.main import main
-from bearing_sim.scene import kept_front
+from bearing_sim.scene import measured_tradeoffs
 from bearing_sim.scene.fidelity import hint
-from bearing_sim.scene.kept_front import KeptCourse, KeptFront, KeptSetting, complete_overrides, keep
 from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml, with_setting
-from bearing_sim.scene.wants import candidates
+from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting, Tradeoffs, complete_overrides, keep
+from bearing_sim.scene.requirements import candidates
 from bearing_sim.studies.trade import Errors
 
 NAMES = Errors._fields
@@ -22,7 +22,7 @@ NAMES = Errors._fields
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(kept_front, "FOLDER", tmp_path / "fronts")
+    monkeypatch.setattr(measured_tradeoffs, "FOLDER", tmp_path / "fronts")
 
 
 def scene(*overrides):
@@ -40,7 +40,7 @@ EXTENT = {
 
 def setting(level, factor, slip, life, overrides=(), detail="tolerances x 1", **more):
     errors = dict.fromkeys(NAMES, math.nan) | {"slip": slip, "largest_slip": 1.5 * slip, "life": life, "window_life": 1.5 * life} | more
-    return KeptSetting(level, detail, complete_overrides(scene(f"level={level}", *overrides)), factor, errors)
+    return Setting(level, detail, complete_overrides(scene(f"level={level}", *overrides)), factor, errors)
 
 
 STEADY = setting("steady", 1860.0, 1.9, 0.12, detail="table")
@@ -54,7 +54,7 @@ ALL = (STEADY, SLIP, COARSE, PLANAR, FINE, SPATIAL, SLICED)
 
 
 def course(*ones, name="manoeuvre", extent=EXTENT, own=0.0001):
-    return KeptCourse(name, "planar with tolerances x 0.01", dict.fromkeys(NAMES, own), extent, ones or ALL)
+    return MeasuredCourse(name, "planar with tolerances x 0.01", dict.fromkeys(NAMES, own), extent, ones or ALL)
 
 
 def test_the_fastest_setting_within_all_wanted_errors_is_chosen_with_its_overrides():
@@ -86,7 +86,7 @@ def test_a_scene_recorded_after_the_choice_is_the_same_without_the_front(monkeyp
     chosen = scene("level=auto", "wants={slip: 0.3 %, life: 5 %, edge_loads: 3 %}")
     assert chosen.level == "spatial" and chosen.bearing.roller.slices == 50
     text = scene_to_yaml(chosen)
-    monkeypatch.setattr(kept_front, "FOLDER", tmp_path / "elsewhere")
+    monkeypatch.setattr(measured_tradeoffs, "FOLDER", tmp_path / "elsewhere")
     assert scene_from_yaml(text) == chosen
     assert "level: spatial" in text and "slip: 0.003" in text
 
@@ -102,7 +102,7 @@ def test_edge_loads_have_an_error_only_where_slices_were_measured():
     keep(HERE, course())
     assert scene("level=auto", "wants={edge_loads: 10 %}").bearing.roller.slices is None
     line = scene("level=auto", "wants={edge_loads: 1 %}").level_reason
-    assert line.startswith("level spatial chosen, the most accurate") and "no setting measured on manoeuvre keeps them" in line
+    assert line.startswith("level spatial chosen, the most accurate") and "no setting measured on manoeuvre (kept front " in line
 
 
 def test_a_largest_error_above_three_times_the_wanted_one_is_too_much():
@@ -126,7 +126,7 @@ FACTORS, SLIPS, LIVES = st.floats(0.01, 1e4), st.floats(1e-4, 5.0), st.floats(1e
 def test_candidates_are_those_that_a_plain_comparison_finds(rows, slip, life):
     ones = [PLANAR._replace(real_time_factor=factor, detail=str(k), overrides=(str(k),), errors=dict.fromkeys(NAMES, math.nan) | {
         "slip": a, "largest_slip": 2.0 * a, "life": b, "window_life": 4.0 * b}) for k, (factor, a, b) in enumerate(rows)]  # fmt: skip
-    found = candidates(HERE, {"slip": slip / 100, "life": life}, KeptFront(None, (course(*ones, own=0.0),)))
+    found = candidates(HERE, {"slip": slip / 100, "life": life}, Tradeoffs(None, (course(*ones, own=0.0),)))
     plain = [k for k, (_, a, b) in enumerate(rows) if a / 100 <= slip / 100 and 4.0 * b <= 3.0 * life]
     assert sorted(int(one.detail) for one in found) == plain
     assert [one.real_time_factor for one in found] == sorted((rows[k][0] for k in plain), reverse=True)
@@ -156,7 +156,7 @@ def test_the_worst_of_several_courses_counts():
     keep(HERE, course())
     keep(HERE, course(PLANAR, COARSE._replace(errors=COARSE.errors | {"slip": 0.4}), name="start"))
     chosen = scene(*AUTO)
-    assert chosen.integration.relative_tolerance == HERE.integration.relative_tolerance and "(manoeuvre, start)" in chosen.level_reason
+    assert chosen.integration.relative_tolerance == HERE.integration.relative_tolerance and "(manoeuvre, start; kept front " in chosen.level_reason
 
 
 def test_a_level_that_lacks_what_the_scene_asks_for_is_not_chosen_however_fast():
@@ -165,7 +165,7 @@ def test_a_level_that_lacks_what_the_scene_asks_for_is_not_chosen_however_fast()
 
 
 def test_a_fixed_step_too_long_for_the_speed_is_passed_over():
-    step = KeptSetting("planar", "step 40 us", ("integration.fixed_step=4e-05",), 100.0, PLANAR.errors)
+    step = Setting("planar", "step 40 us", ("integration.fixed_step=4e-05",), 100.0, PLANAR.errors)
     keep(HERE, course(step, PLANAR, extent=EXTENT | {"shaft_speed": (100.0, 11000.0)}))
     fast = 0.5 * 2 * math.pi / (18 * 0.5 * 4e-5 * (1 - HERE.bearing.diameter_ratio))  # half a pitch takes 40 us
     chosen = scene(*AUTO, f"operating.shaft_speed={min(1.1 * fast, 11000.0)} rad/s")

@@ -11,9 +11,9 @@ from click.testing import CliRunner
 
 from bearing_sim import load_scene
 from bearing_sim.cli.main import main
-from bearing_sim.scene import kept_front
-from bearing_sim.scene.kept_front import KeptCourse, KeptSetting, complete_overrides, front_path, keep, read_front
+from bearing_sim.scene import measured_tradeoffs
 from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml
+from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting, complete_overrides, keep, kept_path, read_kept_tradeoffs
 from bearing_sim.studies.trade import Errors, settings_of
 
 NAMES = Errors._fields
@@ -22,7 +22,7 @@ EXTENT = {"shaft_speed": (1000.0, 5000.0), "radial_load": (400.0, 800.0), "oil_t
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(kept_front, "FOLDER", tmp_path / "fronts")
+    monkeypatch.setattr(measured_tradeoffs, "FOLDER", tmp_path / "fronts")
     return tmp_path / "fronts"
 
 
@@ -32,11 +32,11 @@ def scene(*overrides):
 
 def setting(level, factor, slip, life=0.01, detail="tolerances x 1", overrides=()):
     errors = dict.fromkeys(NAMES, math.nan) | {"slip": slip, "largest_slip": 2.0 * slip, "life": life, "window_life": 2.0 * life}
-    return KeptSetting(level, detail, tuple(overrides), factor, errors)
+    return Setting(level, detail, tuple(overrides), factor, errors)
 
 
 def course(name, *settings, extent=EXTENT, reference="planar with tolerances x 0.01", own=0.001):
-    return KeptCourse(name, reference, dict.fromkeys(NAMES, own), extent, settings)
+    return MeasuredCourse(name, reference, dict.fromkeys(NAMES, own), extent, settings)
 
 
 def same(one, other):
@@ -46,7 +46,7 @@ def same(one, other):
 def test_what_is_kept_is_read_again():
     one = course("idle", setting("slip", 12.0, 1.9), setting("planar", 5.0, 0.05, overrides=["integration.relative_tolerance=0.03"]))
     keep(scene(), one)
-    (found,) = read_front(scene()).courses
+    (found,) = read_kept_tradeoffs(scene()).courses
     assert same(found, one)
 
 
@@ -68,20 +68,20 @@ def test_what_is_kept_is_read_again():
     ],
 )
 def test_a_front_belongs_to_bearing_and_oil_and_not_to_what_a_setting_or_a_course_changes(override, is_same):
-    assert (front_path(scene(override)) == front_path(scene())) == is_same
+    assert (kept_path(scene(override)) == kept_path(scene())) == is_same
 
 
 def test_another_machine_or_program_has_a_front_of_its_own(monkeypatch):
-    paths = {front_path(scene())}
-    monkeypatch.setattr(kept_front, "machine", lambda: "another machine, another processor")
-    paths.add(front_path(scene()))
-    monkeypatch.setattr(kept_front, "_program", lambda: "another program")
-    paths.add(front_path(scene()))
+    paths = {kept_path(scene())}
+    monkeypatch.setattr(measured_tradeoffs, "machine", lambda: "another machine, another processor")
+    paths.add(kept_path(scene()))
+    monkeypatch.setattr(measured_tradeoffs, "_program", lambda: "another program")
+    paths.add(kept_path(scene()))
     assert len(paths) == 3
 
 
 def test_a_recorded_scene_finds_the_front_of_its_bearing():
-    assert front_path(scene_from_yaml(scene_to_yaml(scene("level=planar")))) == front_path(scene())
+    assert kept_path(scene_from_yaml(scene_to_yaml(scene("level=planar")))) == kept_path(scene())
 
 
 def test_courses_are_merged_and_settings_measured_again_are_replaced():
@@ -92,7 +92,7 @@ def test_courses_are_merged_and_settings_measured_again_are_replaced():
     assert {one.level: one.real_time_factor for one in front.courses[1].settings} == {"slip": 12.0, "planar": 4.0}
     front = keep(scene(), course("idle", setting("planar", 3.0, 0.2), reference="spatial with tolerances x 0.01"))
     assert [one.level for one in front.courses[1].settings] == ["planar"]  # errors against another reference say another thing
-    assert same(read_front(scene()).courses, front.courses)
+    assert same(read_kept_tradeoffs(scene()).courses, front.courses)
 
 
 def test_of_several_courses_the_worst_counts_and_what_one_lacks_is_not_known():
@@ -115,13 +115,13 @@ def test_a_course_holds_where_it_was_measured():
 @pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"format": 99, "courses": []}', b'{"format": 1, "courses": [{"name": "a"}]}', b"\xff\xfe"])
 def test_a_file_that_is_not_whole_counts_as_none(folder, content):
     folder.mkdir()
-    front_path(scene()).write_bytes(content)
-    assert read_front(scene()) is None
+    kept_path(scene()).write_bytes(content)
+    assert read_kept_tradeoffs(scene()) is None
     assert keep(scene(), course("idle")).courses[0].name == "idle"  # and is replaced
 
 
 def _keep_one(folder, number):
-    kept_front.FOLDER = folder
+    measured_tradeoffs.FOLDER = folder
     keep(load_scene("deng2017_table1"), course(f"log {number}", setting("slip", 10.0, number)))
 
 
@@ -132,7 +132,7 @@ def test_trades_that_end_at_the_same_time_lose_nothing(folder):
         process.start()
     for process in processes:
         process.join(60)
-    assert {each.name for each in read_front(scene()).courses} == {f"log {number}" for number in range(6)}
+    assert {each.name for each in read_kept_tradeoffs(scene()).courses} == {f"log {number}" for number in range(6)}
 
 
 def test_complete_overrides_give_any_scene_the_settings_of_the_measured_one():
@@ -159,8 +159,8 @@ def test_a_trade_says_where_it_is_kept_unless_it_is_not(folder, monkeypatch):
     assert json.loads(result.stdout)["kept"] is None and not folder.exists()
     result = CliRunner().invoke(main, list(WORDS))
     report = json.loads(result.stdout)
-    assert report["kept"] == str(front_path(scene()))
-    (one,) = read_front(scene()).courses
+    assert report["kept"] == str(kept_path(scene()))
+    (one,) = read_kept_tradeoffs(scene()).courses
     assert one.name == "start" and one.extent["shaft_speed"][1] == pytest.approx(scene().operating.shaft_speed)
     assert {each.detail: each.real_time_factor for each in one.settings} == {
         each["setting"]: pytest.approx(each["real_time_factor"]) for each in report["settings"]
@@ -178,8 +178,8 @@ def test_a_folder_that_cannot_be_written_is_a_warning(folder, monkeypatch):
     folder.write_text("a file stands where the folder should be")
     from bearing_sim.cli import trade as command
 
-    monkeypatch.setattr("bearing_sim.studies.trade.kept_course", lambda found: course("idle"))
+    monkeypatch.setattr("bearing_sim.studies.trade.measured_course", lambda found: course("idle"))
     said = []
     monkeypatch.setattr(command.click, "echo", lambda text, err=False: said.append(text))
-    assert command._keep(scene(), Mock(is_complete=True)) is None
+    assert command._store(scene(), Mock(is_complete=True), True, None) == (None, None)
     assert said[0].startswith("warning: the settings are not kept: ")
