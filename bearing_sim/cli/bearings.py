@@ -3,10 +3,9 @@
 
 import math
 
-import click
 from click import IntRange
 
-from bearing_sim.cli.options import json_option, option, picture_option, scene_options, verbose_option
+from bearing_sim.cli.options import Amount, json_option, option, picture_option, scene_options, verbose_option
 from bearing_sim.cli.outputs import OutputFile
 from bearing_sim.cli.reporting import (
     UsageError,
@@ -15,13 +14,11 @@ from bearing_sim.cli.reporting import (
     as_usage_error,
     note,
     print_table,
-    refuse_idle_temperature,
-    scene_of,
+    scene_of_point,
     warn_of_limits,
-    warn_of_scene,
     warnings_report,
 )
-from bearing_sim.cli.results import Result, command, picture_into
+from bearing_sim.cli.results import Result, command
 
 
 @command("scenes")
@@ -48,15 +45,13 @@ def scenes():
 @picture_option("Draw the loads")
 @verbose_option
 @json_option
-def loads(scene_name, overrides, slices, picture, verbose, as_json):
+def loads(scene_name, overrides, slices, verbose):
     """Show the quasi-static load distribution of SCENE under its constant conditions, without cage slip and with roller 0 on the load line.
 
     With heat.law network the bearing is in thermal equilibrium, as in `bearing-sim run`; where there is none, the command fails and says why.
     A moment or a misalignment requires level spatial, in the scene or by --set level=spatial.
     """
-    scene = scene_of(scene_name, overrides)
-    refuse_idle_temperature(scene, overrides)
-    warn_of_scene(scene)
+    scene = scene_of_point(scene_name, overrides)
     announce_compilation()
     from bearing_sim.model.validity import outside
     from bearing_sim.studies.statics import statics
@@ -65,16 +60,21 @@ def loads(scene_name, overrides, slices, picture, verbose, as_json):
     slices = slices or scene.life.laminae
     with as_failed_run(ArithmeticError):
         found = statics(scene, slices)
-    if picture is not None:
+    warnings = graded(scene, outside(scene, found.sample), found.sample[0])
+
+    def draw(draft):
         from bearing_sim.scene.display import quantity_text
         from bearing_sim.studies.statics import draw
 
         operating = (quantity_text(name, getattr(scene.operating, name)) for name in ("radial_load", "shaft_speed"))
-        picture_into(picture, draw, f"{scene.name}: {' at '.join(operating)}", found)
-    warnings = graded(scene, outside(scene, found.sample), found.sample[0])
-    report = {**_report_loads(scene, slices, found), **warnings_report(scene, warnings), "picture": picture and str(picture)}
-    Result(report, lambda: _print_loads(scene, slices, found)).deliver(as_json)
-    warn_of_limits(scene, warnings, verbose)
+        draw(draft, f"{scene.name}: {' at '.join(operating)}", found)
+
+    return Result(
+        {**_report_loads(scene, slices, found), **warnings_report(scene, warnings), "picture": None},
+        lambda: _print_loads(scene, slices, found),
+        draw,
+        after=lambda: warn_of_limits(scene, warnings, verbose),
+    )
 
 
 def _report_loads(scene, slices, found) -> dict:
@@ -158,45 +158,22 @@ def _print_loads(scene, slices, found) -> None:
     print_table("rollers between both rings", rows)
 
 
-def _quantity(unit, meaning, minimum, maximum, shown_in):
-    """Return a click callback that parses a quantity with a unit."""
-
-    def read(context, option, text):
-        from pydantic_core import PydanticCustomError
-
-        from bearing_sim.scene.quantity import Quantity
-
-        if text is None:
-            return None
-        declared = Quantity(unit, meaning, minimum, maximum, shown_in)
-        try:
-            if reason := declared.why_unit_is_needed(text):
-                raise UsageError(f"--{option.name.replace('_', '-')}: {reason}")
-            return declared.read(text)
-        except PydanticCustomError as error:
-            raise UsageError(f"--{option.name.replace('_', '-')} {text}: {error.message()}") from None
-
-    return read
-
-
 def _option(name, default, unit, meaning, minimum, maximum, shown_in):
-    shown = {"default": default, "show_default": True} if default else {}
-    read = _quantity(unit, meaning, minimum, maximum, shown_in)
-    return click.option(f"--{name}", metavar="QUANTITY", callback=read, help=f"{meaning[0].upper()}{meaning[1:]}.", **shown)
+    return option(f"--{name}", f"{meaning}.", Amount(unit, minimum, maximum, shown_in), default=default, metavar="QUANTITY")
 
 
 @command("machine")
-@_option("pressure", "2.0 MPa", "Pa", "mean pressure on the arcs", 1e3, 1e9, "MPa")
-@_option("arc-turn", "0 deg", "rad", "angle by which one arc is turned from its even position, phi_f", -math.pi / 2, math.pi / 2, "deg")
-@_option("arc-width", "60 deg", "rad", "width of each pressed arc", 1e-3, math.pi, "deg")
+@_option("pressure", "2.0 MPa", "Pa", "Mean pressure on the arcs", 1e3, 1e9, "MPa")
+@_option("arc-turn", "0 deg", "rad", "Angle by which one arc is turned from its even position, phi_f", -math.pi / 2, math.pi / 2, "deg")
+@_option("arc-width", "60 deg", "rad", "Width of each pressed arc", 1e-3, math.pi, "deg")
 @option("--arcs", "Number of pressed arcs, one per lobe.", IntRange(2, 12), default=3)
-@_option("mean-radius", "35.8 mm", "m", "mean radius of the ring blank", 1e-3, 2.0, "mm")
-@_option("width", "12 mm", "m", "width of the ring", 1e-4, 1.0, "mm")
-@_option("pressed-width", None, "m", "width that the pressure acts on [default: the ring's]", 1e-4, 1.0, "mm")
-@_option("thickness", "3.4 mm", "m", "equivalent thickness of the ring's section, including ribs", 1e-5, 0.5, "mm")
+@_option("mean-radius", "35.8 mm", "m", "Mean radius of the ring blank", 1e-3, 2.0, "mm")
+@_option("width", "12 mm", "m", "Width of the ring", 1e-4, 1.0, "mm")
+@_option("pressed-width", None, "m", "Width that the pressure acts on [default: the ring's]", 1e-4, 1.0, "mm")
+@_option("thickness", "3.4 mm", "m", "Equivalent thickness of the ring's section, including ribs", 1e-5, 0.5, "mm")
 @_option("modulus", "206 GPa", "Pa", "Young's modulus", 1e9, 1e12, "GPa")
-@_option("low-radius", None, "m", "smallest radius of the finished raceway [default: 34.8625 mm unless --ground-radius is given]", 1e-3, 2.0, "mm")
-@_option("ground-radius", None, "m", "radius to which the pressed ring is ground", 1e-3, 2.0, "mm")
+@_option("low-radius", None, "m", "Smallest radius of the finished raceway [default: 34.8625 mm unless --ground-radius is given]", 1e-3, 2.0, "mm")
+@_option("ground-radius", None, "m", "Radius to which the pressed ring is ground", 1e-3, 2.0, "mm")
 @option("-o", "--out", "Contour file for bearing.outer_raceway.contour_file.", OutputFile(), metavar="CONTOUR.csv")
 @picture_option("Draw the contour")
 @json_option
@@ -213,20 +190,19 @@ def machine(
     low_radius,
     ground_radius,
     out,
-    picture,
-    as_json,
 ):
     """Compute the contour left by pressing a ring blank over even arcs, grinding its raceway round and releasing it.
 
     The ring is thin and elastic, computed by the Fourier series of the pressure.  The high points are where it was pressed; without
     --arc-turn a low point is at 0 deg.  Pressures of turned arcs are rescaled until their resultant vanishes.
     """
-    from bearing_sim.studies.machining import Pressing, RingSection, contour_text, machine
+    from bearing_sim.studies.machining import Pressing, RingSection, contour_text, draw, machine
 
     if low_radius is not None and ground_radius is not None:
         raise UsageError("--low-radius and --ground-radius determine the same radius; give one of them")
-    if arcs * arc_width + abs(arc_turn) > 2 * math.pi:
-        raise UsageError(f"--arc-width {math.degrees(arc_width):g} deg, {arcs} times and turned by {math.degrees(arc_turn):g} deg: the arcs overlap")
+    if arcs * arc_width + abs(arc_turn) > 2 * math.pi * (1.0 - 1e-9):  # without a gap the pressure is even, and no lobe is left
+        widths = f"--arc-width {math.degrees(arc_width):g} deg, {arcs} times and turned by {math.degrees(arc_turn):g} deg"
+        raise UsageError(f"{widths}: the arcs overlap, or leave no gap")
     if ground_radius is None and low_radius is None:
         low_radius = 34.8625e-3
     section, pressing = RingSection(mean_radius, width, thickness, modulus), Pressing(pressure, arc_turn, arc_width, arcs, pressed_width)
@@ -235,13 +211,14 @@ def machine(
     report = _report_machine(section, pressing, machined)
     if out is not None:
         out.write_text(contour_text(machined, _about(section, pressing)))
-    if picture is not None:
-        from bearing_sim.studies.machining import draw
-
-        picture_into(picture, draw, section, pressing, machined)
-    Result({**report, "out": out and str(out), "picture": picture and str(picture)}, lambda: _print_machine(report)).deliver(as_json)
-    if len(machined.lows) != arcs:
-        note(f"note: {arcs} arcs give {len(machined.lows)} low points: the turned arc has removed a lobe")
+    lobes = f"note: {arcs} arcs give {len(machined.lows)} low points: the turned arc has removed a lobe"
+    return Result(
+        {**report, "out": out and str(out), "picture": None},
+        lambda: _print_machine(report),
+        lambda draft: draw(draft, section, pressing, machined),
+        files=[out.path] if out is not None else [],
+        after=(lambda: note(lobes)) if len(machined.lows) != arcs else None,
+    )
 
 
 def _about(section, pressing) -> str:

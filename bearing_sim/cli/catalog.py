@@ -7,36 +7,24 @@ from collections.abc import Iterator
 import click
 from click import Choice
 
-from bearing_sim.cli.options import json_option, level_type, option, picture_option
+from bearing_sim.cli.options import Amount, AmountRange, json_option, level_type, option, picture_option
 from bearing_sim.cli.outputs import OutputFile
-from bearing_sim.cli.reporting import UsageError, command_line, note, print_rows, print_table, quantity_of
-from bearing_sim.cli.results import Result, command, picture_into
+from bearing_sim.cli.reporting import UsageError, command_line, note, print_rows, print_table
+from bearing_sim.cli.results import Result, command
 
 _COLUMNS = ("designation", "d", "D", "B", "C [kN]", "C_0 [kN]", "C_u [kN]", "limiting speed [rpm]", "ratings by")
 _WORDS = ("designation", "ratings by")
 
 
+_RANGE = AmountRange("m", "a length such as 50mm, or a range such as 50mm:80mm", fewest=1)
+
+
 def _range_option(name: str, meaning: str):
-    text = f"{meaning}: a length such as 50mm, or a range such as 50mm:80mm."
-    return option(name, text, metavar="LENGTH", callback=_read_range)
-
-
-def _read_range(context, option, text):
-    """Return the ends of a length or of a range of lengths [m]; None if the option is not given."""
-    if text is None:
-        return None
-    expected = "expected a length such as 50mm, or a range such as 50mm:80mm"
-    ends = [quantity_of(f"--{option.name}", part, "m") for part in text.split(":")]
-    if len(ends) > 2 or ends[0] > ends[-1]:
-        raise UsageError(f"--{option.name} {text}: {expected}")
-    return ends[0], ends[-1]
+    return option(name, f"{meaning}: a length such as 50mm, or a range such as 50mm:80mm.", _RANGE, metavar="LENGTH")
 
 
 def _above_option(name: str, unit: str, meaning: str, example: str):
-    def read(context, option, text):
-        return None if text is None else quantity_of(name, text, unit)
-
-    return option(name, f"{meaning} of at least this, such as {example}.", metavar="QUANTITY", callback=read)
+    return option(name, f"{meaning} of at least this, such as {example}.", Amount(unit), metavar="QUANTITY")
 
 
 @command("catalog")
@@ -51,7 +39,7 @@ def _above_option(name: str, unit: str, meaning: str, example: str):
 @_above_option("--limiting-speed-above", "rad/s", "Limiting speed", "6000rpm")
 @picture_option("Draw the bearing")
 @json_option
-def catalog(designation, types, series, bore, outside, width, dynamic_rating_above, static_rating_above, limiting_speed_above, picture):
+def catalog(designation, types, series, bore, outside, width, dynamic_rating_above, static_rating_above, limiting_speed_above):
     """List the cylindrical roller bearings of the catalogue, or show the one of DESIGNATION, such as "NU 210 ECP/C3".
 
     Options choose from the list.  Wherever a scene names a bearing, a designation may stand.
@@ -60,12 +48,10 @@ def catalog(designation, types, series, bore, outside, width, dynamic_rating_abo
     least = {"dynamic_rating": dynamic_rating_above, "static_rating": static_rating_above, "limiting_speed": limiting_speed_above}
     chosen = any((types, series, *bounds.values())) or any(value is not None for value in least.values())
     if designation is None:
-        if picture is not None:
-            raise UsageError("--picture draws one bearing; give its designation, such as: bearing-sim catalog 'NU 210' --picture nu210.png")
         return _list(types, series, bounds, least)
     if chosen:
         raise UsageError("options that choose from the list do not go with a designation; give one or the other")
-    return _show(designation, picture)
+    return _show(designation)
 
 
 def _list(types, series, bounds, least) -> Result:
@@ -82,7 +68,10 @@ def _list(types, series, bounds, least) -> Result:
         else:
             note("no bearing of the catalogue is like that; see bearing-sim catalog --help")
 
-    return Result({"bearings": found}, show)
+    def draw(draft):
+        raise UsageError("--picture draws one bearing; give its designation, such as: bearing-sim catalog 'NU 210' --picture nu210.png")
+
+    return Result({"bearings": found}, show, draw)
 
 
 def _check_words(option: str, given, known) -> None:
@@ -132,19 +121,16 @@ def _cells(row) -> tuple[str, ...]:
     return row["designation"], *lengths, *forces, speed, row["ratings_by"]
 
 
-def _show(designation: str, picture) -> Result:
+def _show(designation: str) -> Result:
     from bearing_sim.scene.loader import load_bearing
-    from bearing_sim.studies.bearing_facts import facts, rows
+    from bearing_sim.studies.bearing_facts import draw, facts, rows
 
     bearing = load_bearing(designation)
-    if picture is not None:
-        from bearing_sim.studies.bearing_facts import draw
-
-        picture_into(picture, draw, bearing)
     return Result(
-        {**facts(bearing), "picture": picture and str(picture)},
+        {**facts(bearing), "picture": None},
         lambda: print_table(bearing.designation or bearing.name, rows(bearing)),
-        remarks=[] if picture else ["--picture bearing.png draws it; bearing-sim new writes a scene with it"],
+        lambda draft: draw(draft, bearing),
+        remarks=["--picture bearing.png draws it; bearing-sim new writes a scene with it"],
     )
 
 
@@ -192,8 +178,7 @@ def new(bearing, oil, grease, supply, speed, load, temperature, level, shaft, ma
     if bare:
         raise SceneError("new scene", bare)
     if out is None:
-        click.echo(text, nl=False)
-        return
+        return Result({}, lambda: click.echo(text, nl=False))
     out.write_text(text)
     estimated = f"; {len(scene.bearing.estimated)} of its dimensions are estimated, see the comments" if scene.bearing.estimated else ""
-    click.echo(f"{out} written{estimated}\nnext: bearing-sim run {out}")
+    return Result({}, lambda: click.echo(f"{out} written{estimated}\nnext: bearing-sim run {out}"))

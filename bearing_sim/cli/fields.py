@@ -40,21 +40,19 @@ def fields(path):
     return Result({"fields": plain}, lambda: list(map(_print, found if path else found[:1])), remarks=[] if path else [more])
 
 
-@click.command("observables")
+@command("observables")
 @click.argument("words", required=False, default="", metavar="[WORDS]")
 @json_option
-def observables(words, as_json):
+def observables(words):
     """List the observables that a sample holds, those whose name or meaning contains WORDS, or all: unit and meaning."""
     from bearing_sim.model.sample import OBSERVABLES
 
     found = [each for each in OBSERVABLES if words.casefold() in f"{each.name} {each.meaning}".casefold()]
     if not found:
         raise UsageError(f"no observable has {words!r} in its name or meaning; bearing-sim observables lists all")
-    if as_json:
-        print_json({"observables": [each._asdict() for each in found]})
-        return
     rows = [(each.name, each.unit or "1", f"{each.meaning}{'; of each roller' if each.per_roller else ''}") for each in found]
-    print_rows("observables", ("name", "unit", "meaning"), rows, words=("name", "unit", "meaning"), keys=1)
+    columns = ("name", "unit", "meaning")
+    return Result({"observables": [each._asdict() for each in found]}, lambda: print_rows("observables", columns, rows, words=columns))
 
 
 def _bare(path: str) -> str:

@@ -38,8 +38,8 @@ support       study:support          Response over speed with a support of shaft
 resonances    study:resonances       Where the passing rollers make the inner ring vibrate, over speed, and in which states it stays.
 clearance     study:clearance        Running clearance over speed and load, thermal runaway, and what is lost at which speed.
 friction      study:friction         Friction of a scene against makers' models.
-cold-oil      cold_oil:cold_oil      Slip and skid load over load, temperature and supply of oil, from rolling and from a skid.
-cold-start    cold_start:cold_start  A cold start over time: slip, films, temperatures and sliding power while idling and as the load comes.
+cold-oil      study:cold_oil         Slip and skid load over load, temperature and supply of oil, from rolling and from a skid.
+cold-start    study:cold_start       A cold start over time: slip, films, temperatures and sliding power while idling and as the load comes.
 extremes      study:extremes         Which variants of a scene, at its extremes, finish, are step-limited, are refused or fail.
 """)
 _STATES = _listed("""

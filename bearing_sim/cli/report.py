@@ -8,14 +8,12 @@ import click
 from bearing_sim.cli.options import option
 from bearing_sim.cli.outputs import OutputFile, default_output
 from bearing_sim.cli.reporting import UsageError, tell_use
-from bearing_sim.cli.results import command
-
-_HTML = ".html", ".htm"
+from bearing_sim.cli.results import Result, command
 
 
 @command("report")
 @click.argument("source", metavar="RESULT")
-@option("-o", "--out", "The page [default: RESULT.html, or report.html in a folder].", OutputFile(), metavar="PATH.html")
+@option("-o", "--out", "The page [default: RESULT.html, or report.html in a folder].", OutputFile(".html", ".htm"), metavar="PATH.html")
 def report(source, out):
     """Make one page of RESULT: scene and bearing, tables, pictures, warnings, where it comes from, and the command that made it.
 
@@ -23,8 +21,6 @@ def report(source, out):
     (.mcap, or a bag's folder), or a folder of such files. The page is self-contained: it
     needs no network and no other file.
     """
-    if out is not None and out.path.suffix.lower() not in _HTML:
-        raise UsageError(f"-o {out}: expected a name that ends in .html")
     from bearing_sim.studies.report_page import page_of
 
     result = Path(source)
@@ -33,4 +29,4 @@ def report(source, out):
     out = out or default_output(result / "report.html" if result.is_dir() else result.with_suffix(".html"))
     page = page_of(result, tell_use)
     out.write_text(page)
-    click.echo(f"{out}: {len(page.encode()) / 1e6:.1f} MB")
+    return Result({}, remarks=[f"{out}: {len(page.encode()) / 1e6:.1f} MB"])

@@ -23,27 +23,40 @@ class Result(NamedTuple):
     """
 
     report: Mapping  # the one object that --json prints
-    show: Callable[[], None]  # prints it for people
+    show: Callable[[], None] = lambda: None  # prints it for people
     draw: Callable[[Path], None] | None = None  # draws it into a file
     rows: Sequence[Mapping] = ()  # of the table
     remarks: Sequence[str] = ()  # printed after it for people
     warnings: Sequence[str] = ()  # printed on stderr after it
+    files: Sequence[Path] = ()  # that were written
+    after: Callable[[], None] | None = None  # prints on stderr what comes after the result
     code: int = 0  # of exit
     ending: Ending | None = None  # raised at the end: what was found is no success
 
     def deliver(self, as_json: bool = False, picture: Output | None = None, table: Output | None = None) -> None:
-        """Write the table and the picture that are asked for, and print the result as JSON or for people."""
-        if table is not None:
-            write_csv(table, self.rows)
-        if picture is not None:
-            picture_into(picture, self.draw)
-        if as_json:
-            print_json(self.report)
-        else:
-            self.show()
-            for remark in self.remarks:
-                click.echo(remark)
+        """Write the table and the picture that are asked for, and print the result as JSON or for people, also where they cannot be written.
+
+        In a report that has them, ``picture`` and ``files`` are completed by what was written here.
+        """
+        written, drawn = [str(file) for file in self.files], None
+        try:
+            if table is not None:
+                write_csv(table, self.rows)
+                written.append(str(table))
+            if picture is not None:
+                picture_into(picture, self.draw)
+                written.append(drawn := str(picture))
+        finally:
+            if as_json:
+                made = {"picture": drawn, "files": written}
+                print_json({**self.report, **{name: made[name] for name in made.keys() & self.report.keys()}})
+            else:
+                self.show()
+                for remark in [*self.remarks, *([", ".join(written)] if written else [])]:
+                    click.echo(remark)
         warn(self.warnings)
+        if self.after is not None:
+            self.after()
         if self.ending is not None:
             raise self.ending
         if self.code:
