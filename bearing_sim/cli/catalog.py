@@ -39,7 +39,7 @@ def _above_option(name: str, unit: str, meaning: str, example: str):
 @_above_option("--limiting-speed-above", "rad/s", "Limiting speed", "6000rpm")
 @picture_option("Draw the bearing")
 @json_option
-def catalog(designation, types, series, bore, outside, width, dynamic_rating_above, static_rating_above, limiting_speed_above):
+def catalog(designation, types, series, bore, outside, width, dynamic_rating_above, static_rating_above, limiting_speed_above, picture):
     """List the cylindrical roller bearings of the catalogue, or show the one of DESIGNATION, such as "NU 210 ECP/C3".
 
     Options choose from the list.  Wherever a scene names a bearing, a designation may stand.
@@ -48,10 +48,12 @@ def catalog(designation, types, series, bore, outside, width, dynamic_rating_abo
     least = {"dynamic_rating": dynamic_rating_above, "static_rating": static_rating_above, "limiting_speed": limiting_speed_above}
     chosen = any((types, series, *bounds.values())) or any(value is not None for value in least.values())
     if designation is None:
+        if picture is not None:
+            raise UsageError("--picture draws one bearing; give its designation, such as: bearing-sim catalog 'NU 210' --picture nu210.png")
         return _list(types, series, bounds, least)
     if chosen:
         raise UsageError("options that choose from the list do not go with a designation; give one or the other")
-    return _show(designation)
+    return _show(designation, picture)
 
 
 def _list(types, series, bounds, least) -> Result:
@@ -68,10 +70,7 @@ def _list(types, series, bounds, least) -> Result:
         else:
             note("no bearing of the catalogue is like that; see bearing-sim catalog --help")
 
-    def draw(draft):
-        raise UsageError("--picture draws one bearing; give its designation, such as: bearing-sim catalog 'NU 210' --picture nu210.png")
-
-    return Result({"bearings": found}, show, draw)
+    return Result({"bearings": found}, show)
 
 
 def _check_words(option: str, given, known) -> None:
@@ -121,7 +120,7 @@ def _cells(row) -> tuple[str, ...]:
     return row["designation"], *lengths, *forces, speed, row["ratings_by"]
 
 
-def _show(designation: str) -> Result:
+def _show(designation: str, picture) -> Result:
     from bearing_sim.scene.loader import load_bearing
     from bearing_sim.studies.bearing_facts import draw, facts, rows
 
@@ -130,7 +129,7 @@ def _show(designation: str) -> Result:
         {**facts(bearing), "picture": None},
         lambda: print_table(bearing.designation or bearing.name, rows(bearing)),
         lambda draft: draw(draft, bearing),
-        remarks=["--picture bearing.png draws it; bearing-sim new writes a scene with it"],
+        remarks=[] if picture else ["--picture bearing.png draws it; bearing-sim new writes a scene with it"],
     )
 
 

@@ -22,12 +22,11 @@ from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
-    print_rows,
+    print_points,
 )
 from bearing_sim.cli.results import Result, command, resumed, signed
 
 _SHOWN = ("bearing", "running_hours", "revolutions", "slip_mean", "slip_p95", "slip_maximum", "above_slip_warning", "damage", "life", "status")
-_MOST_SHOWN = 40
 
 
 @command("replay-fleet")
@@ -160,13 +159,5 @@ def _report(table, points, files) -> dict:
 
 
 def _print(table) -> None:
-    columns = [table.column(name) for name in _SHOWN]
-    names = [f"{column.name.replace('_', ' ')}{f', {column.unit}' if column.unit else ''}" for column in columns]
     worst_first = sorted(table.rows, key=lambda row: (row["status"] == "ok", -row["damage"] if row["damage"] == row["damage"] else 0.0))
-    rows = [[f"{row[name]:.4g}" if isinstance(row[name], float) else str(row[name]) for name in _SHOWN] for row in worst_first[:_MOST_SHOWN]]
-    print_rows(f"{len(table.rows)} bearings, most life used first", names, rows, words=("bearing", "status"))
-    if len(table.rows) > _MOST_SHOWN:
-        click.echo(f"... and {len(table.rows) - _MOST_SHOWN} more bearings; all are in the files")
-    reasons = Counter(f"{row['status']}: {row['reason']}" for row in table.rows if row["reason"])
-    for reason, count in reasons.most_common(5):
-        click.echo(f"{count} x {reason}")
+    print_points(f"{len(table.rows)} bearings, most life used first", table, _SHOWN, worst_first)

@@ -14,6 +14,7 @@ import sys
 import textwrap
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -399,6 +400,27 @@ def print_rows(
         some = "" if len(parts) == 1 else f" ({number + 1} of {len(parts)})"
         headings, cells = [columns[place] for place in part], [[row[place] for place in part] for row in rows]
         _draw(f"{title}{some}", headings, [cells], _widths(headings, cells, words, available), [name in words for name in headings])
+
+
+def print_points(title: str, table, names: Sequence[str], rows: Sequence[Mapping] | None = None, keys: int = 1, most: int = 50) -> None:
+    """Print columns of a table of many points, of a long one the first rows, and the commonest reasons why points have no or no good result.
+
+    Parameters
+    ----------
+    title : above the table.
+    table : a `bearing_sim.sweep.table.Table`.
+    names : of its columns.
+    rows : in another order.
+    keys : as of `print_rows`.
+    most : number of rows that are printed.
+    """
+    rows = table.rows if rows is None else rows
+    columns = [column_texts(table.column(name), [row[name] for row in rows[:most]]) for name in names]
+    print_rows(title, [heading for heading, _ in columns], zip(*(texts for _, texts in columns)), words=("bearing", "status"), keys=keys)
+    if len(rows) > most:
+        click.echo(f"... and {len(rows) - most} more; all are in the files")
+    for reason, count in Counter(f"{row['status']}: {row['reason']}" for row in rows if row["reason"]).most_common(5):
+        click.echo(f"{count} x {reason}")
 
 
 def column_texts(column, values) -> tuple[str, list[str]]:

@@ -19,13 +19,13 @@ from bearing_sim.files.outputs import FORCE, Output, protecting_inputs
 class Result(NamedTuple):
     """What a command found: for programs, for people and for files.
 
-    The options ``--json``, ``--picture`` and the CSV table of ``-o`` are answered from it, unless the command takes them as parameters itself.
+    The options ``--json``, ``--picture`` and the CSV table of ``-o`` are answered from it; a command need not take them as parameters.
     """
 
     report: Mapping  # the one object that --json prints
     show: Callable[[], None] = lambda: None  # prints it for people
     draw: Callable[[Path], None] | None = None  # draws it into a file
-    rows: Sequence[Mapping] = ()  # of the table
+    rows: Sequence[Mapping] | None = None  # of the table
     remarks: Sequence[str] = ()  # printed after it for people
     warnings: Sequence[str] = ()  # printed on stderr after it
     files: Sequence[Path] = ()  # that were written
@@ -40,10 +40,10 @@ class Result(NamedTuple):
         """
         written, drawn = [str(file) for file in self.files], None
         try:
-            if table is not None:
+            if table is not None and self.rows is not None:
                 write_csv(table, self.rows)
                 written.append(str(table))
-            if picture is not None:
+            if picture is not None and self.draw is not None:
                 picture_into(picture, self.draw)
                 written.append(drawn := str(picture))
         finally:
@@ -129,7 +129,8 @@ class Command(click.Command):
     def _delivered(self, context):
         """Run the command with the parameters that it takes, and deliver its result by the others."""
         taken = inspect.signature(self.callback).parameters
-        ours = {name: context.params.pop(name) for name in ("as_json", "picture", "table") if name in context.params and name not in taken}
+        ours = {name: context.params[name] for name in ("as_json", "picture", "table") if name in context.params}
+        context.params = {name: value for name, value in context.params.items() if name in taken or name not in ours}
         result = super().invoke(context)
         if not isinstance(result, Result):
             return result

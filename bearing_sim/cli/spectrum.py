@@ -23,8 +23,7 @@ from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
     judged,
-    note,
-    print_rows,
+    print_points,
     print_table,
     refuse_idle_temperature,
     scene_of,
@@ -34,7 +33,6 @@ from bearing_sim.cli.reporting import (
 )
 from bearing_sim.cli.results import Result, command, resumed, signed
 
-_MOST_SHOWN = 20
 _EQUILIBRIUM = "of thermal equilibrium at each point; while a bearing warms up, its oil is thicker and its life longer (bearing-sim replay)"
 _MOST_CLASSES = 1000  # each that a log has time in is a run
 
@@ -142,30 +140,9 @@ def _print(scene, report, result) -> None:
     from bearing_sim.studies.spectrum import by_damage
 
     rows = by_damage(result.table)
-    columns = ["share [%]", "speed [rpm]", "load", "oil [°C]", "slip [%]", "life [h]", "damage [%]", "S_0", "status"]
-    if any(row["axial_load"] for row in rows):
-        columns.insert(3, "axial load")
-    shown = [
-        [
-            number(row["share"], 3),
-            number(row["shaft_speed"], 4),
-            force(row["radial_load"]),
-            *([force(row["axial_load"])] if "axial load" in columns else []),
-            number(row["oil_temperature"], 3),
-            number(row["cage_slip"], 3),
-            hours(row["modified_rating_life"]).removesuffix(" h"),
-            number(row["damage_share"], 3),
-            number(row["static_safety"], 3),
-            row["status"],
-        ]
-        for row in rows[:_MOST_SHOWN]
-    ]
-    print_rows(f"{scene.name} at level {scene.level}: points, the most harmful first", columns, shown, words=("status",))
-    if len(rows) > _MOST_SHOWN:
-        click.echo(f"... and {len(rows) - _MOST_SHOWN} more points; all are in the files")
-    for row in rows:
-        if row["reason"]:
-            note(f"{row['status']} at {number(row['shaft_speed'], 4)} rpm, {force(row['radial_load'])}: {row['reason']}")
+    axial = ["axial_load"] if any(row["axial_load"] for row in rows) else []
+    names = ("share", "shaft_speed", "radial_load", *axial, "oil_temperature", "cage_slip", "modified_rating_life", "damage_share", "static_safety")
+    print_points(f"{scene.name} at level {scene.level}: points, the most harmful first", result.table, (*names, "status"), rows, most=20)
 
     def lasting(share):
         """Return a share of the time in words, with its hours where the spectrum has any."""

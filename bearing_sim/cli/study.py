@@ -26,8 +26,8 @@ from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
     as_usage_error,
-    column_texts,
     judged,
+    print_points,
     print_rows,
     print_table,
     progress_bar,
@@ -331,7 +331,7 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out):
     words, losses = in_words(found), [each._asdict() for each in found.losses]
     return Result(
         {"scene": scene.name, "heat": scene.heat.law, "found": words, "losses": losses, "points": found.table.rows},
-        lambda: _print_clearances(found.table),
+        lambda: print_points(f"{scene.name}: running clearance, heat.law {scene.heat.law}", found.table, _CLEARANCE_SHOWN, keys=2),
         lambda draft: draw(draft, _title(scene, overrides), found),
         remarks=words,
         files=files,
@@ -365,12 +365,6 @@ _CLEARANCE_SHOWN = (
     "loss",
     "status",
 )
-
-
-def _print_clearances(table) -> None:
-    headings, columns = zip(*(column_texts(table.column(name), table.values(name)) for name in _CLEARANCE_SHOWN))
-    title = f"{table.about['scene']}: running clearance, heat.law {table.about['heat']}"
-    print_rows(title, headings, zip(*columns), words=("status",), keys=2)
 
 
 _LOAD = Amount("N", 1e-6, 1e8)

@@ -1,18 +1,14 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim sweep``: a scene at every combination of values."""
 
-from collections import Counter
 from contextlib import suppress
-
-import click
 
 from bearing_sim.cli.options import SECONDS, executor_options, json_option, option, picture_option, scene_argument, set_option, table_option
 from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
-    column_texts,
-    print_rows,
+    print_points,
     refuse_idle_temperature,
     scene_of,
     warn,
@@ -115,12 +111,6 @@ def _report_sweep(table, points, files) -> dict:
 def _print_sweep(table, report) -> None:
     from bearing_sim.sweep.pictures import default_quantities
 
-    names = (*(axis["field"] for axis in table.about["axes"]), *default_quantities(table), "shaft_power", "status")
-    shown = table.rows if len(table.rows) <= 60 else table.rows[:50]
-    headings, columns = zip(*(column_texts(table.column(name), [row[name] for row in shown]) for name in names))
-    print_rows(f"{report['scene']} at level {report['level']}", headings, zip(*columns), words=("status",), keys=len(table.about["axes"]))
-    if len(shown) < len(table.rows):
-        click.echo(f"... and {len(table.rows) - len(shown)} more points; all are in the files")
-    reasons = Counter(f"{row['status']}: {row['reason']}" for row in table.rows if row["reason"])
-    for reason, count in reasons.most_common(5):
-        click.echo(f"{count} x {reason}")
+    varied = [axis["field"] for axis in table.about["axes"]]
+    title = f"{report['scene']} at level {report['level']}"
+    print_points(title, table, [*varied, *default_quantities(table), "shaft_power", "status"], keys=len(varied))
