@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from level_speed import SPEEDS, _print_levels, level_integrators, quantile_error
 
-from bearing_sim.cli import bench
 from bearing_sim.cli.main import main
 from bearing_sim.cli.reporting import print_rows
-from bearing_sim.studies.bench import SPEEDS, level_integrators, one_core, quantile_error
+from bearing_sim.runtime.fleet import one_core
 
 # level spatial goes the same way, but takes minutes to compile
 MEASURED = ("slip", "planar")
@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[1]
 @pytest.fixture(scope="module")
 def report():
     found = subprocess.run(
-        [sys.executable, "-m", "bearing_sim.cli", "bench", "levels", "--quick", "--json", *(f"--level={level}" for level in MEASURED)],
+        [sys.executable, "test/benchmarks/level_speed.py", "--quick", "--json", *(f"--level={level}" for level in MEASURED)],
         capture_output=True,
         text=True,
         timeout=600,
@@ -57,28 +57,39 @@ def test_a_fixed_step_of_ten_microseconds_takes_a_hundred_steps_a_millisecond(re
 
 
 def test_the_tables_name_every_level_and_integrator(report, capsys):
-    bench._print_levels(report)
+    _print_levels(report)
     told = capsys.readouterr().out
     for name in {*MEASURED, *(name for level in MEASURED for name in level_integrators(level))}:
         assert name in told
 
 
-@pytest.mark.parametrize(
-    ("name", "foreign"),
-    [("levels", "--rounds=1"), ("levels", "--repetitions=1"), ("fleet", "--cold"), ("fleet", "--seconds=3")],
-)
-def test_a_benchmark_refuses_the_options_of_another(name, foreign):
-    refused = CliRunner().invoke(main, ["bench", name, "--quick", foreign])
+@pytest.mark.parametrize("foreign", ["--cold", "--seconds=3"])
+def test_a_benchmark_refuses_the_options_of_another(foreign):
+    refused = CliRunner().invoke(main, ["bench", "fleet", "--quick", foreign])
     assert refused.exit_code == 2 and "No such option" in refused.output and foreign.partition("=")[0] in refused.output
 
 
-def test_the_benchmarks_are_listed_and_an_unknown_level_is_refused_by_each_that_takes_one():
+def test_the_benchmarks_are_listed_and_an_unknown_level_is_refused():
     listed = CliRunner().invoke(main, ["bench", "--help"])
-    assert listed.exit_code == 0 and all(name in listed.output for name in ("levels", "fleet"))
+    assert listed.exit_code == 0 and "fleet" in listed.output
     assert CliRunner().invoke(main, ["bench"]).output == listed.output, "alone it measures nothing"
-    for name in ("levels", "fleet"):
-        refused = CliRunner().invoke(main, ["bench", name, "--level", "cheap"])
-        assert refused.exit_code == 2 and "'cheap' is not one of 'steady', 'slip', 'planar', 'spatial'" in refused.output
+    refused = CliRunner().invoke(main, ["bench", "fleet", "--level", "cheap"])
+    assert refused.exit_code == 2 and "'cheap' is not one of 'steady', 'slip', 'planar', 'spatial'" in refused.output
+
+
+@pytest.mark.parametrize(
+    ("removed", "successor"),
+    [
+        (("bench", "levels"), "bearing-sim trade SCENE"),
+        (("study", "misalignment"), "python examples/misalignment"),
+        (("study", "support"), "python examples/response_over_speed"),
+        (("study", "resonances"), "python examples/resonances"),
+        (("study", "scenes"), "python test/validation scenes"),
+    ],
+)
+def test_a_command_that_left_the_program_names_what_to_run_instead(removed, successor):
+    refused = CliRunner().invoke(main, [*removed, "deng2017_table1"])
+    assert refused.exit_code == 2 and successor in refused.output
 
 
 def test_a_table_shows_the_units_of_its_headings(capsys):

@@ -20,6 +20,7 @@ from validation.catalogue_friction import (
     film_rows,
     heat_flow,
     moment_table,
+    moments,
     part_ratios,
     thermal_speeds,
 )
@@ -34,7 +35,6 @@ from bearing_sim.studies.friction import (
     compare,
     dimensions_of,
     makers_moment,
-    moments,
     series_of,
     simple_moment,
     skf_moment,

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
-from validation.extremes_cases import sampled_cases
+from validation.extremes_cases import at_stock, sampled_cases
+from validation.steady_and_slip import compare, marched, solved
 
 from bearing_sim import Inputs, SceneError, Simulation, load_scene
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
@@ -38,8 +39,6 @@ from bearing_sim.numerics.linear_algebra import ALPHA_0, ALPHA_1, ALPHA_2, ALPHA
 from bearing_sim.scene.loader import scene_names
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import scene_inputs
-from bearing_sim.studies.extreme_run import at_stock
-from bearing_sim.studies.steady_check import compare, marched, solved
 
 RPM = math.pi / 30
 
@@ -80,7 +79,7 @@ def test_cyclic_differences_are_solved_as_by_a_dense_matrix():
 
 @pytest.mark.parametrize("name", ["deng2017_table1", "deng2017_table2"])
 def test_slip_and_life_are_those_of_the_marched_level_at_points_drawn_by_lot(name):
-    # Slip to 2 % or 0.05 points, life to 2 %; 25 points of each preset: bearing-sim table SCENE --against-slip 25.
+    # Slip to 2 % or 0.05 points, life to 2 %; 25 points of each preset: python test/validation against-slip SCENE.
     for row in compare(load_scene(name), 4, 2017):
         assert row.agrees, row
 

@@ -6,12 +6,12 @@ import json
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from misalignment import misaligned_rings
+from misalignment.__main__ import misalignment
+from misalignment.misaligned_rings import misalign
 from validation.slices import by_slices
 
 from bearing_sim import load_scene
-from bearing_sim.cli.main import main
-from bearing_sim.studies import misalignment
-from bearing_sim.studies.misalignment import misalign
 from bearing_sim.sweep.pictures import new_figure
 
 SLOW = ["operating.shaft_speed=5000 rpm", "operating.radial_load=2 kN"]
@@ -66,8 +66,8 @@ def test_results_settle_as_a_crowned_roller_is_cut_finer():
 
 def test_the_picture_says_what_each_curve_is_drawn_over(found, tmp_path, monkeypatch):
     figure = new_figure(14, 8)
-    monkeypatch.setattr(misalignment, "new_figure", lambda width, height: figure)
-    misalignment.draw(tmp_path / "m.svg", "misalignment", list(found.values()))
+    monkeypatch.setattr(misaligned_rings, "new_figure", lambda width, height: figure)
+    misaligned_rings.draw(tmp_path / "m.svg", "misalignment", list(found.values()))
     *over, along = figure.axes
     assert {axes.get_xlabel() for axes in over} == {"misalignment of the inner ring [mrad]"}
     assert along.get_xlabel() == "along the roller, x [mm]"
@@ -79,8 +79,8 @@ def test_the_picture_says_what_each_curve_is_drawn_over(found, tmp_path, monkeyp
 
 def test_command_prints_and_draws(tmp_path):
     picture, table = tmp_path / "m.png", tmp_path / "m.csv"
-    words = ["study", "misalignment", *(word for item in SLOW for word in ("--set", item)), "--points", "2", "--slices", "10", "--json"]
-    result = CliRunner().invoke(main, [*words, "--picture", str(picture), "--out", str(table)])
+    words = [*(word for item in SLOW for word in ("--set", item)), "--points", "2", "--slices", "10", "--json"]
+    result = CliRunner().invoke(misalignment, [*words, "--picture", str(picture), "--out", str(table)])
     assert result.exit_code == 0, result.output
     assert [point["crown"] for point in json.loads(result.stdout)["points"]] == ["none", "none", "iso_log", "iso_log"]
     assert picture.stat().st_size > 10_000
@@ -88,6 +88,6 @@ def test_command_prints_and_draws(tmp_path):
 
 
 def test_a_scene_at_rest_is_refused_with_what_to_do():
-    result = CliRunner().invoke(main, ["study", "misalignment", "--set", "operating.shaft_speed=0 rpm"])
+    result = CliRunner().invoke(misalignment, ["--set", "operating.shaft_speed=0 rpm"])
     assert result.exit_code == 2
     assert "bearing-sim loads" in result.output

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from level_speed import SPEEDS, bench_scene, level_integrators
 from solver_comparison import STOCK_ROLLERS, bare_problem, print_report, relative_error, scaled_scene, solve_with, state_scales
-
-from bearing_sim.studies.bench import SPEEDS, bench_scene, level_integrators
 
 # The others go the same way, but their loops take long to compile.
 MEASURED = ("slip",)

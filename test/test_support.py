@@ -11,6 +11,7 @@ from complex_step import complex_step_jacobian
 from reference_planar import Reference
 from reference_spatial import SpatialReference
 from reference_support import Carried
+from response_over_speed.responses import draw, relative_damage, respond
 from scipy.integrate import quad, solve_ivp
 
 from bearing_sim import Inputs, Simulation, load_scene
@@ -24,7 +25,6 @@ from bearing_sim.physics.squeeze_film import new_squeeze_film, squeeze_force
 from bearing_sim.scene.loader import SceneError
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.scene.support import settled_support
-from bearing_sim.studies.support import draw, relative_damage, respond
 
 MODELS = {"planar": planar, "spatial": spatial}
 POWERS = {"planar": planar_powers, "spatial": spatial_powers}

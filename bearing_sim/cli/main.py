@@ -28,14 +28,10 @@ def _listed(table: str) -> dict[str, Entry]:
 
 
 _BENCHMARKS = _listed("""
-levels  bench:levels  Speed, work and errors of every level, with error control and with a fixed step.
-fleet   bench:fleet   How many bearings one core holds in real time.
+fleet  bench:fleet  How many bearings one core holds in real time.
 """)
 _STUDIES = _listed("""
 damage        study:damage           Compare the damage of a measured run between levels.
-misalignment  study:misalignment     Edge pressure, tilt, skew and life against misalignment of the inner ring.
-support       study:support          Response over speed with a support of shaft and outer ring, and without.
-resonances    study:resonances       Where the passing rollers make the inner ring vibrate, over speed, and in which states it stays.
 clearance     study:clearance        Running clearance over speed and load, thermal runaway, and what is lost at which speed.
 friction      study:friction         Friction of a scene against makers' models.
 cold-oil      study:cold_oil         Slip and skid load over load, temperature and supply of oil, from rolling and from a skid.
@@ -69,7 +65,7 @@ report        report:report            Make one HTML page of a sweep, a design o
 trade         trade:trade              Measure speed against accuracy on a scene, and recommend a setting.
 bench         main:bench               Measure how fast the model is on this machine.
 compile       bench:compile_levels     Compile levels before their first run.
-study         main:study               Study a bearing: misalignment, support, resonances, clearance, friction, cold oil, extremes.
+study         main:study               Study a bearing: damage, clearance, friction, cold oil, cold start, extremes.
 info          recordings:info          Show what a recording holds, where it comes from, and whether it is complete.
 compare       recordings:compare       Compare two recordings topic by topic.
 recover       recordings:recover       Recover the recording of a killed writer.
@@ -84,11 +80,15 @@ scenes        bearings:scenes          List the bundled scenes, bearings and oil
 """)
 
 
-# Where commands went that judged the code rather than a bearing: what to run instead, from a checkout of the repository.
+# Where commands went that judged the code rather than a bearing, or that a script does as well: what to run instead.
+_CHECKOUT = "from a checkout of the repository: "
 _MOVED = {
-    "deng2017": "python examples/deng2017 -o deng2017",
-    "situations": "python examples/situations --out pictures",
-    **{name: f"python test/validation {name}" for name in ("slices", "scenes", "findings", "catalog", "estimator", "nightly")},
+    "study deng2017": f"{_CHECKOUT}python examples/deng2017 -o deng2017",
+    "study situations": f"{_CHECKOUT}python examples/situations --out pictures",
+    **{f"study {name}": f"{_CHECKOUT}python test/validation {name}" for name in ("slices", "scenes", "findings", "catalog", "estimator", "nightly")},
+    **{f"study {name}": f"{_CHECKOUT}python examples/{name} SCENE" for name in ("misalignment", "resonances")},
+    "study support": f"{_CHECKOUT}python examples/response_over_speed SCENE",
+    "bench levels": f"bearing-sim trade SCENE measures speed and errors of a bearing; {_CHECKOUT}python test/benchmarks/level_speed.py",
 }
 
 
@@ -137,8 +137,8 @@ class LazyGroup(click.Group):
     def get_command(self, context, name):
         """Return a command by name; None if there is none."""
         if name not in self._entries:
-            if self.name == "study" and name in _MOVED:
-                raise UsageError(f"study {name} is no longer part of the program; from a checkout of the repository: {_MOVED[name]}")
+            if instead := _MOVED.get(f"{self.name} {name}"):
+                raise UsageError(f"{self.name} {name} is no longer part of the program; {instead}")
             return None
         module, _, function = self._entries[name].place.partition(":")
         return getattr(importlib.import_module(f"bearing_sim.cli.{module}"), function)

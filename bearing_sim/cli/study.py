@@ -4,7 +4,7 @@
 import math
 
 import click
-from click import Choice, FloatRange, IntRange
+from click import FloatRange, IntRange
 
 from bearing_sim.cli.options import (
     PATH,
@@ -17,7 +17,6 @@ from bearing_sim.cli.options import (
     picture_option,
     scene_options,
     set_option,
-    together,
 )
 from bearing_sim.cli.outputs import OutputJournal, OutputTable
 from bearing_sim.cli.reporting import (
@@ -81,168 +80,6 @@ def _print_damage(log, name, found) -> None:
     rows.append(("whole", "", "", f"{1e6 * found.steady:.6g}", f"{1e6 * found.slip:.6g}", "", ""))
     columns = ("from [s]", "speed [rpm]", "load [N]", "steady", "slip", "planar", "planar/slip")
     print_rows(f"{log.name}, {name}: damage in millionths of the life, by level", columns, rows)
-
-
-_varied_scene = together(csv_option("Write the results to a table."), picture_option("Draw the results"), json_option)
-"""What the studies have in common that run a scene at several points."""
-_scene_or_paper = click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
-_vibrating_level = option("--level", "Level with vibration.", Choice(["planar", "spatial"]), default="planar")
-
-
-def _speed_option(name: str, parameter: str, which: str, default: float | None = None, otherwise: str = ""):
-    return option(name, parameter, f"{which} shaft speed{otherwise}.", FloatRange(1.0), default=default, metavar="RPM")
-
-
-def _over_points(title, columns, rows, draw, about, shown=None, words=None, remarks=()) -> Result:
-    """Return the result of a study whose rows have the columns of its table, the first of them in words; ``shown`` are its cells if others."""
-    texts = [[cell if isinstance(cell, str) else number(cell) for cell in cells] for cells in shown or (row.values() for row in rows)]
-    return Result({**about, "points": rows}, lambda: print_rows(title, columns, texts, words or columns[:1]), draw, rows, remarks)
-
-
-@command("misalignment")
-@allow_outside_option
-@_scene_or_paper
-@set_option
-@option("--largest", "Largest misalignment.", FloatRange(0.0, 20.0), default=3.0, metavar="MRAD")
-@option("--points", "Number of misalignments, starting at 0.", IntRange(2, 1000), default=7)
-@option("--crown", "crowns", "Value of bearing.roller.crown; can be repeated [default: none, iso_log].", multiple=True, metavar="LAW")
-@option("--slices", "Laminae per roller for life and pressures (ISO/TS 16281: at least 30).", IntRange(5, 400), default=30)
-@_varied_scene
-def misalignment(scene_name, overrides, largest, points, crowns, slices):
-    """Run SCENE at level spatial with its inner ring held at increasing misalignments, with and without a crown."""
-    import numpy as np
-
-    announce_compilation()
-    from bearing_sim.studies.misalignment import CROWNS, draw, misalign
-
-    crowns = crowns or CROWNS
-    done = iter(range(points * len(crowns) + 1))
-    amounts = [round(float(each), 9) for each in 1e-3 * np.linspace(0.0, largest, points)]
-    with progress_bar("points", points * len(crowns)) as show, as_usage_error(ValueError):
-        found = misalign(scene_name, overrides, amounts, crowns, slices, progress=lambda name: show(next(done)))
-    title = f"{' '.join([scene_name, *overrides])}: misalignment of the inner ring, {slices} laminae"
-    return _over_points(
-        f"{scene_name}: misalignment of the inner ring, level spatial",
-        ("crown", "misalignment [mrad]", "slip [%]", "largest [MPa]", "inner edge [MPa]", "outer edge [MPa]")
-        + ("tilt [mrad]", "skew [mrad]", "life [h]", "L10r [h]", "L10r, no slip, h"),
-        list(map(_row, found)),
-        lambda draft: draw(draft, title, found),
-        {"scene": scene_name, "slices": slices},
-        remarks=["pressures, tilt and skew: time average of the largest value at each instant; no slip: life by slices in quasi-static equilibrium"],
-    )
-
-
-def _row(one) -> dict:
-    return {
-        "crown": one.crown,
-        "misalignment_mrad": 1e3 * one.misalignment,
-        "slip_percent": 100 * one.slip,
-        "inner_pressure_mpa": 1e-6 * one.inner_pressure,
-        "inner_edge_pressure_mpa": 1e-6 * one.inner_edge_pressure,
-        "outer_edge_pressure_mpa": 1e-6 * one.outer_edge_pressure,
-        "tilt_mrad": 1e3 * one.tilt,
-        "skew_mrad": 1e3 * one.skew,
-        "life_hours": one.rating_life,
-        "l10r_hours": one.l10r,
-        "static_l10r_hours": one.still.lives.l10r,
-    }
-
-
-@command("support")
-@allow_outside_option
-@_scene_or_paper
-@set_option
-@_speed_option("--from", "lowest", "Lowest", 10000.0)
-@_speed_option("--to", "highest", "Highest", 52000.0)
-@option("--points", "Number of speeds.", IntRange(2, 1000), default=29)
-@_vibrating_level
-@_varied_scene
-def support(scene_name, overrides, lowest, highest, points, level):
-    """Run SCENE over speeds with its support, with a rigid one, and at level slip.
-
-    A scene whose support does not yield gets `support.elastic: true`.
-    """
-    import numpy as np
-
-    announce_compilation()
-    from bearing_sim.studies.support import draw, relative_damage, respond
-
-    done = iter(range(3 * points + 1))
-    speeds = [float(each) for each in np.linspace(lowest, highest, points) * (math.pi / 30)]
-    with progress_bar("points", 3 * points) as show:
-        found = respond(scene_name, overrides, speeds, level, progress=lambda name: show(next(done)))
-    relative = relative_damage(found)
-    title = f"response over speed, level {level}"
-    return _over_points(
-        f"{scene_name}: {title}",
-        ("model", "speed [rpm]", "slip [%]", "largest load [N]", "ring moves [µm]", "outer ring [µm]", "damage/slip's", "support [W]"),
-        [_response_row(one, relative) for one in found],
-        lambda draft: draw(draft, f"{' '.join([scene_name, *overrides])}: {title}", found),
-        {"scene": scene_name, "level": level},
-    )
-
-
-def _response_row(one, relative) -> dict:
-    return {
-        "model": one.model,
-        "shaft_speed_rpm": one.shaft_speed * 30 / math.pi,
-        "slip_percent": 100 * one.slip,
-        "largest_inner_load_n": one.largest_load,
-        "ring_motion_um": 1e6 * one.ring_swing,
-        "outer_ring_motion_um": 1e6 * one.outer_swing,
-        "damage_over_slip": relative[one.model, one.shaft_speed],
-        "support_power_w": one.support_power,
-    }
-
-
-@command("resonances")
-@allow_outside_option
-@_scene_or_paper
-@set_option
-@_speed_option("--from", "lowest", "Lowest", otherwise=" [default: 0.5 of the scene's]")
-@_speed_option("--to", "highest", "Highest", otherwise=" [default: 1.3 of the scene's]")
-@option("--points", "Number of speeds.", IntRange(2, 1000), default=33)
-@_vibrating_level
-@_varied_scene
-def resonances(scene_name, overrides, lowest, highest, points, level):
-    """Show over speed where the passing rollers make the inner ring of SCENE vibrate on its contacts, and in which states it stays."""
-    import numpy as np
-
-    scene = scene_of(scene_name, overrides, level)
-    announce_compilation(scene)
-    from bearing_sim.studies.resonances import draw, resonances
-
-    own = abs(scene.operating.shaft_speed) * 30.0 / math.pi
-    if own == 0.0 and None in (lowest, highest):
-        raise UsageError("the scene's shaft stands still; give --from and --to")
-    speeds = np.linspace(0.5 * own if lowest is None else lowest, 1.3 * own if highest is None else highest, points) * (math.pi / 30.0)
-    with progress_bar("speeds", points) as show:
-        found = resonances(scene, speeds, show)
-    rows = [row for each in found for row in _resonance_rows(each)]
-    title = f"{' '.join([scene_name, *overrides])}: the inner ring on its rollers, level {level}"
-    return _over_points(
-        f"{scene_name}: the inner ring on its rollers over speed, level {level}",
-        ("speed [rpm]", "over passage", "multiplier", "nearby", "slip [%]", "life [h]", "state"),
-        rows,
-        lambda draft: draw(draft, title, found),
-        {"scene": scene_name, "level": level},
-        [(speed, f"{low:.2f}, {high:.2f}", *others) for speed, low, high, *others in (row.values() for row in rows)],
-        ("over passage", "state"),
-    )
-
-
-def _resonance_rows(speed) -> list[dict]:
-    ring = speed.resonance
-    low, high = (math.nan, math.nan) if ring is None else ring.ratios
-    known = {
-        "shaft_speed_rpm": speed.shaft_speed * 30.0 / math.pi,
-        "lower_ratio": low,
-        "higher_ratio": high,
-        "multiplier": math.nan if ring is None else ring.multiplier,
-        "multiplier_nearby": math.nan if ring is None else ring.multiplier_nearby,
-    }
-    states = [(100.0 * state.cage_slip, state.rating_life, state.start) for state in speed.states] or [(math.nan, math.nan, "the run stopped early")]
-    return [known | {"slip_percent": slip, "rating_life_h": life, "state": start} for slip, life, start in states]
 
 
 @command("friction")

@@ -4,10 +4,9 @@
 import math
 from pathlib import Path
 
-import click
 from click import IntRange
 
-from bearing_sim.cli.options import PATH, flag, json_option, option, scene_options
+from bearing_sim.cli.options import PATH, flag, json_option, option, removed_option, scene_options
 from bearing_sim.cli.outputs import OutputFile
 from bearing_sim.cli.reporting import (
     UsageError,
@@ -30,30 +29,29 @@ from bearing_sim.scene.display import SHOWN, force, number, quantity_text, shown
 @option("--at", "points", "Show this operating point, interpolated and solved; can be repeated.", multiple=True, metavar="RPM,N[,DEGC[,DEG]]")
 @option("-o", "--out", "Also write the table to this file, for another machine.", OutputFile(), metavar="FILE.npz")
 @option("--from", "shared", "Build nothing: keep the table that another machine has written for this scene with -o.", PATH, metavar="FILE.npz")
-@option("--against-slip", "Instead compare the solver with level slip at N random operating points.", IntRange(1, 10_000), metavar="N")
-@option("--seed", "Seed of the random points.", default=2017)
+@removed_option(
+    "--against-slip", "bearing-sim trade SCENE --level steady --against slip, or, from a checkout, python test/validation against-slip SCENE"
+)
 @flag("--bands", "Instead build the response to the uncertain fields, from which bands and calibration follow, or show it.")
 @option("--dask", "Compute that response on this Dask cluster, such as tcp://10.0.0.1:8786.", metavar="ADDRESS")
 @json_option
-def table(scene_name, overrides, rebuild, workers, points, out, shared, against_slip, seed, bands, dask):
+def table(scene_name, overrides, rebuild, workers, points, out, shared, bands, dask):
     """Build the table of operating points of SCENE at level steady, or show the existing one.
 
     Its range is given in the scene's block `table` (maximum_speed, maximum_load, minimum_temperature, maximum_temperature, tolerance);
     it covers all directions of the load. A point of --at is as warm as a run there: with heat.law network in thermal equilibrium.
     """
     scene = scene_of(scene_name, overrides, "steady")
-    if (bands or against_slip is not None) and (out is not None or shared is not None):
-        raise UsageError("-o and --from are for the table itself; leave --bands and --against-slip out")
+    if bands and (out is not None or shared is not None):
+        raise UsageError("-o and --from are for the table itself; leave --bands out")
     if shared is not None and rebuild:
         raise UsageError("--from takes a table that has been built; leave --rebuild out")
     if bands:
-        if points or against_slip is not None:
-            raise UsageError("--bands goes with --rebuild, --workers and --dask only; leave --at and --against-slip out")
+        if points:
+            raise UsageError("--bands goes with --rebuild, --workers and --dask only; leave --at out")
         return _response(scene, rebuild, workers, dask)
     if dask is not None:
         raise UsageError("--dask goes with --bands only: the table itself is built by the threads of this machine; leave --dask out, or add --bands")
-    if against_slip is not None:
-        return _compare(scene, against_slip, seed)
     asked = [_condition(text, scene) for text in points]
     if shared is not None:
         table, quality = _taken(shared, scene)
@@ -194,28 +192,6 @@ def _correction_of(scene) -> dict | None:
 def _place(speed, load, kelvin, angle) -> dict:
     """Return an operating point for JSON, in the units of its names."""
     return {"speed_rpm": speed * 30 / math.pi, "load": load, "oil_temperature_c": kelvin - 273.15, "load_angle_deg": math.degrees(angle)}
-
-
-def _compare(scene, count, seed) -> Result:
-    from bearing_sim.studies.steady_check import compare
-
-    announce_compilation(scene)
-    rows = []
-    with progress_bar(f"simulating {scene.name}", count) as progress:
-        for row in compare(scene, count, seed):
-            rows.append(row._asdict() | {"agrees": row.agrees})
-            progress(len(rows))
-    agreeing = sum(row["agrees"] for row in rows)
-    remark = f"{agreeing} of {count} agree: slip within 2 % or 0.05 points, and life within 2 %"
-    return Result({"scene": scene.name, "agreeing": agreeing, "points": rows}, lambda: _print_comparison(rows), remarks=[remark])
-
-
-def _print_comparison(rows) -> None:
-    for row in rows:
-        slip = f"slip {100 * row['marched_slip']:8.4f} % simulated, {100 * row['solved_slip']:8.4f} % solved"
-        life = f"life {row['marched_life']:9.4g} h, {100 * (row['solved_life'] / row['marched_life'] - 1):+.2f} %"
-        where = f"{row['speed_rpm']:7.0f} rpm {row['load']:6.0f} N {row['load_angle_deg']:5.0f} deg {row['oil_temperature_c']:4.0f} °C"
-        click.echo(f"{where}: {slip}; {life}{'' if row['agrees'] else '; differs'}")
 
 
 def _row_of(name, of_table, solved) -> tuple[str, str]:

@@ -108,21 +108,11 @@ class _TurnedEnough(Exception):
     """The cage has turned often enough, so that the run need not settle."""
 
 
-def at_stock(case: Case) -> Case:
-    """Return a case without its settings of the integration."""
-    return case._replace(overrides=tuple(each for each in case.overrides if not each.startswith("integration.")))
-
-
 def outcome_fields(case: Case) -> dict:
     """Return the fields of the outcome of one case, without the case."""
     fields = run_case(case)._asdict()
     del fields["case"]
     return fields
-
-
-def run_at_stock(case: Case) -> StockOutcome:
-    """Run one case at stock settings, see `run_case`."""
-    return run_case(at_stock(case))._replace(case=case)
 
 
 def run_case(case: Case) -> StockOutcome:

@@ -8,12 +8,10 @@ film ratios at 40 degC in mineral oils from 20 mm^2/s on.  Moments are those of 
 
 import dataclasses
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from bearing_sim.levels.steady.model import Work, new_work
 from bearing_sim.levels.steady.operating_point import ANSWER
-from bearing_sim.model.params import pack
 from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.physics.drag import bath_moment
 from bearing_sim.scene.designation import readable_designation
@@ -173,11 +171,11 @@ def makers_moment(scene: Scene, speed: float, load: float, viscosity: float, axi
         return MakersMoment(None, None, None, f"makers publish constants by series ({known}), and {bearing.name!r} is not a designation of one")
     if speed == 0.0:
         return MakersMoment(series, None, None, "makers' models are for a shaft that turns")
-    simple, skf = _moments_of_makers(scene, series, abs(speed) / _RPM, load, 1e6 * viscosity, axial_load)
+    simple, skf = moments_of_makers(scene, series, abs(speed) / _RPM, load, 1e6 * viscosity, axial_load)
     return MakersMoment(series, 1e-3 * skf.whole, 1e-3 * sum(simple), "")
 
 
-def _moments_of_makers(
+def moments_of_makers(
     scene: Scene, series: str, speed: float, load: float, viscosity: float, axial_load: float
 ) -> tuple[tuple[float, float], SkfMoment]:
     """Return the moments of `simple_moment` and `skf_moment` for the bearing and the supply of a scene."""
@@ -188,91 +186,14 @@ def _moments_of_makers(
     return simple_moment(series, dimensions, speed, load, viscosity, supply.law), skf
 
 
-class Moment(NamedTuple):
-    """Frictional moments of one bearing at one speed and load [N mm]."""
-
-    bearing: str
-    series: str
-    speed: float  # [rpm]
-    load: float  # of C_0
-    model: float  # the whole moment
-    rolling: float  # its parts
-    sliding: float
-    drag: float  # of rollers and cage
-    pocket: float
-    seal: float
-    flange: float  # of roller ends
-    viscous: float  # M_0 of the simple model
-    by_load: float  # M_1 of it
-    skf: float
-    skf_rolling: float  # parts of it
-    skf_sliding: float
-    slip: float  # of the cage
-
-    @property
-    def simple(self) -> float:
-        """M_0 + M_1."""
-        return self.viscous + self.by_load
-
-    @property
-    def ratio(self) -> float:
-        """The model's moment over that of the simple model."""
-        return self.model / self.simple
-
-
-def moments(scene: Scene, series: str, conditions: Sequence[tuple[float, float]]) -> list[Moment]:
-    """Return the moments of a scene's bearing at level ``steady`` and by makers' models.
-
-    Parameters
-    ----------
-    scene : its oil, its temperatures and its supply count, and the direction of its load.
-    series : of `SERIES`.
-    conditions : speed [rpm] and load [N] of each.
-
-    Raises
-    ------
-    ValueError
-        No operating point was found.
-    IntegrationError
-        There is no thermal equilibrium.
-    """
-    angle, kelvin = scene.operating.load_angle, scene.lubricant.temperature
-    asked = [Inputs(speed * _RPM, load * math.cos(angle), load * math.sin(angle), kelvin) for speed, load in conditions]
-    work = new_work(pack(scene))
-    return [_moment(scene, series, inputs, operating_state(scene, inputs), work) for inputs in asked]
-
-
-def _moment(scene: Scene, series: str, inputs: Inputs, state: OperatingState, work: Work) -> Moment:
-    """Return the moments at one condition, see `moments`."""
-    params, lubrication, _ = state
-    speed, load = abs(inputs.shaft_speed) / _RPM, math.hypot(inputs.load_y, inputs.load_z)
-    if speed == 0.0:
+def _model_moment(scene: Scene, inputs: Inputs, state: OperatingState, work: Work) -> float:
+    """Return the frictional moment of a scene under conditions by level steady [N mm]; errors as of `compare`."""
+    if inputs.shaft_speed == 0.0:
         raise ValueError(f"{scene.name}: operating.shaft_speed: 0; friction is compared with makers' models while the shaft turns: give a speed")
-    answer = solved_answer(state, inputs, work)
+    answer, speed = solved_answer(state, inputs, work), abs(inputs.shaft_speed) / _RPM
     if not math.isfinite(answer[ANSWER.cage_slip]):
-        raise ValueError(f"{scene.name}: no operating point at {speed:g} rpm and {load:g} N")
-    parts = {name: float(answer[column]) * 1e3 / (speed * _RPM) for name, column in ANSWER._asdict().items() if name.endswith("_power")}
-    viscosity = 1e6 * lubrication.kinematic_viscosity
-    (viscous, by_load), skf = _moments_of_makers(scene, series, speed, load, viscosity, scene.operating.axial_load)
-    return Moment(
-        scene.bearing.name,
-        series,
-        speed,
-        load / params.life.static_rating,
-        parts["shaft_power"],
-        parts["inner_rolling_power"] + parts["outer_rolling_power"],
-        parts["inner_sliding_power"] + parts["outer_sliding_power"],
-        parts["churning_power"] + parts["windage_power"] + parts["land_power"],
-        parts["pocket_power"],
-        parts["seal_power"],
-        parts["flange_power"],
-        viscous,
-        by_load,
-        skf.whole,
-        skf.rolling,
-        skf.sliding,
-        float(answer[ANSWER.cage_slip]),
-    )
+        raise ValueError(f"{scene.name}: no operating point at {speed:g} rpm and {math.hypot(inputs.load_y, inputs.load_z):g} N")
+    return float(answer[ANSWER.shaft_power]) * 1e3 / (speed * _RPM)
 
 
 class Comparison(NamedTuple):
@@ -306,13 +227,15 @@ def compare(scene: Scene, series: str) -> Comparison:
     inputs, state = scene_inputs(scene), operating_state(scene)
     plain = dataclasses.replace(scene, lubricant=dataclasses.replace(scene.lubricant, rolling_resistance=NoRollingResistance()))
     work = new_work(state.params)
-    bare = _moment(plain, series, inputs, operating_state(plain, inputs, state.temperatures), work)
-    full = _moment(scene, series, inputs, state, work)
-    watts, load = 1e-3 * abs(inputs.shaft_speed), scene.operating.radial_load
+    bare = _model_moment(plain, inputs, operating_state(plain, inputs, state.temperatures), work)
+    full = _model_moment(scene, inputs, state, work)
+    speed, load, viscosity = abs(inputs.shaft_speed), math.hypot(inputs.load_y, inputs.load_z), 1e6 * state.lubrication.kinematic_viscosity
+    simple, skf = moments_of_makers(scene, series, speed / _RPM, load, viscosity, scene.operating.axial_load)
+    watts = 1e-3 * speed
     return Comparison(
         series,
-        *(watts * moment for moment in (bare.model, full.model, full.simple, full.skf)),
-        0.0011 * load * 0.5 * dimensions_of(scene).bore * watts,
-        1e6 * state.lubrication.kinematic_viscosity,
+        *(watts * moment for moment in (bare, full, sum(simple), skf.whole)),
+        0.0011 * scene.operating.radial_load * 0.5 * dimensions_of(scene).bore * watts,
+        viscosity,
         dict(zip(NODE_OBSERVABLES, state.temperatures.tolist())),
     )

@@ -5,7 +5,7 @@
 once compiled, longer for level spatial.  ``--quick`` measures almost nothing, ``--json`` prints one JSON object.
 
 Reference of a trajectory is DOP853 at a tolerance of 1e-10.  CVODE needs scikit-sundae.  One process on one core measures everything;
-times are processor times, and the minimum of repeats counts (see `bearing_sim.studies.bench`, which measures speed and errors alone).
+times are processor times, and the minimum of repeats counts (see `level_speed`, which measures speed and errors alone).
 """
 
 import argparse
@@ -19,17 +19,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import NamedTuple
 
 import numpy as np
-
-from bearing_sim.cli.reporting import print_rows
-from bearing_sim.levels.common.model import Drive, Model
-from bearing_sim.levels.level import LEVELS
-from bearing_sim.levels.steady.table_builder import look_up, obtain_table
-from bearing_sim.model.params import lubricate, pack
-from bearing_sim.numerics.compilation import kernel
-from bearing_sim.scene.loader import load_scene
-from bearing_sim.scene.scene import Scene
-from bearing_sim.simulation import Simulation, scene_inputs, tolerances_of
-from bearing_sim.studies.bench import (
+from level_speed import (
     BEARING,
     LOAD,
     SPEEDS,
@@ -41,6 +31,16 @@ from bearing_sim.studies.bench import (
     one_core,
     timed_run,
 )
+
+from bearing_sim.cli.reporting import print_rows
+from bearing_sim.levels.common.model import Drive, Model
+from bearing_sim.levels.level import LEVELS
+from bearing_sim.levels.steady.table_builder import look_up, obtain_table
+from bearing_sim.model.params import lubricate, pack
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.scene import Scene
+from bearing_sim.simulation import Simulation, scene_inputs, tolerances_of
 
 STOCK_ROLLERS = 18
 

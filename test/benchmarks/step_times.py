@@ -16,13 +16,13 @@ from pathlib import Path
 
 import click
 import numpy as np
+from level_speed import bench_scene, one_core
 
 from bearing_sim.cli.options import json_option, level_type, set_option
 from bearing_sim.cli.reporting import print_json, print_rows
 from bearing_sim.model.sample import flat, new_block
 from bearing_sim.recording.recorder import Recorder
 from bearing_sim.simulation import Simulation
-from bearing_sim.studies.bench import bench_scene, one_core
 
 _SETTLING = 0.1  # [s]
 _RECORD_EVERY = 0.01  # [s]

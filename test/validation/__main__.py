@@ -10,7 +10,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "test"), str(ROOT / "examples")]
 
 import click  # noqa: E402
 
-from bearing_sim.cli.options import allow_outside_option, csv_option, json_option, level_type, picture_option, set_option  # noqa: E402
+from bearing_sim.cli.options import allow_outside_option, csv_option, json_option, level_type, picture_option, scene_options, set_option  # noqa: E402
 from bearing_sim.cli.outputs import OutputFile, OutputJournal, default_output  # noqa: E402
 from bearing_sim.cli.reporting import (  # noqa: E402
     FailedRun,
@@ -25,10 +25,11 @@ from bearing_sim.cli.reporting import (  # noqa: E402
     print_rows,
     print_table,
     progress_bar,
+    scene_of,
     seconds_of,
     write_csv,
 )
-from bearing_sim.cli.results import Command  # noqa: E402
+from bearing_sim.cli.results import Command, Result, command  # noqa: E402
 from bearing_sim.files.limits import FileError  # noqa: E402
 from bearing_sim.scene.display import number as number_text  # noqa: E402
 from bearing_sim.scene.errors import did_you_mean  # noqa: E402
@@ -82,6 +83,35 @@ def report(out, names, tests, recordings, quick):
         if each.verdict != "holds":
             click.echo(f"{each.verdict}: {each.quantity}: {each.found}")
     click.echo(f"{out}: {counted(results)}")
+
+
+@command("against-slip")
+@scene_options
+@click.option("--points", "count", default=25, show_default=True, type=click.IntRange(1, 10_000), metavar="N", help="Random operating points.")
+@click.option("--seed", default=2017, show_default=True, help="Seed of the random points.")
+@json_option
+def against_slip(scene_name, overrides, count, seed):
+    """Compare the solver of level steady with settled runs of level slip at random operating points of SCENE."""
+    from validation.steady_and_slip import compare
+
+    scene = scene_of(scene_name, overrides, "steady")
+    announce_compilation(scene)
+    rows = []
+    with progress_bar(f"simulating {scene.name}", count) as progress:
+        for row in compare(scene, count, seed):
+            rows.append(row._asdict() | {"agrees": row.agrees})
+            progress(len(rows))
+    agreeing = sum(row["agrees"] for row in rows)
+    remark = f"{agreeing} of {count} agree: slip within 2 % or 0.05 points, and life within 2 %"
+    return Result({"scene": scene.name, "agreeing": agreeing, "points": rows}, lambda: _print_comparison(rows), remarks=[remark])
+
+
+def _print_comparison(rows) -> None:
+    for row in rows:
+        slip = f"slip {100 * row['marched_slip']:8.4f} % simulated, {100 * row['solved_slip']:8.4f} % solved"
+        life = f"life {row['marched_life']:9.4g} h, {100 * (row['solved_life'] / row['marched_life'] - 1):+.2f} %"
+        where = f"{row['speed_rpm']:7.0f} rpm {row['load']:6.0f} N {row['load_angle_deg']:5.0f} deg {row['oil_temperature_c']:4.0f} °C"
+        click.echo(f"{where}: {slip}; {life}{'' if row['agrees'] else '; differs'}")
 
 
 @click.command("slices")
@@ -438,7 +468,7 @@ def _print_extremes(level, results) -> None:
     print_table(f"extremes at level {level}, {results['core_seconds']:.0f} s of core time", rows)
 
 
-@click.group(commands=[report, scenes, findings, slices, catalog_rules, extremes, nightly, estimator, friction])
+@click.group(commands=[report, scenes, findings, slices, catalog_rules, extremes, nightly, estimator, friction, against_slip])
 def main():
     """Check and study the model itself, against what is independent of it."""
 

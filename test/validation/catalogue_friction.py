@@ -8,12 +8,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.steady.model import Work, new_work
+from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.model.params import pack
 from bearing_sim.physics.rating_life import viscosity_ratio
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
-from bearing_sim.studies.friction import Dimensions, Moment, dimensions_of, moments, series_of, simple_moment, skf_moment
-from bearing_sim.sweep.thermal import operating_state
+from bearing_sim.simulation import Inputs
+from bearing_sim.studies.friction import Dimensions, dimensions_of, moments_of_makers, series_of, simple_moment, skf_moment
+from bearing_sim.sweep.thermal import OperatingState, operating_state, solved_answer
 
 _RPM = math.pi / 30.0
 LOADS = (0.02, 0.05, 0.1, 0.2)  # of C_0
@@ -58,6 +62,93 @@ def bath_scene(name: str, overrides: Sequence[str] = (), oil: Mapping = _OIL, te
 def bearings() -> list[str]:
     """Return the bearings that are compared, by series and size."""
     return list(BEARINGS)
+
+
+class Moment(NamedTuple):
+    """Frictional moments of one bearing at one speed and load [N mm]."""
+
+    bearing: str
+    series: str
+    speed: float  # [rpm]
+    load: float  # of C_0
+    model: float  # the whole moment
+    rolling: float  # its parts
+    sliding: float
+    drag: float  # of rollers and cage
+    pocket: float
+    seal: float
+    flange: float  # of roller ends
+    viscous: float  # M_0 of the simple model
+    by_load: float  # M_1 of it
+    skf: float
+    skf_rolling: float  # parts of it
+    skf_sliding: float
+    slip: float  # of the cage
+
+    @property
+    def simple(self) -> float:
+        """M_0 + M_1."""
+        return self.viscous + self.by_load
+
+    @property
+    def ratio(self) -> float:
+        """The model's moment over that of the simple model."""
+        return self.model / self.simple
+
+
+def moments(scene: Scene, series: str, conditions: Sequence[tuple[float, float]]) -> list[Moment]:
+    """Return the moments of a scene's bearing at level ``steady`` and by makers' models.
+
+    Parameters
+    ----------
+    scene : its oil, its temperatures and its supply count, and the direction of its load.
+    series : of `SERIES`.
+    conditions : speed [rpm] and load [N] of each.
+
+    Raises
+    ------
+    ValueError
+        No operating point was found.
+    IntegrationError
+        There is no thermal equilibrium.
+    """
+    angle, kelvin = scene.operating.load_angle, scene.lubricant.temperature
+    asked = [Inputs(speed * _RPM, load * math.cos(angle), load * math.sin(angle), kelvin) for speed, load in conditions]
+    work = new_work(pack(scene))
+    return [_moment(scene, series, inputs, operating_state(scene, inputs), work) for inputs in asked]
+
+
+def _moment(scene: Scene, series: str, inputs: Inputs, state: OperatingState, work: Work) -> Moment:
+    """Return the moments at one condition, see `moments`."""
+    params, lubrication, _ = state
+    speed, load = abs(inputs.shaft_speed) / _RPM, math.hypot(inputs.load_y, inputs.load_z)
+    if speed == 0.0:
+        raise ValueError(f"{scene.name}: operating.shaft_speed: 0; friction is compared with makers' models while the shaft turns: give a speed")
+    answer = solved_answer(state, inputs, work)
+    if not math.isfinite(answer[ANSWER.cage_slip]):
+        raise ValueError(f"{scene.name}: no operating point at {speed:g} rpm and {load:g} N")
+    parts = {name: float(answer[column]) * 1e3 / (speed * _RPM) for name, column in ANSWER._asdict().items() if name.endswith("_power")}
+    viscosity = 1e6 * lubrication.kinematic_viscosity
+    (viscous, by_load), skf = moments_of_makers(scene, series, speed, load, viscosity, scene.operating.axial_load)
+    return Moment(
+        scene.bearing.name,
+        series,
+        speed,
+        load / params.life.static_rating,
+        parts["shaft_power"],
+        parts["inner_rolling_power"] + parts["outer_rolling_power"],
+        parts["inner_sliding_power"] + parts["outer_sliding_power"],
+        parts["churning_power"] + parts["windage_power"] + parts["land_power"],
+        parts["pocket_power"],
+        parts["seal_power"],
+        parts["flange_power"],
+        viscous,
+        by_load,
+        skf.whole,
+        skf.rolling,
+        skf.sliding,
+        float(answer[ANSWER.cage_slip]),
+    )
 
 
 def moment_table(progress: Callable[[str], None] = lambda name: None, overrides: Sequence[str] = ()) -> list[Moment]:

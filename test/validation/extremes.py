@@ -8,11 +8,11 @@ from pathlib import Path
 
 from bearing_sim.files.cores import cores
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.studies.extreme_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, StockOutcome, at_stock, outcome_fields
+from bearing_sim.studies.extreme_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, StockOutcome, outcome_fields
 from bearing_sim.studies.extremes import LOOKS
 from bearing_sim.sweep.pictures import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
-from validation.extremes_cases import corner_cases, sampled_cases
+from validation.extremes_cases import at_stock, corner_cases, sampled_cases
 from validation.extremes_long import LONG_RUNS, LongRun, long_run_result
 from validation.extremes_run import Outcome, case_result
 

@@ -22,6 +22,11 @@ _WIDEST_POCKET = 5e-3  # m of pocket clearance, the most that a scene takes; a c
 _ROLLERS_THAT_FIT = 24  # with bars of the cage between them; for more rollers the bearing grows
 
 
+def at_stock(case: Case) -> Case:
+    """Return a case without its settings of the integration."""
+    return case._replace(overrides=tuple(each for each in case.overrides if not each.startswith("integration.")))
+
+
 def _speed(u):
     """Return a shaft speed [rpm] in either direction, 0 for one sample in twenty."""
     signed = 2.0 * u - 1.0

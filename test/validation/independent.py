@@ -6,8 +6,8 @@ import numpy as np
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Simulation, scene_inputs
-from bearing_sim.studies.steady_check import compare
 from validation.check import Check, Comparison, compared, judged
+from validation.steady_and_slip import compare
 
 GROUP = "Independent calculations, and levels among each other"
 _BEARING = "deng2017_table1"
@@ -86,7 +86,7 @@ def _heat_of_an_equilibrium() -> list[Comparison]:
 CHECKS = (
     Check("slip_and_life", GROUP, _slip_and_life),
     Check("planar_slip", GROUP, _planar_slip),
-    Check("steady_and_slip", GROUP, _steady_and_slip, "bearing-sim table deng2017_table1 --against-slip 25"),
+    Check("steady_and_slip", GROUP, _steady_and_slip, "python test/validation against-slip deng2017_table1"),
     Check("spatial_and_planar", GROUP, _spatial_and_planar),
     Check("heat_of_an_equilibrium", GROUP, _heat_of_an_equilibrium),
 )

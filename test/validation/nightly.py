@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.studies.extreme_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Case, StockOutcome, at_stock, outcome_fields
+from bearing_sim.studies.extreme_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Case, StockOutcome, outcome_fields
 from bearing_sim.sweep.tasks import Journal, program_hash, run_tasks, task
 from validation.extremes import counted, long_outcome
-from validation.extremes_cases import corner_cases, sampled_cases
+from validation.extremes_cases import at_stock, corner_cases, sampled_cases
 from validation.extremes_long import LONG_RUNS, LongRun, long_run_result
 from validation.extremes_run import Outcome, case_result
 

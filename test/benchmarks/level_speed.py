@@ -1,5 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The bench: speed, work and errors of each level on this machine, with error control and with a fixed step, and start-up times.
+"""Speed, work and errors of each level on this machine, with error control and with a fixed step: ``python test/benchmarks/level_speed.py``.
+
+Start-up times stand beside them.
 
 One process on one core measures everything, so that its figures are comparable.  All times are processor times of this process,
 independent of other load; on an idle machine they equal wall time.  The minimum of repeats counts, because disturbances only add.
@@ -14,15 +16,19 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from importlib.metadata import version
 from typing import NamedTuple
 
+import click
 import numpy as np
 
+from bearing_sim.cli.options import flag, json_option, level_type, option, quick_option
+from bearing_sim.cli.reporting import announce_compilation, note, print_rows
+from bearing_sim.cli.results import Result, command
 from bearing_sim.levels.level import LEVELS
+from bearing_sim.runtime.fleet import one_core
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
@@ -234,20 +240,6 @@ FULL = Extent()
 QUICK = Extent((1e-3, 2e-3), 1e-3, 1, (0.3, 0.5), False)
 
 
-@contextmanager
-def one_core() -> Iterator[int]:
-    """Keep this process on one core inside the block; yields its number, or -1 if the system does not support it."""
-    if not hasattr(os, "sched_setaffinity"):
-        yield -1
-        return
-    before = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, {max(before)})
-    try:
-        yield max(before)
-    finally:
-        os.sched_setaffinity(0, before)
-
-
 def run_bench(quick: bool = False, cold: bool = False, progress: Callable[[str], None] = lambda text: None, levels: Sequence[str] = ()) -> dict:
     """Measure and return the report.
 
@@ -311,3 +303,78 @@ def _processor() -> str:
             return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine())
     except OSError:
         return platform.machine()
+
+
+_WORDS = ("level", "integrator")  # columns of text
+
+
+@command("levels")
+@option("--level", "levels", "Measure this level; can be repeated [default: all].", level_type, multiple=True)
+@flag("--cold", "Also measure the very first start, which compiles.")
+@quick_option
+@json_option
+def main(levels, cold, quick):
+    """Measure how fast each level is with error control and with a fixed step, what work it does, and how large its errors are.
+
+    Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Takes less than a minute per level once compiled, and longer for level spatial.
+    """
+    announce_compilation()
+    report = run_bench(quick, cold, lambda text: note(f"{text} ..."), levels)
+    return Result(report, lambda: _print_levels(report))
+
+
+def _print_levels(report) -> None:
+    machine = report["machine"]
+    click.echo(f"core {machine['core']} of {machine['cores']} ({machine['processor']}), load average {machine['load_average']:.2f} at the start")
+    click.echo(f"times are on the core, which the benchmark had for {100 * machine['core_fraction']:.0f} % of the time")
+    _print_cases(report["cases"])
+    _print_references(report["references"])
+    for start in report.get("start_up", []):
+        how = "with an empty cache" if start["cold"] else "warm"
+        click.echo(
+            f"start of {start['level']}, {how}: import {start['import_seconds']:.2f} s, scene {start['scene_seconds']:.2f} s, "
+            f"first advance {start['first_advance_seconds']:.2f} s"
+        )
+
+
+def _number(value, form=".3g") -> str:
+    return "-" if value is None else format(value, form)
+
+
+def _print_cases(cases) -> None:
+    def named(case):
+        return [case["level"], case["integrator"], f"{case['speed_rpm']:.0f}"]
+
+    def cost(case):
+        if case["failure"]:
+            return [*named(case), case["failure"]]
+        steps = case["steps"]
+        counted = ("rejected_steps", "right_hand_sides", "jacobians", "factorisations")
+        per_step = [None if case[name] is None or not steps else case[name] / steps for name in counted]
+        numbers = [case["real_time_factor"], case["step_us"], steps / case["simulated_seconds"], *per_step]
+        return [*named(case), *map(_number, numbers)]
+
+    def error(case):
+        shares = [case[name] and 100 * case[name] for name in ("load_error", "orbit_error", "pocket_error")]
+        slip = [_number(case[name], ".3f") for name in ("slip_error", "slip_standard_error")]
+        return [*named(case), *slip, *map(_number, shares)]
+
+    columns = ("level", "integrator", "rpm")
+    costs = ("x real time", "us/step", "steps/s", "rejected/step", "rhs/step", "jac/step", "fact/step")
+    errors = ("slip [pp]", "standard error", "loads [%]", "orbit [%]", "pocket [%]")
+    print_rows("speed", columns + costs, map(cost, cases), words=_WORDS)
+    print_rows("errors", columns + errors, map(error, [case for case in cases if not case["failure"]]), words=_WORDS)
+
+
+def _print_references(references) -> None:
+    def row(found):
+        names = ("slip_percent", "slip_standard_error", "settled_slip_change", "settled_load_change", "orbit_radius_um")
+        return [found["level"], f"{found['speed_rpm']:.0f}", *[_number(found[name], ".4g") for name in names]]
+
+    columns = ("level", "speed [rpm]", "slip [%]", "±", "change of slip [points]", "of loads", "orbit [µm]")
+    title = "references: the level's own method at a tight tolerance, and its change from a less tight one"
+    print_rows(title, columns, map(row, references), words=_WORDS)
+
+
+if __name__ == "__main__":
+    main()
