@@ -20,10 +20,10 @@ _NONE = "none"
 
 @command("design")
 @scene_argument
-@option("--slip-below", "Largest cage slip, such as 10%.", Amount("", 0.0, 1.0, "%"), required=True, metavar="SLIP")
-@option("--life-above", "Smallest life, such as 300h; the kind of life is chosen in the scene.", Amount("h", 0.0, 1e9), required=True, metavar="LIFE")
-@option("--speed-tolerance", "Tolerance of the speed, in both directions.", Amount("", 0.0, 0.5, "%"), default="2%", metavar="FRACTION")
-@option("--load-tolerance", "Tolerance of the load, in both directions.", Amount("", 0.0, 0.9, "%"), default="10%", metavar="FRACTION")
+@option("--slip-below", "Largest cage slip, such as 10%.", Amount("", 0.0, 1.0, "%"), required=True)
+@option("--life-above", "Smallest life, such as 300h; the kind of life is chosen in the scene.", Amount("h", 0.0, 1e9), required=True)
+@option("--speed-tolerance", "Tolerance of the speed, in both directions.", Amount("", 0.0, 0.5, "%"), default="2%")
+@option("--load-tolerance", "Tolerance of the load, in both directions.", Amount("", 0.0, 0.9, "%"), default="10%")
 @option(
     "--tolerance",
     "tolerances",

@@ -51,8 +51,8 @@ replay-fleet  fleet:replay_fleet       Run the model on many logs at once, one b
 spectrum      spectrum:spectrum        Compute the life under a load spectrum: a table of shares of time, or a long log in classes.
 import-csv    logs:import_csv          Convert a measured table to an MCAP log.
 loads         bearings:loads           Show a scene's load distribution over rollers and slices, and the lives.
-catalog       catalog:catalog          List the bearings of the catalogue, or show one by its designation.
-new           catalog:new              Write the scene of a bearing by designation in an oil, commented.
+catalog       bearings:catalog         List the bearings of the catalogue, or show one by its designation.
+new           bearings:new             Write the scene of a bearing by designation in an oil, commented.
 machine       bearings:machine         Compute the raceway that pre-deformation machining produces.
 table         table:table              Build or inspect the table of operating points of level steady.
 uncertainty   uncertainty:uncertainty  Compute ranges of slip and life from uncertain fields, and each field's share.
@@ -74,8 +74,8 @@ to-parquet    recordings:to_parquet    Export a recording as a Parquet table.
 state         main:state               Show, export and fill the stored states of bearings in service.
 view          view:view                Show a recording in rerun.
 mission       logs:mission             Write the bundled synthetic mission as an MCAP log.
-fields        fields:fields            Show the fields of a scene: unit, range, default and meaning.
-observables   fields:observables       List what a sample holds: name, unit and meaning.
+fields        bearings:fields          Show the fields of a scene: unit, range, default and meaning.
+observables   bearings:observables     List what a sample holds: name, unit and meaning.
 scenes        bearings:scenes          List the bundled scenes, bearings and oils.
 """)
 

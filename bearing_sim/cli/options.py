@@ -63,6 +63,10 @@ def gathered(parameter: str, make: Callable, *options: Callable) -> Callable:
     return add
 
 
+_KINDS = {"": "fraction", "s": "time", "h": "hours", "m": "length", "rad/s": "speed", "Hz": "rate", "N": "force", "K": "temperature"}
+"""What help calls a quantity, by its SI unit."""
+
+
 class Amount(click.ParamType):
     """The type of an option that is a quantity with a unit, or one of time, which may be a bare number of seconds; the command gets it in SI.
 
@@ -73,10 +77,8 @@ class Amount(click.ParamType):
     shown_in : unit of the bounds in messages.
     """
 
-    name = "quantity"
-
     def __init__(self, unit: str, minimum: float = -math.inf, maximum: float = math.inf, shown_in: str = ""):
-        self._declared = unit, "", minimum, maximum, shown_in
+        self.name, self._declared = _KINDS.get(unit, "quantity"), (unit, "", minimum, maximum, shown_in)
 
     def convert(self, value, param, ctx):
         """Return the quantity in SI; `UsageError` if it is none of the unit's dimension and kind, a bare number, or out of bounds."""

@@ -35,8 +35,8 @@ _LEAST_SAMPLES = 100  # of the shortest run that can be judged
 
 @command("run")
 @scene_options
-@option("--duration", "Simulated time, such as 0.5 or '300 ms' [default: until slip and life rest, at least 0.5 s].", SECONDS, metavar="S")
-@option("--at-most", "End a run without --duration here [default: 1000 s, or 2000 cage turns if these take longer].", SECONDS, metavar="S")
+@option("--duration", "Simulated time, such as 0.5 or '300 ms' [default: until slip and life rest, at least 0.5 s].", SECONDS)
+@option("--at-most", "End a run without --duration here [default: 1000 s, or 2000 cage turns if these take longer].", SECONDS)
 @option("--level", "Level of fidelity, instead of the scene's.", metavar="LEVEL")
 @option("--start", "How the cage begins.", Choice(["rolling", "skid"]), default="rolling")
 @option(

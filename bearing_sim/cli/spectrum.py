@@ -52,7 +52,7 @@ def _counts(context, option, classes: str) -> tuple[int, int, int]:
 @click.argument("data", type=PATH, metavar="TABLE.csv|LOG.mcap")
 @set_option
 @option("--level", "Level of fidelity, instead of the scene's.", metavar="LEVEL")
-@option("--duration", "Shortest simulated time per point; extended until it has settled.", SECONDS, default="0.5 s", metavar="S")
+@option("--duration", "Shortest simulated time per point; extended until it has settled.", SECONDS, default="0.5 s")
 @option("--classes", "Classes of speed, load and oil temperature of a log.", default="8x8x2", metavar="NxNxN", callback=_counts)
 @log_options
 @table_option("spectrum_life.parquet", "Points; also written: PATH.csv and")

@@ -128,7 +128,7 @@ def friction(scene_name, overrides, series):
 @scene_options
 @option("--speed", "speeds", "Shaft speeds [default: 9 from 20 to 120 % of the scene's].", metavar="START:STOP:N")
 @option("--load", "loads", "Radial loads, or one [default: 7 from 0.5 to 3.5 times the scene's].", metavar="START:STOP:N")
-@option("--life-above", "Life below which it counts as lost.", Amount("h"), default="10 h", metavar="LIFE")
+@option("--life-above", "Life below which it counts as lost.", Amount("h"), default="10 h")
 @option("-o", "--out", "Also write the table, and PATH.csv.", OutputTable(), metavar="PATH.parquet")
 @picture_option("Draw the map; lines with one load")
 @json_option
@@ -218,8 +218,8 @@ def _prepare_turning(scene) -> None:
 @command("cold-oil")
 @scene_options
 @option("--supply", "supplies", "Supply of oil; can be repeated  [default: oil_bath, circulating, oil_jet].", multiple=True)
-@option("--temperature", "temperatures", "Oil temperature; can be repeated  [default: 0 to 80 °C].", Amount("K"), multiple=True, metavar="VALUE")
-@option("--load", "loads", "Radial load; can be repeated  [default: 0.08 to 3 times the minimum load].", Amount("N"), multiple=True, metavar="VALUE")
+@option("--temperature", "temperatures", "Oil temperature; can be repeated  [default: 0 to 80 °C].", Amount("K"), multiple=True)
+@option("--load", "loads", "Radial load; can be repeated  [default: 0.08 to 3 times the minimum load].", Amount("N"), multiple=True)
 @picture_option("Draw the map")
 @json_option
 def cold_oil(scene_name, overrides, supplies, temperatures, loads):
@@ -274,11 +274,11 @@ def _slips(point) -> str:
 @allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", required=False)
 @set_option
-@option("--load", "loads", "Load while idling; can be repeated  [default: 5 and 30 % of the minimum load].", _LOAD, multiple=True, metavar="VALUE")
-@option("--loaded", "Load afterwards  [default: 0.1 of the dynamic load rating].", _LOAD, metavar="VALUE")
-@option("--idling", "Time under the first load.", SECONDS, default="1 h", metavar="S")
-@option("--temperature", "Of all parts, the oil and the air at the start.", Amount("K"), default="0 degC", metavar="VALUE")
-@option("--rise", "Time in which the load rises, at most 10 s.", Amount("s", 1e-3, 10.0), default="1 s", metavar="S")
+@option("--load", "loads", "Load while idling; can be repeated  [default: 5 and 30 % of the minimum load].", _LOAD, multiple=True)
+@option("--loaded", "Load afterwards  [default: 0.1 of the dynamic load rating].", _LOAD)
+@option("--idling", "Time under the first load.", SECONDS, default="1 h")
+@option("--temperature", "Of all parts, the oil and the air at the start.", Amount("K"), default="0 degC")
+@option("--rise", "Time in which the load rises, at most 10 s.", Amount("s", 1e-3, 10.0), default="1 s")
 @picture_option("Draw the courses", "-o", "--out")
 @json_option
 def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise):

@@ -28,7 +28,7 @@ from bearing_sim.cli.results import Result, command, resumed, signed
 )
 @set_option
 @option("--level", "Level of fidelity, instead of the scene's.", metavar="LEVEL")
-@option("--duration", "Shortest simulated time per point; extended until it has settled.", SECONDS, default="0.5 s", metavar="S")
+@option("--duration", "Shortest simulated time per point; extended until it has settled.", SECONDS, default="0.5 s")
 @table_option("sweep.parquet", "Results; also written: PATH.csv and")
 @executor_options
 @picture_option("Draw the results")

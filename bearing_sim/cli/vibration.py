@@ -25,21 +25,20 @@ _SOURCES = {"lines": "by its own lines", "recorded": "as recorded", "given": "as
 @option("--bearing", "Designation such as 'NU 205', or a bundled bearing; its rollers and diameters are used.", metavar="BEARING")
 @option("--scene", "scene_name", "Scene whose bearing it is, instead.", metavar="SCENE")
 @option("--rollers", "Number of rollers, where the bearing is not known otherwise.", IntRange(3, 400), metavar="Z")
-@option("--roller-diameter", "Diameter of the rollers as measured, such as 7.5mm.", _LENGTH, metavar="LENGTH")
-@option("--pitch-diameter", "Diameter of their pitch circle as measured, such as 38.5mm.", _LENGTH, metavar="LENGTH")
+@option("--roller-diameter", "Diameter of the rollers as measured, such as 7.5mm.", _LENGTH)
+@option("--pitch-diameter", "Diameter of their pitch circle as measured, such as 38.5mm.", _LENGTH)
 @flag("--measured-geometry", "The diameters of --bearing or --scene were measured on this bearing.")
-@option("--speed", "Shaft speed, about, such as 600rpm; it is taken from the shaft's own lines.", Amount("rad/s"), metavar="SPEED")
-@option("--tolerance", "Within which the speed is known.", Amount("", 1e-6, 0.2, "%"), default="2%", metavar="FRACTION")
+@option("--speed", "Shaft speed, about, such as 600rpm; it is taken from the shaft's own lines.", Amount("rad/s"))
+@option("--tolerance", "Within which the speed is known.", Amount("", 1e-6, 0.2, "%"), default="2%")
 @option(
     "--largest-slip",
     "Of the cage that is possible: no other lines are looked for [default: with --scene what level steady finds, with its uncertain fields;"
     " otherwise 10%].",
     Amount("", 0.0, 0.95, "%"),
-    metavar="FRACTION",
 )
 @flag("--no-shaft-lines", "Take the speed as it is given, without looking for the shaft's own lines.")
 @option("--channel", "The vibration in FILE: a column, variable, data set, matrix column as NAME[k], or /topic.field.", metavar="NAME")
-@option("--rate", "Sampling rate, such as 50kHz [default: as FILE says].", Amount("Hz", 1e-6), metavar="RATE")
+@option("--rate", "Sampling rate, such as 50kHz [default: as FILE says].", Amount("Hz", 1e-6))
 @option("--time-channel", "Column of times in seconds, from which the rate follows [default: one that is called so].", metavar="NAME")
 @option("--speed-channel", "Shaft speed in FILE, one value a sample.", metavar="NAME")
 @option("--speed-unit", "Of --speed-channel.", default="rpm", metavar="UNIT")
@@ -49,9 +48,9 @@ _SOURCES = {"lines": "by its own lines", "recorded": "as recorded", "given": "as
     AmountRange("Hz", "LOW:HIGH, such as 6kHz:12kHz"),
     metavar="LOW:HIGH",
 )
-@option("--from", "begin", "Leave out what is before this time of the record, such as 2s.", Amount("s"), metavar="TIME")
-@option("--to", "end", "Leave out what is after this time of the record.", Amount("s"), metavar="TIME")
-@option("--every", "Cage speed in parts of this length [default: quarters of the record].", SECONDS, metavar="TIME")
+@option("--from", "begin", "Leave out what is before this time of the record, such as 2s.", Amount("s"))
+@option("--to", "end", "Leave out what is after this time of the record.", Amount("s"))
+@option("--every", "Cage speed in parts of this length [default: quarters of the record].", SECONDS)
 @csv_option("Write the cage speed in parts of the record to a table.")
 @picture_option("Draw the envelope spectrum with the lines that were found")
 @json_option
