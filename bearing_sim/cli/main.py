@@ -61,7 +61,7 @@ vibration     vibration:vibration      Find cage speed and damage in the vibrati
 sweep         sweep:sweep              Run a scene at all combinations of field values, into a table.
 plot          plot:plot                Draw recorded runs over time or load, or the table of a sweep.
 design        design:design            Map which outer raceways keep slip and life within limits, and verify them.
-report        report:report            Make one HTML page of a sweep, a design or a recorded run.
+report        plot:report              Make one HTML page of a sweep, a design or a recorded run.
 trade         trade:trade              Measure speed against accuracy on a scene, and recommend a setting.
 bench         main:bench               Measure how fast the model is on this machine.
 compile       bench:compile_levels     Compile levels before their first run.
