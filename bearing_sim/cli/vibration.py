@@ -7,7 +7,19 @@ import click
 import numpy as np
 from click import IntRange
 
-from bearing_sim.cli.options import PATH, SECONDS, Amount, AmountRange, allow_outside_option, csv_option, flag, json_option, option, picture_option
+from bearing_sim.cli.options import (
+    PATH,
+    SECONDS,
+    Amount,
+    AmountRange,
+    allow_outside_option,
+    csv_option,
+    flag,
+    gathered,
+    json_option,
+    option,
+    picture_option,
+)
 from bearing_sim.cli.reporting import UsageError, announce_compilation, print_rows, print_table, tell_use
 from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.loader import load_bearing, load_scene
@@ -19,15 +31,47 @@ _CAGE = "the cage, or a roller at each turn of the cage"
 _SOURCES = {"lines": "by its own lines", "recorded": "as recorded", "given": "as given; it has no clear lines of its own"}
 
 
+def _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, measured):
+    """Return the geometry by the options, and the name of the scene."""
+    from bearing_sim.watchers.vibration.analysis import Geometry
+
+    if sum(each is not None for each in (bearing, scene_name, rollers)) != 1:
+        raise UsageError("the number of rollers must be known: give one of --bearing, --scene and --rollers")
+    if rollers is not None:
+        if measured:
+            raise UsageError("--measured-geometry goes with --bearing or --scene; with --rollers give --roller-diameter and --pitch-diameter")
+        if (roller_diameter is None) != (pitch_diameter is None):
+            raise UsageError("--roller-diameter and --pitch-diameter go together")
+        if roller_diameter is None:
+            return Geometry(rollers, name=f"{rollers} rollers"), scene_name
+        size = roller_diameter / pitch_diameter
+        if not 0.02 <= size <= 0.5 or rollers * math.asin(min(size, 1.0)) > 1.001 * math.pi:
+            raise UsageError(
+                f"{rollers} rollers of {1e3 * roller_diameter:g} mm do not go on a circle of {1e3 * pitch_diameter:g} mm; check the diameters"
+            )
+        return Geometry(rollers, size, True, f"{rollers} rollers"), scene_name
+    if roller_diameter is not None or pitch_diameter is not None:
+        raise UsageError("--roller-diameter and --pitch-diameter go with --rollers")
+    chosen = load_bearing(bearing) if bearing is not None else load_scene(scene_name).bearing
+    return Geometry(chosen.roller.count, chosen.roller.diameter / chosen.pitch_diameter, measured, chosen.designation or chosen.name), scene_name
+
+
+_bearing_options = gathered(
+    "bearing",
+    _geometry,
+    option("--bearing", "Designation such as 'NU 205', or a bundled bearing; its rollers and diameters are used.", metavar="BEARING"),
+    option("--scene", "scene_name", "Scene whose bearing it is, instead.", metavar="SCENE"),
+    option("--rollers", "Number of rollers, where the bearing is not known otherwise.", IntRange(3, 400), metavar="Z"),
+    option("--roller-diameter", "Diameter of the rollers as measured, such as 7.5mm.", _LENGTH),
+    option("--pitch-diameter", "Diameter of their pitch circle as measured, such as 38.5mm.", _LENGTH),
+    flag("--measured-geometry", "measured", "The diameters of --bearing or --scene were measured on this bearing."),
+)
+
+
 @command("vibration")
 @click.argument("data", type=PATH, metavar="FILE")
 @allow_outside_option
-@option("--bearing", "Designation such as 'NU 205', or a bundled bearing; its rollers and diameters are used.", metavar="BEARING")
-@option("--scene", "scene_name", "Scene whose bearing it is, instead.", metavar="SCENE")
-@option("--rollers", "Number of rollers, where the bearing is not known otherwise.", IntRange(3, 400), metavar="Z")
-@option("--roller-diameter", "Diameter of the rollers as measured, such as 7.5mm.", _LENGTH)
-@option("--pitch-diameter", "Diameter of their pitch circle as measured, such as 38.5mm.", _LENGTH)
-@flag("--measured-geometry", "The diameters of --bearing or --scene were measured on this bearing.")
+@_bearing_options
 @option("--speed", "Shaft speed, about, such as 600rpm; it is taken from the shaft's own lines.", Amount("rad/s"))
 @option("--tolerance", "Within which the speed is known.", Amount("", 1e-6, 0.2, "%"), default="2%")
 @option(
@@ -57,11 +101,6 @@ _SOURCES = {"lines": "by its own lines", "recorded": "as recorded", "given": "as
 def vibration(
     data,
     bearing,
-    scene_name,
-    rollers,
-    roller_diameter,
-    pitch_diameter,
-    measured_geometry,
     speed,
     tolerance,
     largest_slip,
@@ -90,7 +129,7 @@ def vibration(
 
     if speed is not None and speed_channel is not None:
         raise UsageError("--speed and --speed-channel both give the shaft speed; give one")
-    geometry = _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, measured_geometry)
+    geometry, scene_name = bearing
     record = read_vibration(data, channel, rate, time_channel, speed_channel, speed_unit)
     if record.tally is not None:
         tell_use(record.tally, data)
@@ -110,31 +149,6 @@ def vibration(
 
     report = {"file": data.name, **_report(found, record, geometry), "parts": rows}
     return Result(report, lambda: _print(data.name, record, geometry, found), draw, rows)
-
-
-def _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, measured):
-    """Return the geometry by the options."""
-    from bearing_sim.watchers.vibration.analysis import Geometry
-
-    if sum(each is not None for each in (bearing, scene_name, rollers)) != 1:
-        raise UsageError("the number of rollers must be known: give one of --bearing, --scene and --rollers")
-    if rollers is not None:
-        if measured:
-            raise UsageError("--measured-geometry goes with --bearing or --scene; with --rollers give --roller-diameter and --pitch-diameter")
-        if (roller_diameter is None) != (pitch_diameter is None):
-            raise UsageError("--roller-diameter and --pitch-diameter go together")
-        if roller_diameter is None:
-            return Geometry(rollers, name=f"{rollers} rollers")
-        size = roller_diameter / pitch_diameter
-        if not 0.02 <= size <= 0.5 or rollers * math.asin(min(size, 1.0)) > 1.001 * math.pi:
-            raise UsageError(
-                f"{rollers} rollers of {1e3 * roller_diameter:g} mm do not go on a circle of {1e3 * pitch_diameter:g} mm; check the diameters"
-            )
-        return Geometry(rollers, size, True, f"{rollers} rollers")
-    if roller_diameter is not None or pitch_diameter is not None:
-        raise UsageError("--roller-diameter and --pitch-diameter go with --rollers")
-    chosen = load_bearing(bearing) if bearing is not None else load_scene(scene_name).bearing
-    return Geometry(chosen.roller.count, chosen.roller.diameter / chosen.pitch_diameter, measured, chosen.designation or chosen.name)
 
 
 def _largest_slip(scene_name, shaft_speed, record) -> float:
