@@ -57,6 +57,8 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
 
     bearing-sim replay-fleet scada/ --mapping scada.yaml --scene high_speed_shaft.yaml -o fleet.parquet
     """
+    from bearing_sim.cli.estimation import response_with_progress
+    from bearing_sim.cli.table import build_with_progress
     from bearing_sim.studies.fleet import OK, PARTLY, replay_fleet
     from bearing_sim.studies.fleet_logs import bearings_of, find_logs, read_bearings
     from bearing_sim.sweep.table import study_digest, write_table
@@ -83,7 +85,14 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     bars = {"reading": reading_bar, "replay": replay_bar}
     with resumed(out, study, reading_bar, replay_bar) as journal:
         table = replay_fleet(
-            bearings, longest_gap, journal, workers, dask, lambda act, done, total: bars[act].update(done, total), _build_table, _respond
+            bearings,
+            longest_gap,
+            journal,
+            workers,
+            dask,
+            lambda act, done, total: bars[act].update(done, total),
+            build_with_progress,
+            response_with_progress,
         )
     files = write_table(out.path, signed(table, study))
     report, ending = _report(table, replay_bar, files), None
@@ -128,18 +137,6 @@ def _require_a_scene(bearings) -> None:
     """Raise `UsageError` if no bearing at all has a valid scene and mapping: then it is no matter of single logs."""
     if all(isinstance(bearing.scene, ValueError) for bearing in bearings):
         raise UsageError(str(bearings[0].scene))
-
-
-def _build_table(scene, temperatures) -> None:
-    from bearing_sim.cli.table import build_with_progress
-
-    build_with_progress(scene, temperatures)
-
-
-def _respond(scene):
-    from bearing_sim.cli.estimation import response_with_progress
-
-    return response_with_progress(scene)
 
 
 def _report(table, points, files) -> dict:

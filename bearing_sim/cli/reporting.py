@@ -106,7 +106,7 @@ as_failed_run = functools.partial(as_usage_error, ending=FailedRun)
 """Convert exceptions of these types to a `FailedRun`."""
 
 
-_FAILURES = ("IntegrationError", "NoWebViewer")  # errors of the package that no other argument or input would have avoided
+_FAILURES = ("IntegrationError", "NoWebViewer", "ViewerFailed")  # errors of the package that no other argument or input would have avoided
 _DISK_FAILED = (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)
 
 

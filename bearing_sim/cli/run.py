@@ -101,20 +101,17 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
                 sink.write(validity_event(outcome.simulated, each))
     report = {**_report(simulation, outcome, wall, first - started), **warnings_report(scene, warnings), **_states_report(others, start)}
     report |= live_band_numbers(estimation.newest) if estimation is not None else {}
-    bands = _bands(scene, uncertainty) if uncertainty else None
+    if uncertainty:
+        from bearing_sim.cli.uncertainty import bands_of
+
+        report["uncertainty"] = bands_of(scene, uncertainty)[1]
     unsettled = duration is None and not outcome.settled
     return Result(
-        {**report, "uncertainty": bands} if bands else report,
-        lambda: _print(report, scene, bands, estimation, state_rows(others, start) if math.isfinite(outcome.slip) else [], verbose),
+        report,
+        lambda: _print(report, scene, estimation, state_rows(others, start) if math.isfinite(outcome.slip) else [], verbose),
         after=lambda: warn_of_limits(scene, warnings, verbose),
         ending=Unsettled(f"not settled: {outcome.reason}; give more time with --at-most") if unsettled else None,
     )
-
-
-def _bands(scene, samples) -> dict:
-    from bearing_sim.cli.uncertainty import bands_of
-
-    return bands_of(scene, samples)[1]
 
 
 class _Plan(NamedTuple):
@@ -217,11 +214,11 @@ def _states_report(others, start) -> dict:
     return {"start": start, "other_states": states, "skid_load": others.skid_load, "ring_resonance": ring or None}
 
 
-def _print(report, scene, bands, estimation, states, verbose) -> None:
+def _print(report, scene, estimation, states, verbose) -> None:
     from bearing_sim.studies.sheet import sheet
 
     ranges = list(live_band_rows(estimation.newest, scene)) if estimation is not None else []
-    if bands:
+    if bands := report.get("uncertainty"):
         from bearing_sim.cli.uncertainty import band_rows
 
         ranges += band_rows(bands)

@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim view``: a recording in rerun."""
 
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -173,14 +173,11 @@ def _convert(source, out: Path) -> None:
 
 
 def _take_picture(rrd: Path, picture: Output, seconds: float, size: tuple[int, int]) -> None:
-    from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed
+    from bearing_sim.view.screenshot import HeadlessViewer
 
-    try:
-        with HeadlessViewer(rrd, size) as viewer:
-            viewer.seek(seconds)
-            content, problems = viewer.png(), viewer.problems()
-    except ViewerFailed as error:
-        raise FailedRun(f"no picture: {error}") from None
+    with HeadlessViewer(rrd, size) as viewer:
+        viewer.seek(seconds)
+        content, problems = viewer.png(), viewer.problems()
     picture.write_bytes(content)
     if problems:
         raise FailedRun(f"{picture} was written, but the viewer reports: {'; '.join(problems)}")
@@ -191,19 +188,14 @@ def _serve(rrd: Path, port: int, opens: bool | None) -> None:
     import time
     import webbrowser
 
-    from bearing_sim.view.web import NoWebViewer, WebViewer
+    from bearing_sim.view.web import WebViewer
 
-    try:
-        with WebViewer(port, recording=rrd) as viewer:
-            click.echo(f"{rrd} is shown at {viewer.url} for browsers on this machine; end with Ctrl-C")
-            if opens or (opens is None and _has_display()):
-                webbrowser.open(viewer.url)
-            while True:
-                time.sleep(3600.0)
-    except NoWebViewer as error:
-        raise FailedRun(str(error)) from None
-    except KeyboardInterrupt:
-        pass
+    with suppress(KeyboardInterrupt), WebViewer(port, recording=rrd) as viewer:
+        click.echo(f"{rrd} is shown at {viewer.url} for browsers on this machine; end with Ctrl-C")
+        if opens or (opens is None and _has_display()):
+            webbrowser.open(viewer.url)
+        while True:
+            time.sleep(3600.0)
 
 
 def _has_display() -> bool:
