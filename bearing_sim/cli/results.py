@@ -44,7 +44,8 @@ class Result(NamedTuple):
                 write_csv(table, self.rows)
                 written.append(str(table))
             if picture is not None and self.draw is not None:
-                picture_into(picture, self.draw)
+                with picture.draft() as draft:
+                    self.draw(draft)
                 written.append(drawn := str(picture))
         finally:
             if as_json:
@@ -61,12 +62,6 @@ class Result(NamedTuple):
             raise self.ending
         if self.code:
             sys.exit(self.code)
-
-
-def picture_into(picture: Output, draw: Callable, *arguments) -> None:
-    """Draw a picture: ``draw`` gets the path of its draft and the arguments."""
-    with picture.draft() as draft:
-        draw(draft, *arguments)
 
 
 @contextmanager
