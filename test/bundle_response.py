@@ -5,12 +5,13 @@ import sys
 
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.response_points import obtain_response
+from bearing_sim.sweep.tasks import Execution
 from bearing_sim.watchers.estimation.response import bundled_path, write_response
 
 if __name__ == "__main__":
     scene = load_scene("deng2017_table1")
     target = bundled_path(scene)
-    found = obtain_response(scene, progress=lambda done, total: print(f"\r{done} of {total} points", end="", flush=True))
+    found = obtain_response(scene, Execution(progress=lambda done, total: print(f"\r{done} of {total} points", end="", flush=True)))
     if bundled_path(scene) != target:
         sys.exit("\ncompiled code has changed in the meantime; start again")
     for old in target.parent.glob("*.bands.npz"):

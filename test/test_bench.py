@@ -12,9 +12,9 @@ import pytest
 from click.testing import CliRunner
 from level_speed import SPEEDS, _print_levels, level_integrators, quantile_error
 
+from bearing_sim.cli.bench import one_core
 from bearing_sim.cli.main import main
 from bearing_sim.cli.reporting import print_rows
-from bearing_sim.runtime.fleet import one_core
 
 # level spatial goes the same way, but takes minutes to compile
 MEASURED = ("slip", "planar")

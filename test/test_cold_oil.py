@@ -5,10 +5,11 @@ import json
 
 import pytest
 from click.testing import CliRunner
+from validation.cold_oil_trends import trends
 
 from bearing_sim.cli.main import main
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.studies.cold_oil import SKID, Point, SkidLoad, SkidMap, run_up, skid_map, trends
+from bearing_sim.studies.cold_oil import SKID, Point, SkidLoad, SkidMap, run_up, skid_map
 
 BEARINGS = {"NU 232": ("ISO VG 320", 1500), "NU 210": ("ISO VG 68", 3000), "NU 2308": ("ISO VG 100", 3000)}
 

@@ -18,7 +18,7 @@ from bearing_sim.sweep.conditions import Conditions
 from bearing_sim.sweep.grid import read_axis
 from bearing_sim.sweep.pictures import new_figure
 from bearing_sim.sweep.table import read_table
-from bearing_sim.sweep.tasks import Journal
+from bearing_sim.sweep.tasks import Execution, Journal
 
 LIMITS = Limits(10.0, 300.0, Conditions(0.02, 0.1))
 
@@ -26,7 +26,7 @@ LIMITS = Limits(10.0, 300.0, Conditions(0.02, 0.1))
 def found(radii="34.86mm:34.8675mm:6", d_values="0.095mm,0.105mm", limits=LIMITS, overrides=("level=steady",)):
     axes = read_axis(f"{LOW}={radii}"), read_axis(f"{D_VALUE}={d_values}")
     with Journal() as journal:
-        return design("deng2017_table1", overrides, limits, *axes, journal, 0.5, workers=1)
+        return design("deng2017_table1", overrides, limits, *axes, 0.5, Execution(journal, 1))
 
 
 @pytest.fixture(scope="module")

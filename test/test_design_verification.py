@@ -20,7 +20,7 @@ from bearing_sim.studies.design import CONFIRMED, D_VALUE, LOW, NARROWED, NOMINA
 from bearing_sim.sweep.conditions import Conditions, OperatingPoint, Tolerance
 from bearing_sim.sweep.grid import read_axis
 from bearing_sim.sweep.point import FAILED, OK, REFUSED, UNSETTLED
-from bearing_sim.sweep.tasks import Journal
+from bearing_sim.sweep.tasks import Execution, Journal
 
 pytestmark = pytest.mark.long
 
@@ -64,7 +64,7 @@ def found(monkeypatch, model, limits=LIMITS, level="steady", verify_level="plana
     monkeypatch.setattr(studied, "point_row", model)
     axes = read_axis(f"{LOW}={radii}"), read_axis(f"{D_VALUE}=0.098mm")
     with Journal() as journal:
-        return design("deng2017_table1", [f"level={level}"], limits, *axes, journal, 0.5, workers=1, verify_level=verify_level)
+        return design("deng2017_table1", [f"level={level}"], limits, *axes, 0.5, Execution(journal, 1), verify_level)
 
 
 def band(designed, kind=NOMINAL):

@@ -24,6 +24,7 @@ from bearing_sim.simulation import scene_inputs
 from bearing_sim.studies.uncertainty_propagation import UncertaintyError, study
 from bearing_sim.sweep.grid import FieldError, axis, read_axis
 from bearing_sim.sweep.point import point_row
+from bearing_sim.sweep.tasks import Execution
 
 ROOT = Path(__file__).resolve().parents[1]
 PUBLIC = sorted(
@@ -213,7 +214,7 @@ def test_a_shaft_at_rest_has_no_slip(paper):
 
 
 def test_bands_are_those_of_the_uncertainty_study_without_its_shares(paper):
-    result, whole = settle(paper, bands=True, samples=7), study(paper, 8, 2017, workers=1)
+    result, whole = settle(paper, bands=True, samples=7), study(paper, 8, 2017, execution=Execution(workers=1))
     assert result.bands["cage_slip"] == whole.bands["cage_slip"] and result.bands["modified_rating_life"] == whole.bands["life_hours"]
     assert result.bands["cage_slip"].low < result.cage_slip < result.bands["cage_slip"].high
     assert result.to_pandas().loc["cage_slip", "low"] == result.bands["cage_slip"].low and "90 % of cases between" in repr(result)

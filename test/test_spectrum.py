@@ -19,7 +19,7 @@ from bearing_sim.studies import spectrum as studied
 from bearing_sim.studies.spectrum import EXPONENT, evaluate, mean_speed_and_load, spectrum_of_log
 from bearing_sim.sweep.conditions import OperatingPoint, PointError, Spectrum, read_points, read_spectrum
 from bearing_sim.sweep.point import empty_row
-from bearing_sim.sweep.tasks import Journal
+from bearing_sim.sweep.tasks import Execution
 
 RPM = math.pi / 30
 CATALOGUE = {
@@ -51,7 +51,7 @@ def test_the_l10_of_the_mean_load_at_the_mean_speed_is_that_of_all_points(change
     scene = load_scene(CATALOGUE | changes)
     load = scene.operating.radial_load
     points = (OperatingPoint(100.0, load, 3.0), OperatingPoint(-200.0, 0.6 * load, 5.0), OperatingPoint(50.0, 2.0 * load, 1.0))
-    found = evaluate(scene, Spectrum(points, resting=1.0), Journal(), duration=0.05, workers=1)
+    found = evaluate(scene, Spectrum(points, resting=1.0), 0.05, Execution(workers=1))
     rating = scene.bearing.ratings.dynamic
     by_mean = 1e6 * (rating / found.mean_load) ** EXPONENT / (found.mean_speed / (2.0 * math.pi) * 3600.0)
     assert found.lives["l10"] == pytest.approx(by_mean, rel=1e-6)
@@ -71,7 +71,7 @@ def test_a_point_without_a_result_leaves_no_life_and_says_so(monkeypatch):
         return empty_row("ok", "") | {"l10": 1.0, "modified_rating_life": 2.0, "equivalent_load": 5.0, "static_safety": 9.0, "cage_slip": 1.0}
 
     points = (OperatingPoint(100.0, 500.0, 3.0), OperatingPoint(100.0, 2000.0, 1.0))
-    found = evaluate(load_scene(CATALOGUE), Spectrum(points), Journal(), workers=1)
+    found = evaluate(load_scene(CATALOGUE), Spectrum(points), execution=Execution(workers=1))
     assert math.isnan(found.life) and found.missing == pytest.approx(0.25)
     assert [row["status"] for row in found.table.rows] == ["ok", "failed"]
     assert studied.by_damage(found.table)[0]["reason"] == "no balance", "what has no result is shown first"

@@ -30,7 +30,7 @@ from bearing_sim.studies.uncertainty_propagation import (
     study,
     varied_ranges,
 )
-from bearing_sim.sweep.tasks import Journal
+from bearing_sim.sweep.tasks import Execution, Journal
 
 NONE = [
     f"uncertainty.{field}=null"
@@ -203,7 +203,7 @@ def test_the_same_seed_gives_the_same_points_and_another_count_than_a_power_of_t
 def test_the_band_of_one_field_is_slip_at_the_ends_of_its_own_band():
     """Slip rises with the mixture fraction, so quantiles go over into quantiles."""
     scene = load_scene("deng2017_table1", NONE[1:])
-    found = study(scene, 64, seed=1, workers=1)
+    found = study(scene, 64, seed=1, execution=Execution(workers=1))
     assert found.level == "steady" and found.absent == 0
     bounds = stats.loguniform(0.015, 0.05).ppf([0.05, 0.5, 0.95])
     steady = lowest_level(scene)[0]
@@ -250,34 +250,35 @@ def test_the_level_is_the_lowest_that_has_what_the_scene_asks_for():
 )
 def test_what_cannot_be_sampled_is_refused(overrides, reported):
     with pytest.raises(UncertaintyError, match=reported):
-        study(load_scene("deng2017_table1", overrides), 4, seed=1, workers=1)
+        study(load_scene("deng2017_table1", overrides), 4, seed=1, execution=Execution(workers=1))
 
 
 def test_over_a_course_slip_is_the_mean_over_time_and_life_follows_miner():
     scene = load_scene("deng2017_table1", NONE[1:])
     conditions, seconds = np.array([[4000.0, 800.0, 0.0, math.nan], [5000.0, 0.0, 2000.0, 400.0]]), np.array([30.0, 10.0])
-    found = study(scene, 2, seed=1, course=(conditions, seconds), workers=1)
+    found = study(scene, 2, seed=1, course=(conditions, seconds), execution=Execution(workers=1))
     steady = lowest_level(scene)[0]
     slips, lives = zip(*(settled(steady, conditions[[k]])[:, 0] for k in range(2)))
     assert found.own["cage_slip"] == pytest.approx(0.75 * slips[0] + 0.25 * slips[1])
     assert found.own["life_hours"] == pytest.approx(1 / (0.75 / lives[0] + 0.25 / lives[1]))
     assert len(found.slip_bands()) == 2
     with pytest.raises(UncertaintyError, match="speed and load come from the log"):
-        study(load_scene("deng2017_table1", ["uncertainty.operating.radial_load=[700 N, 900 N]"]), 2, seed=1, course=(conditions, seconds), workers=1)
+        at_a_load = load_scene("deng2017_table1", ["uncertainty.operating.radial_load=[700 N, 900 N]"])
+        study(at_a_load, 2, seed=1, course=(conditions, seconds), execution=Execution(workers=1))
 
 
 def test_workers_and_a_journal_change_no_digit_and_what_is_in_the_journal_is_not_computed_again(tmp_path):
     scene, reported = load_scene("deng2017_table1"), []
     conditions = (np.array([[4000.0, 800.0, 0.0, math.nan], [5000.0, 0.0, 2000.0, 400.0]]), np.array([30.0, 10.0]))
     with Journal(tmp_path / "points.journal") as journal:
-        found = study(scene, 16, seed=1, course=conditions, journal=journal, workers=2, progress=lambda *counts: reported.append(counts))
+        found = study(scene, 16, seed=1, course=conditions, execution=Execution(journal, 2, None, lambda *counts: reported.append(counts)))
         assert reported[0] == (0, 128) and reported[-1] == (128, 128)
     fields, steady = [one.field for one in found.ranges], lowest_level(scene)[0]
     for k in (0, 63, 64, 95):
         alone = settled(with_values(steady, dict(zip(fields, found.design.points[k].tolist()))), conditions[0])
         assert (found.slips[k] == alone[0]).all()
     with Journal(tmp_path / "points.journal") as journal:
-        again = study(scene, 16, seed=1, course=conditions, journal=journal, workers=1, progress=lambda *counts: reported.append(counts))
+        again = study(scene, 16, seed=1, course=conditions, execution=Execution(journal, 1, None, lambda *counts: reported.append(counts)))
     assert (
         reported[-1] == (0, 0) and (again.slips == found.slips).all() and again.answers["life_hours"].tolist() == found.answers["life_hours"].tolist()
     )

@@ -1,7 +1,10 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim bench`` and ``compile``: how many bearings a core holds, and compiling ahead of a run."""
 
+import os
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import click
 from click import IntRange
@@ -25,10 +28,22 @@ def fleet(levels, quick):
     return Result(report, lambda: _print_fleet(report))
 
 
-def _measure(levels, quick) -> dict:
-    import os
+@contextmanager
+def one_core() -> Iterator[int]:
+    """Keep this process on one core inside the block; yields its number, or -1 if the system does not support it."""
+    if not hasattr(os, "sched_setaffinity"):
+        yield -1
+        return
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {max(before)})
+    try:
+        yield max(before)
+    finally:
+        os.sched_setaffinity(0, before)
 
-    from bearing_sim.runtime.fleet import most_bearings, one_core
+
+def _measure(levels, quick) -> dict:
+    from bearing_sim.runtime.fleet import most_bearings
     from bearing_sim.scene.loader import load_scene
 
     cases = []

@@ -95,6 +95,7 @@ def design(
     from bearing_sim.studies import design as studied
     from bearing_sim.sweep.point import DURATION
     from bearing_sim.sweep.table import study_digest
+    from bearing_sim.sweep.tasks import Execution
 
     axes = list(studied.default_axes(scene))
     for place, (path, text) in enumerate(((studied.LOW, radii), (studied.D_VALUE, d_values))):
@@ -105,7 +106,7 @@ def design(
     raceways = Points("raceways", 0)
     study = study_digest("design", scene, limits, [(axis.field.path, axis.values) for axis in axes], DURATION, verify_level)
     with resumed(out, study, raceways, parts=studied.TABLES) as journal:
-        designed = studied.design(scene_name, overrides, limits, *axes, journal, DURATION, workers, dask, raceways.update, verify_level=verify_level)
+        designed = studied.design(scene_name, overrides, limits, *axes, DURATION, Execution(journal, workers, dask, raceways.update), verify_level)
     designed.grid.about.update(signed(designed.grid, study).about)
     report = _report_design(scene, designed)
     return Result(

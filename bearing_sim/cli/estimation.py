@@ -51,13 +51,14 @@ def response_with_progress(scene, rebuild=False, workers=None, dask=None):
         The scene has no uncertain fields, another command is building the response, or the scheduler does not answer.
     """
     from bearing_sim.studies.response_points import obtain_response
+    from bearing_sim.sweep.tasks import Execution
     from bearing_sim.watchers.estimation.response import kept_response
 
     if not rebuild and (kept := kept_response(scene)) is not None:
         return kept
     note(f"building the response of {scene.name} to its uncertain fields, once for this bearing and oil ...")
     with progress_bar("operating points", 1.0) as show:
-        return obtain_response(scene, workers, dask, lambda done, total: show(done / max(total, 1)), rebuild)
+        return obtain_response(scene, Execution(None, workers, dask, lambda done, total: show(done / max(total, 1))), rebuild)
 
 
 def estimation_with_progress(scene):

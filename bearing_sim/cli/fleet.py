@@ -62,6 +62,7 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     from bearing_sim.studies.fleet import OK, PARTLY, replay_fleet
     from bearing_sim.studies.fleet_logs import bearings_of, find_logs, read_bearings
     from bearing_sim.sweep.table import study_digest, write_table
+    from bearing_sim.sweep.tasks import Execution
 
     if not paths and bearings_path is None:
         raise UsageError("no logs; give files or folders, or --bearings TABLE.csv")
@@ -87,10 +88,8 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
         table = replay_fleet(
             bearings,
             longest_gap,
-            journal,
-            workers,
-            dask,
-            lambda act, done, total: bars[act].update(done, total),
+            Execution(journal, workers, dask),
+            lambda act, *counts: bars[act].update(*counts),
             build_with_progress,
             response_with_progress,
         )

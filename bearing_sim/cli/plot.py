@@ -87,6 +87,7 @@ def _band_of(course, samples):
     from bearing_sim.model.turning import stands_text, turns
     from bearing_sim.scene.uncertainty import without_range
     from bearing_sim.studies.uncertainty_propagation import rounded_up, study
+    from bearing_sim.sweep.tasks import Execution
 
     times, conditions, scene = course.conditions[:, 0], course.conditions[:, 1:], course.scene
     turning = turns(conditions[:, 0], scene.thresholds.slip_from_speed)
@@ -102,7 +103,7 @@ def _band_of(course, samples):
     base = rounded_up(samples)
     with Points(f"range of the slip of {course.name}", 2 * base) as points:
         given = different, np.ones(len(different))
-        bands = study(scene, base, SEED, shares=False, course=given, progress=points.update).slip_bands()
+        bands = study(scene, base, SEED, shares=False, course=given, execution=Execution(progress=points.update)).slip_bands()
     low, high = (np.array([getattr(each, end) for each in bands])[which.ravel()] for end in ("low", "high"))
     return times, low, high
 

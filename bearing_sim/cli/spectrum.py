@@ -76,6 +76,7 @@ def spectrum(scene_name, data, overrides, level, duration, classes, reading, out
     from bearing_sim.studies.fleet_logs import is_text
     from bearing_sim.sweep.conditions import read_spectrum
     from bearing_sim.sweep.table import study_digest, write_table
+    from bearing_sim.sweep.tasks import Execution
 
     profile = None
     scene = scene_of(scene_name, overrides, level)
@@ -93,7 +94,7 @@ def spectrum(scene_name, data, overrides, level, duration, classes, reading, out
     announce_compilation(scene)
     points, study = Points("spectrum", len(found.points)), study_digest("spectrum", scene, found, duration)
     with resumed(out, study, points) as journal:
-        result = studied.evaluate(scene, found, journal, duration, workers, dask, points.update)
+        result = studied.evaluate(scene, found, duration, Execution(journal, workers, dask, points.update))
     result.table.about.update(signed(result.table, study).about, source=str(data))
     files = write_table(out.path, result.table)
     report = _report(scene, data, profile, result)

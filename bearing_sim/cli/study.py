@@ -225,27 +225,26 @@ def _prepare_turning(scene) -> None:
 def cold_oil(scene_name, overrides, supplies, temperatures, loads):
     """Map the slip of SCENE over load and oil temperature, from ideal rolling and from a skid, by supply of oil.
 
-    Says below which load a skid lasts, whether that load and a skid grow as the oil cools and fall as the load grows, as is published of gearboxes,
-    and where a skid depends on how fast the shaft runs up. All parts are as warm as the oil.
+    Says below which load a skid lasts, and where a skid depends on how fast the shaft runs up. All parts are as warm as the oil.
     """
     from bearing_sim.simulation import IntegrationError
-    from bearing_sim.studies.cold_oil import SUPPLIES, TEMPERATURES, draw_map, run_ups, skid_map, trends
+    from bearing_sim.studies.cold_oil import SUPPLIES, TEMPERATURES, draw_map, run_ups, skid_map
 
     scene = scene_of(scene_name, overrides)
     _prepare_turning(scene)
     celsius = [round(each - 273.15, 9) for each in temperatures] or TEMPERATURES
     with as_usage_error(IntegrationError):
         found = skid_map(scene, supplies or SUPPLIES, celsius, loads)
-        told, run_up = trends(found), run_ups(scene, found)
-    parts = {"points": found.points, "skid_loads": found.skid_loads, "trends": told, "run_ups": run_up}
+        run_up = run_ups(scene, found)
+    parts = {"points": found.points, "skid_loads": found.skid_loads, "run_ups": run_up}
     return Result(
         {"scene": scene.name, "minimum_load": found.minimum_load, **{name: [one._asdict() for one in each] for name, each in parts.items()}},
-        lambda: _print_skids(scene, found, told, run_up),
+        lambda: _print_skids(scene, found, run_up),
         lambda draft: draw_map(found, draft, f"{scene.name}: slip with cold oil"),
     )
 
 
-def _print_skids(scene, found, told, run_up) -> None:
+def _print_skids(scene, found, run_up) -> None:
     for supply in dict.fromkeys(point.supply for point in found.points):
         columns = [point.celsius for point in found.skid_loads if point.supply == supply]
         rows = [
@@ -255,8 +254,6 @@ def _print_skids(scene, found, told, run_up) -> None:
         rows.append(("skid load", *(force(each.load) for each in found.skid_loads if each.supply == supply)))
         title = f"{scene.name}, {supply}: cage slip [%], and from a skid where that differs; minimum load {force(found.minimum_load)}"
         print_rows(title, ("load", *(f"{number(each)} °C" for each in columns)), rows)
-    rows = [(one.claim, one.figures, {True: "yes", False: "no", None: "no case"}[one.holds]) for one in told]
-    print_rows("published trends", ("trend", "figures", "holds"), rows, words=("trend", "figures"))
     if run_up:
         rows = [
             (each.supply, force(each.load), f"{number(each.celsius)} °C", f"{number(each.seconds)} s", f"{number(100 * each.slip, 3)} %")
@@ -374,11 +371,13 @@ def extremes(scene_name, overrides, samples, seed, journal, workers):
     cages, narrow and wide pockets and lands, under steady inputs, starts, stops, reversals, steps and ripples. Every variant runs for at
     least 50 turns of its cage, or until it settles; then its books of energy are checked. Exit code 1 if any run fails.
     """
-    from bearing_sim.studies.extremes import counts, draw, run_extremes, table_rows
+    from bearing_sim.studies.extremes import counts, draw, run_extremes, table_rows, variants
+    from bearing_sim.sweep.tasks import Execution, Journal
 
     announce_compilation()
-    with Points("variants", samples) as points:
-        outcomes = run_extremes(scene_name, overrides, samples, seed, journal and journal.path, workers, points.update)
+    cases = variants(scene_name, overrides, samples, seed)
+    with Points("variants", samples) as points, Journal(journal and journal.path) as kept:
+        outcomes = run_extremes(cases, Execution(kept, workers, progress=points.update))
     found, title = counts(outcomes), f"{scene_name}: {samples} variants at its extremes"
     others = [one for one in outcomes if one.status != "finished"]
     worst = max((one for one in outcomes if math.isfinite(one.books)), key=lambda one: abs(one.books), default=None)

@@ -90,12 +90,13 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, w
     """
     announce_compilation()
     from bearing_sim.studies.uncertainty_propagation import lowest_level, rounded_up, study, varied_ranges
+    from bearing_sim.sweep.tasks import Execution
 
     base = rounded_up(samples)
     began, given = time.perf_counter(), (course.conditions, course.seconds) if course is not None else None
     fields = len(varied_ranges(lowest_level(scene, level)[0]))
     with Points(f"uncertainty of {scene.name}", base * (fields + 2)) as points, as_usage_error(ValueError):
-        found = study(scene, base, seed, level=level, course=given, journal=journal, workers=workers, dask=dask, progress=points.update)
+        found = study(scene, base, seed, level=level, course=given, execution=Execution(journal, workers, dask, points.update))
     return found, {**_report(scene, found, seed, time.perf_counter() - began, course), "kept_from_before": points.kept}
 
 

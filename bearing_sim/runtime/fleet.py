@@ -5,10 +5,7 @@ The overhead of ROS is not included (``python test/benchmarks/node_overhead.py``
 """
 
 import math
-import os
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import NamedTuple
 
 from bearing_sim.runtime.live import LiveModel, warmed_up
@@ -24,20 +21,6 @@ _LEAST_FRACTION = 0.995  # of real time, below which a lag grows: a few ticks of
 _FULL = 0.95  # of a core: expected load of the count that is tried next
 _NO_MORE_THAN_NOISE = 1.04  # ratio of counts: the largest count varies by this much from run to run
 _TRIES = 10
-
-
-@contextmanager
-def one_core() -> Iterator[int]:
-    """Keep this process on one core inside the block; yields its number, or -1 if the system does not support it."""
-    if not hasattr(os, "sched_setaffinity"):
-        yield -1
-        return
-    before = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, {max(before)})
-    try:
-        yield max(before)
-    finally:
-        os.sched_setaffinity(0, before)
 
 
 class FleetRun(NamedTuple):

@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from bearing_sim.sweep.tasks import Journal, Progress, in_silence, run_tasks, task
+from bearing_sim.sweep.tasks import IN_MEMORY, Execution, task
 
 
 def answers_at(
     points: Sequence[np.ndarray], function: Callable[..., dict], arguments: Sequence, nothing: Mapping[str, Any], kind: str, size: int,
-    journal: Journal | None = None, workers: int | None = None, dask: str | None = None,
-    progress: Progress = in_silence,
+    execution: Execution = IN_MEMORY,
 ) -> dict[str, np.ndarray]:  # fmt: skip
     """Return what a function answers at points, by the names of ``nothing``, along the first axis.
 
@@ -24,19 +23,11 @@ def answers_at(
     nothing : answer at a point whose worker was lost, by name.
     kind : of the tasks, see `bearing_sim.sweep.tasks.task`.
     size : number of points of a task.
-    journal : of finished tasks, which are not computed again; None: kept in memory.
-    workers, dask : see `bearing_sim.sweep.tasks.run_tasks`.
-    progress : called with the number of finished points and of all that are not in the journal.
+    execution : see `bearing_sim.sweep.tasks.Execution`.
     """
     count = len(points[0])
     parts = [[tuple(map(tuple, each[first : first + size].tolist())) for each in points] for first in range(0, count, size)]
-    tasks = [task(kind, function, *arguments, *part) for part in parts]
-    results = run_tasks(
-        tasks,
-        Journal() if journal is None else journal,
-        workers,
-        dask,
-        lambda *batches: progress(*(min(size * each, count) for each in batches)),
-    )
+    told = execution._replace(progress=lambda *batches: execution.progress(*(min(size * each, count) for each in batches)))
+    results = told.run([task(kind, function, *arguments, *part) for part in parts])
     answers = {name: [result.get(name, [absent] * len(part[0])) for result, part in zip(results, parts)] for name, absent in nothing.items()}
     return {name: np.array(list(itertools.chain.from_iterable(lists))) for name, lists in answers.items()}

@@ -87,6 +87,10 @@ class Measured(NamedTuple):
     cage_times: np.ndarray
     cage_speeds: np.ndarray
 
+    def at(self, times: np.ndarray) -> np.ndarray:
+        """Return the conditions at some times [s]."""
+        return np.stack([np.interp(times, self.times, column) for column in self.inputs.T], axis=-1)
+
 
 def block_length(seconds: float) -> float:
     """Return the length of the blocks of a recording [s]: one second, or less for a short recording."""
@@ -108,7 +112,7 @@ def cut(measured: Measured, diameter_ratio: float, from_speed: float, length: fl
     for first, last in measured.gaps:
         inside &= ~((measured.cage_times > first) & (measured.cage_times < last))
     times, speeds = measured.cage_times[inside], measured.cage_speeds[inside]
-    inputs = np.stack([np.interp(times, measured.times, column) for column in measured.inputs.T], axis=-1)  # at the times of the cage's messages
+    inputs = measured.at(times)  # at the times of the cage's messages
     with np.errstate(divide="ignore", invalid="ignore"):
         slips = 1.0 - speeds / (0.5 * inputs[:, 0] * (1.0 - diameter_ratio))
     numbers = np.floor((times - begin) / length).astype(int)
@@ -131,8 +135,7 @@ def cut(measured: Measured, diameter_ratio: float, from_speed: float, length: fl
 def _within(measured: Measured, edges: tuple[float, float]) -> np.ndarray:
     """Return conditions between two times, both ends included."""
     first, last = np.searchsorted(measured.times, edges)
-    times = np.concatenate([edges[:1], measured.times[first:last], edges[1:]])
-    return np.stack([np.interp(times, measured.times, column) for column in measured.inputs.T], axis=-1)
+    return measured.at(np.concatenate([edges[:1], measured.times[first:last], edges[1:]]))
 
 
 def _unsettled(measured: Measured, edges: tuple[float, float], from_speed: float, resets: list[float]) -> str:

@@ -23,9 +23,10 @@ from bearing_sim.model.thermal_network import POWERS
 from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, hours
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+from bearing_sim.studies.columns import columns_of
 from bearing_sim.studies.sheet import CLEARANCES
 from bearing_sim.sweep.pictures import as_shown, draw_map, new_figure, no_result_patch, on_grid, plain_numbers, save, set_limits, with_gaps
-from bearing_sim.sweep.point import FAILED, OK, Column
+from bearing_sim.sweep.point import FAILED, OK
 from bearing_sim.sweep.table import Table
 
 NO_EQUILIBRIUM = "no_equilibrium"
@@ -33,22 +34,7 @@ SPEED, LOAD = "operating.shaft_speed", "operating.radial_load"
 _ENDLESS = 1e4  # s; longer than any lag of a cage; at level steady simulated time costs nothing
 _NEAR = 1e-4  # of a speed, to which bisection finds it
 _LEAP = 10.0  # K; a bearing that is farther from the limit of its scene where equilibrium ends does not pass the limit but runs away
-COLUMNS = (
-    Column(SPEED, "rpm", "speed of the shaft"),
-    Column(LOAD, "N", "radial load"),
-    *(Column(name, "um", f"{name.replace('_', ' ')}, diametral; negative: preload") for name in CLEARANCES),
-    *(Column(name, "degC", f"{name.replace('_', ' ')}; NaN: no law of heat computes it") for name in NODE_OBSERVABLES),
-    Column("seat_pressure", "MPa", "pressure between shaft and inner ring; negative: what is missing for it; NaN without a fit"),
-    Column("cage_slip", "%", "cage slip"),
-    Column("life", "h", "life as chosen in the scene"),
-    Column("loss", "W", "loss of the bearing"),
-    Column("heat_to_oil", "W", "heat that the oil takes away; NaN without a thermal network"),
-    Column("heat_to_ambient", "W", "heat that shaft and housing give off; NaN without a thermal network"),
-    Column(
-        "status", "", "ok; no_equilibrium: not all heat leaves at temperatures below the limit of the scene; failed: no operating point was found"
-    ),
-    Column("reason", "", "why the status is not ok"),
-)
+COLUMNS = columns_of("clearance")
 
 
 class Loss(NamedTuple):

@@ -9,7 +9,7 @@ oil warms and load grows.
 import dataclasses
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -26,7 +26,6 @@ TEMPERATURES = (0.0, 10.0, 20.0, 40.0, 60.0, 80.0)  # degC
 SHARES = (0.08, 0.15, 0.3, 0.45, 0.6, 0.8, 1.2, 1.8, 3.0)  # of the makers' minimum load
 RUN_UPS = (0.3, 3.0, 30.0)  # s from rest to the operating speed
 SKID = 0.1  # slip of a cage that skids
-_NEAR, _SAME_SLIP = 0.01, 1e-3  # skid loads, relative, and slips that count as equal
 _SLOWEST = 1e-3  # of the operating speed, at which a run-up begins
 
 
@@ -64,14 +63,6 @@ class SkidMap(NamedTuple):
     minimum_load: float  # of the makers, at the operating speed [N]
     points: tuple[Point, ...]
     skid_loads: tuple[SkidLoad, ...]
-
-
-class Trend(NamedTuple):
-    """A published trend, and whether the map has it."""
-
-    claim: str
-    figures: str
-    holds: bool | None  # None where the map has no case
 
 
 def _at(scene: Scene, supply: str, load: float, celsius: float) -> Scene:
@@ -120,47 +111,13 @@ def run_up(scene: Scene, supply: str, load: float, celsius: float, seconds: floa
     return RunUp(supply, load, celsius, seconds, outcome.slip)
 
 
-def run_ups(scene: Scene, found: SkidMap, seconds: Sequence[float] = RUN_UPS) -> list[RunUp]:
+def run_ups(scene: Scene, found: SkidMap) -> list[RunUp]:
     """Return what run-ups lead to at the points of a map where the way in decides: those with two states, at most one for each supply."""
     first = {point.supply: point for point in found.points if point.skid - point.rolling > SKID}
-    return [run_up(scene, *point[:3], each) for point in first.values() for each in seconds]
+    return [run_up(scene, *point[:3], each) for point in first.values() for each in RUN_UPS]
 
 
-def _cooling(found: SkidMap, supply: str) -> Iterator[tuple[float, list[Point]]]:
-    """Yield loads with their points from warm to cold."""
-    for load in dict.fromkeys(point.load for point in found.points):
-        of_load = [point for point in found.points if point.supply == supply and point.load == load]
-        yield load, sorted(of_load, key=lambda point: -point.celsius)
-
-
-def trends(found: SkidMap) -> list[Trend]:
-    """Return the published trends on a map, supply by supply."""
-    told = []
-    for supply in dict.fromkeys(point.supply for point in found.points):
-        loads = sorted((each for each in found.skid_loads if each.supply == supply), key=lambda each: -each.celsius)
-        figures = ", ".join(f"{each.celsius:g} degC {each.load:.4g} N" for each in loads)
-        steps = [cold.load >= (1.0 - _NEAR) * warm.load for warm, cold in itertools.pairwise(loads) if warm.load > 0.0 or cold.load > 0.0]
-        told.append(Trend(f"{supply}: the skid load never falls as the oil cools", figures, all(steps) if steps else None))
-        fallen, judged = [], 0
-        for load, points in _cooling(found, supply):
-            for warm, cold in itertools.pairwise(points):
-                if warm.skid > SKID:  # it skids already
-                    judged += 1
-                    if cold.skid < warm.skid - _SAME_SLIP:
-                        fallen.append(f"{load:.3g} N: {100 * warm.skid:.1f} % at {warm.celsius:g}, {100 * cold.skid:.1f} % at {cold.celsius:g} degC")
-        words = f"{judged - len(fallen)} of {judged} steps of temperature" + (f"; not {'; '.join(fallen)}" if fallen else "")
-        told.append(Trend(f"{supply}: a skid never falls as the oil cools", words, not fallen if judged else None))
-        rises = [
-            heavy.skid > light.skid + _SAME_SLIP
-            for celsius in dict.fromkeys(point.celsius for point in found.points)
-            for light, heavy in itertools.pairwise([p for p in found.points if p.supply == supply and p.celsius == celsius])
-        ]
-        figures = f"rises in {sum(rises)} of {len(rises)} steps of load"
-        told.append(Trend(f"{supply}: slip falls as the load grows", figures, not any(rises) if rises else None))
-    return told
-
-
-def draw_map(found: SkidMap, path: Path, title: str, before: SkidMap | None = None) -> None:
+def draw_map(found: SkidMap, path: Path, title: str) -> None:
     """Draw slip over load by temperature, a column for each supply, and the skid load over temperature below.
 
     Parameters
@@ -168,22 +125,20 @@ def draw_map(found: SkidMap, path: Path, title: str, before: SkidMap | None = No
     found : the map.
     path : of the picture.
     title : above it.
-    before : another map to be drawn in thin lines beside it.
     """
     supplies = list(dict.fromkeys(point.supply for point in found.points))
     figure = new_figure(4.3 * len(supplies), 7.0)
     axes = figure.subplots(2, len(supplies), squeeze=False, sharey="row")
-    shades, drawn = _shades(found), [(found, 1.8)] if before is None else [(before, 0.8), (found, 1.8)]
+    shades = _shades(found)
     for supply, (above, below) in zip(supplies, axes.T):
-        for (celsius, shade), (one, width) in itertools.product(shades.items(), drawn):
-            points = [point for point in one.points if (point.supply, point.celsius) == (supply, celsius)]
-            loads, look = [point.load / 1e3 for point in points], {"color": shade, "lw": width}
-            own = {"marker": ".", "label": f"{celsius:g} °C" if supply == supplies[0] else None} if one is found else {}
-            above.plot(loads, [100 * point.skid for point in points], **look, **own)
+        for celsius, shade in shades.items():
+            points = [point for point in found.points if (point.supply, point.celsius) == (supply, celsius)]
+            loads, look = [point.load / 1e3 for point in points], {"color": shade, "lw": 1.8}
+            label = f"{celsius:g} °C" if supply == supplies[0] else None
+            above.plot(loads, [100 * point.skid for point in points], marker=".", label=label, **look)
             above.plot(loads, [100 * point.rolling for point in points], ls=":", **look)
-        for one, width in drawn:
-            line = sorted((each.celsius, each.load / 1e3) for each in one.skid_loads if each.supply == supply)
-            below.plot(*zip(*line), "k.-", lw=width)
+        line = sorted((each.celsius, each.load / 1e3) for each in found.skid_loads if each.supply == supply)
+        below.plot(*zip(*line), "k.-", lw=1.8)
         for axis, along in ((above, above.axvline), (below, below.axhline)):
             along(found.minimum_load / 1e3, color="0.6", ls="--", lw=1.0)
             axis.grid(alpha=0.3)

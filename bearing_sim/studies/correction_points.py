@@ -25,7 +25,7 @@ from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies.batches import answers_at
 from bearing_sim.studies.trade_course import cage_rate
 from bearing_sim.sweep.settling import Outcome, advance_until_settled
-from bearing_sim.sweep.tasks import Journal, Progress, in_silence
+from bearing_sim.sweep.tasks import Execution, Journal, Progress, in_silence
 from bearing_sim.watchers.estimation.correction import (
     LIFE_EXPONENT,
     STATES_APART,
@@ -231,10 +231,7 @@ def _measured(scene, domain, path: Path, workers, progress, most) -> Correction:
                     {"steady": nothing, "planar": nothing, "other_slip": math.nan},
                     "planar",
                     _BATCH,
-                    journal,
-                    workers,
-                    None,
-                    lambda points, total, done=done: progress(done + points, most),
+                    Execution(journal, workers, progress=lambda points, total, done=done: progress(done + points, most)),
                 )
             )
             conditions = np.concatenate([conditions, spread])

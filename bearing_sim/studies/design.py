@@ -12,7 +12,6 @@ import itertools
 import math
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
@@ -24,13 +23,14 @@ from bearing_sim.scene.display import hours, number
 from bearing_sim.scene.loader import SceneError, load_scene, scene_to_yaml
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import with_values
+from bearing_sim.studies.columns import columns_of
 from bearing_sim.studies.sheet import loads_text
 from bearing_sim.sweep.conditions import Conditions, OperatingPoint, PointError, combined_life, scene_at_point
 from bearing_sim.sweep.grid import Axis, axis, one_line, scene_at
 from bearing_sim.sweep.pictures import legend_below, new_figure, on_grid, plain_numbers, save, with_gaps
-from bearing_sim.sweep.point import OK, REFUSED, UNSETTLED, Column, point_row
+from bearing_sim.sweep.point import OK, REFUSED, UNSETTLED, point_row
 from bearing_sim.sweep.table import Table, read_table, write_table
-from bearing_sim.sweep.tasks import Journal, Progress, Task, in_silence, run_tasks, task
+from bearing_sim.sweep.tasks import IN_MEMORY, Execution, Task, task
 
 LOW, D_VALUE = "bearing.outer_raceway.low_radius", "bearing.outer_raceway.d_value"
 NOMINAL, WORST = "nominal", "worst"
@@ -52,52 +52,9 @@ _HALVINGS = 7
 _ROUNDS = 4  # of narrowing an interval until its edges and its centre meet the limits at the level that verifies
 _BELOW, _ABOVE, _RADII = 2.5e-6, 5e-6, 16  # default range of radii about the scene's [m], and their number
 _D_RANGE, _D_VALUES = 0.2, 9  # default range of D values, relative to the scene's, and their number
-_NUMBERS = (
-    Column("nominal_slip", "%", "cage slip at nominal speed, load and dimensions, the largest of all operating points"),
-    Column("nominal_life", "h", "life there, as chosen in the scene; that of the mission if there are several operating points"),
-    Column("worst_slip", "%", "largest cage slip within the tolerances"),
-    Column("worst_life", "h", "shortest life within the tolerances"),
-)
-_NOTHING = dict.fromkeys((column.name for column in _NUMBERS), math.nan)
-COLUMNS = (
-    Column(LOW, "mm", "radius at the low points, R_low"),
-    Column(D_VALUE, "mm", "high-point radius minus low-point radius, D"),
-    *_NUMBERS,
-    Column("meets_nominal", "", "whether slip and life meet the limits at nominal speed, load and dimensions"),
-    Column("meets_worst", "", "whether they meet the limits within the tolerances"),
-    Column("status", "", "ok, unsettled, failed or refused"),
-    Column("reason", "", "why the status is not ok"),
-    Column("warnings", "", "laws used outside of their ranges within the tolerances, each with a value"),
-)
-_KIND = Column("kind", "", "nominal: at nominal speed, load and dimensions; worst: within the tolerances")
-BORDER_COLUMNS = (
-    _KIND,
-    Column(D_VALUE, "mm", "high-point radius minus low-point radius, D"),
-    Column("low_radius_from", "mm", "smallest low-point radius that meets the limits"),
-    Column("low_radius_to", "mm", "largest low-point radius that meets the limits"),
-    Column("bound_below_by", "", "what bounds the region at low_radius_from: slip, life, no result, or the end of the map"),
-    Column("bound_above_by", "", "what bounds it at low_radius_to"),
-    Column("verdict", "", "of the level that verifies: confirmed, narrowed, withdrawn; or not verified"),
-    Column("verified_from", "mm", "smallest low-point radius that meets the limits at both levels; NaN if there is none or none was verified"),
-    Column("verified_to", "mm", "largest low-point radius that does"),
-    Column("verified_below_by", "", "what bounds the verified interval at verified_from"),
-    Column("verified_above_by", "", "what bounds it at verified_to"),
-)
-CHECK_COLUMNS = (
-    _KIND,
-    Column(D_VALUE, "mm", "high-point radius minus low-point radius, D"),
-    Column("place", "", "lower edge, centre or upper edge of the interval as it was found, or after verification"),
-    Column(LOW, "mm", "radius at the low points, R_low"),
-    Column("slip", "%", "cage slip at the level of the design"),
-    Column("life", "h", "life at the level of the design"),
-    Column("meets", "", "whether both meet the limits"),
-    Column("verified_slip", "%", "cage slip at the level that verifies"),
-    Column("verified_life", "h", "life at the level that verifies"),
-    Column("verified_meets", "", "whether both meet the limits"),
-    Column("status", "", "of the level that verifies: ok, unsettled, failed or refused"),
-    Column("reason", "", "why the status is not ok"),
-    Column("warnings", "", "laws used outside of their ranges at the level that verifies, each with a value"),
-)
+COLUMNS, BORDER_COLUMNS, CHECK_COLUMNS = (columns_of(f"design{part}") for part in ("", " borders", " checks"))
+_NUMBERS = [column.name for column in COLUMNS if column.unit in ("%", "h")]
+_NOTHING = dict.fromkeys(_NUMBERS, math.nan)
 
 
 class Limits(NamedTuple):
@@ -357,11 +314,8 @@ def design(
     limits: Limits,
     radii: Axis,
     d_values: Axis,
-    journal: Journal,
     duration: float,
-    workers: int | None = None,
-    dask: str | None = None,
-    progress: Progress = in_silence,
+    execution: Execution = IN_MEMORY,
     verify_level: str | None = None,
 ) -> Designed:
     """Map which raceways meet the limits, and verify what is found at a level of higher fidelity.
@@ -371,8 +325,8 @@ def design(
     name, overrides : of the scene, its level among them.
     limits : to meet.
     radii, d_values : of the grid; the region is searched between the smallest and the largest.
-    journal : of finished raceways, which are not computed again.
-    duration, workers, dask, progress : see `bearing_sim.sweep.grid.run_sweep`.
+    duration : see `bearing_sim.sweep.grid.run_sweep`.
+    execution : see `bearing_sim.sweep.tasks.Execution`.
     verify_level : that verifies edges and centre of each interval, see `verified`; None: nothing is verified.
 
     Raises
@@ -380,7 +334,7 @@ def design(
     SceneError
         No raceway of the grid has a valid scene, or the level that verifies cannot compute it; the errors are those of the first.
     """
-    study = _Study(limits, duration, partial(run_tasks, journal=journal, workers=workers, dask=dask, progress=progress))
+    study = _Study(limits, duration, execution.run)
 
     def scenes_at(points, *more):
         return {point: scene_at(name, [*overrides, *more], (radii, d_values), point) for point in points}
@@ -408,7 +362,7 @@ def design(
         "verify_level": verify_level,
         "life": life_name(scene),
         "wanted": {"slip_below": limits.slip_below, "life_above": limits.life_above} | limits.conditions.as_json(),
-        "axes": [{"field": each.field.path, "unit": each.field.unit, "values": each.shown} for each in (radii, d_values)],
+        "axes": [radii.about, d_values.about],
         "duration": duration,
         "version": package_version(),
         "commit": git_hash(),
@@ -509,7 +463,7 @@ def _judged(interval: Border, result: dict) -> tuple[str, Border | None]:
 def _table_row(point, row, limits) -> dict:
     lengths = {LOW: _millimetres(point[0]), D_VALUE: _millimetres(point[1])}
     texts = {"status": row["status"], "reason": row["reason"], "warnings": row.get("warnings", "")}  # a lost worker's has none
-    return lengths | {column.name: row[column.name] for column in _NUMBERS} | {f"meets_{kind}": limits.met(row, kind) for kind in KINDS} | texts
+    return lengths | {name: row[name] for name in _NUMBERS} | {f"meets_{kind}": limits.met(row, kind) for kind in KINDS} | texts
 
 
 class _Raceways:

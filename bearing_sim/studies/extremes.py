@@ -15,7 +15,7 @@ from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.studies.extreme_run import COURSES, FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Case, StockOutcome, outcome_fields
 from bearing_sim.sweep.pictures import new_figure
-from bearing_sim.sweep.tasks import Journal, run_tasks, task
+from bearing_sim.sweep.tasks import IN_MEMORY, Execution, task
 
 # How far the variants go; assumptions, chosen wider than what a machine sees.
 _FASTEST, _HEAVIEST = 2.0, 5.0  # times the scene's speed and load
@@ -108,27 +108,15 @@ def takes(name: str, overrides: Sequence[str]) -> bool:
     return True
 
 
-def run_extremes(
-    name: str,
-    overrides: Sequence[str],
-    samples: int,
-    seed: int = 0,
-    journal: Path | None = None,
-    workers: int | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
-) -> list[StockOutcome]:
-    """Run the variants of a scene on all cores and return their outcomes.
+def run_extremes(cases: Sequence[Case], execution: Execution = IN_MEMORY) -> list[StockOutcome]:
+    """Run variants of a scene and return their outcomes.
 
     Parameters
     ----------
-    name, overrides, samples, seed : see `variants`.
-    journal : file from which an interrupted study resumes.
-    workers : number of processes; None: one per core.
-    progress : called with the numbers of finished runs and of all.
+    cases : see `variants`.
+    execution : see `bearing_sim.sweep.tasks.Execution`.
     """
-    cases = variants(name, overrides, samples, seed)
-    with Journal(journal) if journal else Journal() as kept:
-        results = run_tasks([task(case.level, outcome_fields, case) for case in cases], kept, workers, progress=progress)
+    results = execution.run([task(case.level, outcome_fields, case) for case in cases])
     return [StockOutcome(**{"case": case} | result) for case, result in zip(cases, results)]
 
 

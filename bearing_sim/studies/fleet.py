@@ -5,7 +5,6 @@ A log that cannot be read or computed is a row that says why.  Results are kept 
 is read, the scene and this program.  Nothing that is in it is computed again.
 """
 
-import csv
 import fcntl
 import math
 import os
@@ -32,10 +31,11 @@ from bearing_sim.runtime.replay import Replay, replay
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation
+from bearing_sim.studies.columns import TABLES, columns_of
 from bearing_sim.studies.fleet_logs import Bearing, Log, read_log
-from bearing_sim.sweep.point import FAILED, OK, REFUSED, Column
+from bearing_sim.sweep.point import FAILED, OK, REFUSED
 from bearing_sim.sweep.table import Table
-from bearing_sim.sweep.tasks import UNAVAILABLE, Journal, Task, program_hash, run_tasks, task
+from bearing_sim.sweep.tasks import IN_MEMORY, UNAVAILABLE, Execution, Task, program_hash, task
 from bearing_sim.watchers.estimation.response import ResponseModel, response_digest
 from bearing_sim.watchers.estimation.two_states import laws_of_table
 
@@ -66,17 +66,14 @@ _BANDS = {
     "remaining_life": ("remaining_life", 1.0),
 }
 
-with open(Path(__file__).with_name("fleet_columns.csv"), encoding="utf-8", newline="") as _file:
-    _TABLE = list(csv.DictReader(_file))
-COLUMNS = tuple(Column(each["name"], each["unit"], each["meaning"]) for each in _TABLE)
+COLUMNS = columns_of("fleet")
+_EMPTY = {each["name"]: math.nan if each["kind"] == "number" else "" for each in TABLES if each["table"] == "fleet"}
 
 
 def replay_fleet(
     bearings: Sequence[Bearing],
     longest_gap: float | None = None,
-    journal: Journal | None = None,
-    workers: int | None = None,
-    dask: str | None = None,
+    execution: Execution = IN_MEMORY,
     progress: Callable[[str, int, int], None] = lambda act, done, total: None,
     prepare: Callable[[Scene, tuple[float, float]], object] | None = None,
     respond: Callable[[Scene], ResponseModel] | None = None,
@@ -89,8 +86,7 @@ def replay_fleet(
     ----------
     bearings : to replay.
     longest_gap : see `bearing_sim.inputs.profile.judge`.
-    journal : with finished results; new ones are added.
-    workers, dask : see `bearing_sim.sweep.tasks.run_tasks`; workers of a cluster open the logs under the same paths.
+    execution : see `bearing_sim.sweep.tasks.Execution`; workers of a cluster open the logs under the same paths.
     progress : called with what is under way (``reading``, ``replay``), the number of finished tasks and of all that are to be computed.
     prepare : called with a scene and its oil temperatures [K] before its table is needed, where workers are of this machine.
     respond : returns the response of a scene that asks for bands; called once for bearings that are equal.  None computes no bands.
@@ -100,7 +96,6 @@ def replay_fleet(
     ClusterError
         See `bearing_sim.sweep.tasks.run_tasks`.
     """
-    journal = Journal() if journal is None else journal
     rows: list[dict] = [_refused_row(bearing) for bearing in bearings]
     checksums = _checksums(bearings, rows)
     ready = [k for k, row in enumerate(rows) if not row]
@@ -109,7 +104,7 @@ def replay_fleet(
     temperatures: dict[int, tuple[float, float] | None] = dict.fromkeys(ready)
 
     def run(act, tasks):
-        return run_tasks(tasks, journal, workers, dask, lambda done, total: progress(act, done, total))
+        return execution._replace(progress=partial(progress, act)).run(tasks)
 
     steady = [k for k in ready if scenes[k].level == "steady"]
     surveys = dict(zip(steady, run("reading", [_task("survey", survey, bearings[k], checksums[k]) for k in steady]) if steady else ()))
@@ -120,7 +115,7 @@ def replay_fleet(
         scene, ends = _spanning([scenes[k] for k in group], [surveys[k] for k in group])
         for k in group:
             scenes[k], temperatures[k] = with_fields(scenes[k], table=scene.table), ends
-        if prepare is not None and dask is None:
+        if prepare is not None and execution.dask is None:
             prepare(scene, ends)
     ready = [k for k in ready if not rows[k]]
     wanted = {k: bearings[k]._replace(scene=scenes[k]) for k in ready}
@@ -343,8 +338,7 @@ def _complete(bearing: Bearing, row: dict) -> dict:
     scene, only = bearing.scene, "".join(f", {column} = {text}" for column, text in bearing.log.only)
     known = isinstance(scene, Scene)
     names = {"bearing": bearing.name, "log": f"{bearing.log.path}{only}", "scene": scene.name if known else scene.origin}
-    empty = {each["name"]: math.nan if each["kind"] == "number" else "" for each in _TABLE}
-    return empty | names | {"level": scene.level if known else ""} | row
+    return _EMPTY | names | {"level": scene.level if known else ""} | row
 
 
 def _about(bearings: Sequence[Bearing]) -> dict:

@@ -15,7 +15,7 @@ from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies.batches import answers_at
 from bearing_sim.studies.uncertainty_propagation import UncertaintyError, varied
-from bearing_sim.sweep.tasks import Journal, Progress, in_silence
+from bearing_sim.sweep.tasks import IN_MEMORY, Execution, Journal
 from bearing_sim.watchers.estimation.bands import prior_draws
 from bearing_sim.watchers.estimation.lives import SlipAndOil
 from bearing_sim.watchers.estimation.response import (
@@ -186,10 +186,7 @@ def _refined(simulation: Simulation, nearby: _Equilibria) -> np.void | None:
     return None
 
 
-def at_points(
-    scene: Scene, scores: np.ndarray, conditions: np.ndarray, journal: Journal | None = None, workers: int | None = None, dask: str | None = None,
-    progress: Progress = in_silence, level: str = "steady",
-) -> np.ndarray:  # fmt: skip
+def at_points(scene: Scene, scores: np.ndarray, conditions: np.ndarray, execution: Execution = IN_MEMORY, level: str = "steady") -> np.ndarray:
     """Return settled answers at points, shape (n, 7); NaN where there is none.
 
     Parameters
@@ -197,8 +194,7 @@ def at_points(
     scene : of any level.
     scores : of its uncertain fields, shape (n, d).
     conditions : columns `bearing_sim.watchers.estimation.response.CONDITIONS`, shape (n, 4).
-    journal, workers, dask : see `bearing_sim.sweep.tasks.run_tasks`.
-    progress : called with the number of finished points and of all that are not in the journal.
+    execution : see `bearing_sim.sweep.tasks.Execution`.
     level : that slip is of; all else is of level ``steady``.
     """
     scene, fields = scene.at_level(level), scene_fields(scene)
@@ -210,10 +206,7 @@ def at_points(
         {"answers": [math.nan] * len(ANSWERS)},
         level,
         _BATCH,
-        journal,
-        workers,
-        dask,
-        progress,
+        execution,
     )["answers"]
 
 
@@ -238,17 +231,13 @@ def design(scene: Scene, count: int, seed: int = 1) -> tuple[np.ndarray, np.ndar
     return np.repeat(conditions_at(positions, domain_of(scene)), DRAWS, axis=0), np.tile(scores, (nodes, 1))
 
 
-def obtain_response(
-    scene: Scene, workers: int | None = None, dask: str | None = None, progress: Progress = in_silence,
-    rebuild: bool = False, points: int = _POINTS,
-) -> ResponseModel:  # fmt: skip
+def obtain_response(scene: Scene, execution: Execution = IN_MEMORY, rebuild: bool = False, points: int = _POINTS) -> ResponseModel:
     """Return the response of a scene, from disk or built and kept there; an interrupted build resumes from its journal.
 
     Parameters
     ----------
     scene : its level does not matter.
-    workers, dask : see `bearing_sim.sweep.tasks.run_tasks`.
-    progress : called with the number of finished points and of all that are not in the journal.
+    execution : see `bearing_sim.sweep.tasks.Execution`; the journal is its own.
     rebuild : whether to build it even if there is one.
     points : to fit it to, a power of two.
 
@@ -270,7 +259,7 @@ def obtain_response(
         began = time.perf_counter()
         conditions, scores = design(scene, points)
         with Journal(path.with_suffix(".journal"), is_own=True) as journal:
-            answers = at_points(scene, scores, conditions, journal, workers, dask, progress)
+            answers = at_points(scene, scores, conditions, execution._replace(journal=journal))
         try:
             found = fit_response(fields, domain_of(scene), conditions, scores, answers, SlipAndOil(scene), time.perf_counter() - began)
         except ValueError as error:

@@ -23,6 +23,7 @@ from bearing_sim.simulation import positive_seconds
 from bearing_sim.sweep.point import DURATION, RESULTS, results_of, run_until_settled
 from bearing_sim.sweep.settling import Outcome
 from bearing_sim.sweep.states import ROLLING, SKID, Others, other_states, skid_start, state_rows
+from bearing_sim.sweep.tasks import Execution
 
 if TYPE_CHECKING:
     import pandas
@@ -229,5 +230,5 @@ def _bands(scene: Scene, samples: int, workers: int) -> "Mapping[str, Band]":
         study,
     )  # here, because importing SciPy's statistics takes longer than to settle
 
-    found = study(scene, rounded_up(samples), SEED, shares=False, workers=workers)
+    found = study(scene, rounded_up(samples), SEED, shares=False, execution=Execution(workers=workers))
     return MappingProxyType({"cage_slip": found.bands["cage_slip"], "modified_rating_life": found.bands["life_hours"]})

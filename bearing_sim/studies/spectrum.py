@@ -22,12 +22,13 @@ from bearing_sim.model.turning import REST
 from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, hours, number
 from bearing_sim.scene.loader import scene_to_yaml
 from bearing_sim.scene.scene import Scene
+from bearing_sim.studies.columns import columns_of
 from bearing_sim.studies.design import life_name
 from bearing_sim.sweep.conditions import OperatingPoint, PointError, Spectrum, combined_life, scene_at_point, shares
 from bearing_sim.sweep.pictures import COLOURS, new_figure, save
-from bearing_sim.sweep.point import DURATION, LIVES, OK, OTHER_STATE, REFUSED, RESULTS, TEXTS, UNSETTLED, Column, empty_row, point_row
+from bearing_sim.sweep.point import DURATION, LIVES, OK, OTHER_STATE, REFUSED, RESULTS, TEXTS, UNSETTLED, empty_row, point_row
 from bearing_sim.sweep.table import Table
-from bearing_sim.sweep.tasks import Journal, Progress, in_silence, run_tasks, task
+from bearing_sim.sweep.tasks import IN_MEMORY, Execution, task
 
 EXPONENT = 10.0 / 3.0
 """p of the life equation of roller bearings (ISO 281)."""
@@ -35,16 +36,7 @@ EXPONENT = 10.0 / 3.0
 HEADLINE = "modified_rating_life"
 """The life that the scene chooses, by which damage is counted."""
 
-CONDITIONS = (
-    Column("share", "%", "share of the time"),
-    Column("hours", "h", "time at this point; NaN where the spectrum has shares only"),
-    Column("shaft_speed", "rpm", "shaft speed"),
-    Column("radial_load", "N", "radial load"),
-    Column("axial_load", "N", "axial load"),
-    Column("oil_temperature", "degC", "oil temperature"),
-)
-_DAMAGE = Column("damage_share", "%", "share of the damage, by the life that the scene chooses")
-COLUMNS = (*CONDITIONS, _DAMAGE, *RESULTS, *OTHER_STATE, *TEXTS)
+COLUMNS = (*columns_of("spectrum"), *RESULTS, *OTHER_STATE, *TEXTS)
 
 
 class Evaluated(NamedTuple):
@@ -139,11 +131,8 @@ def _classes(values: np.ndarray, low: float, count: int) -> np.ndarray:
 def evaluate(
     scene: Scene,
     spectrum: Spectrum,
-    journal: Journal,
     duration: float = DURATION,
-    workers: int | None = None,
-    dask: str | None = None,
-    progress: Progress = in_silence,
+    execution: Execution = IN_MEMORY,
 ) -> Evaluated:
     """Run a scene at each point of a load spectrum until it has settled, and add up the damage.
 
@@ -151,14 +140,12 @@ def evaluate(
     ----------
     scene : what a point does not say is the scene's.
     spectrum : see `bearing_sim.sweep.conditions.Spectrum`.
-    journal : of finished points, which are not computed again.
-    duration, workers, dask, progress : see `bearing_sim.sweep.grid.run_sweep`.
+    duration : see `bearing_sim.sweep.grid.run_sweep`.
+    execution : see `bearing_sim.sweep.tasks.Execution`.
     """
     points = spectrum.points
     scenes = [_at(scene, point) for point in points]
-    found = iter(
-        run_tasks([task(each.level, point_row, each, duration) for each in scenes if isinstance(each, Scene)], journal, workers, dask, progress)
-    )
+    found = iter(execution.run([task(each.level, point_row, each, duration) for each in scenes if isinstance(each, Scene)]))
     results = [next(found) if isinstance(each, Scene) else empty_row(REFUSED, str(each)) for each in scenes]
     results = [row if "l10" in row else empty_row(row["status"], row["reason"]) for row in results]  # of a lost worker
     turning = 1.0 - spectrum.resting / (spectrum.resting + math.fsum(point.weight for point in points))

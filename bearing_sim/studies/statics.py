@@ -18,6 +18,7 @@ from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, 
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, OilFactors, oil_factors, rate_lives
 from bearing_sim.scene.display import hours, larger_unit
 from bearing_sim.scene.scene import Scene
+from bearing_sim.simulation import scene_inputs
 from bearing_sim.sweep.pictures import new_figure, save
 from bearing_sim.sweep.thermal import operating_state
 from bearing_sim.watchers.monitoring.film_ratio import ThinnestFilm
@@ -68,7 +69,7 @@ def statics(scene: Scene, slices: int) -> Statics:
     (params, lubrication, temperatures), operating = operating_state(scene), scene.operating
     count, raceways, speed = params.rollers.count, params.raceways, abs(operating.shaft_speed)
     cage_speed = 0.5 * operating.shaft_speed * (1.0 - raceways.diameter_ratio)
-    load = (operating.radial_load * math.cos(operating.load_angle), operating.radial_load * math.sin(operating.load_angle))
+    load = scene_inputs(scene)[1:3]
     moment = about_yz(operating.moment or 0.0, operating.moment_angle)
     tilts = about_yz(operating.misalignment, operating.misalignment_angle) if operating.moment is None else None
     growth = total_growth(operating.shaft_speed, lubrication.growth)

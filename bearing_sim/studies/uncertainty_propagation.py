@@ -30,7 +30,7 @@ from bearing_sim.studies.batches import answers_at
 from bearing_sim.sweep.pictures import new_figure, plain_numbers, save
 from bearing_sim.sweep.ring_resonance import ring_resonance
 from bearing_sim.sweep.states import states
-from bearing_sim.sweep.tasks import Journal, Progress, in_silence
+from bearing_sim.sweep.tasks import IN_MEMORY, Execution
 from bearing_sim.sweep.thermal import equilibrium_temperatures
 
 PROBABILITIES = (0.05, 0.50, 0.95)  # below the low end, the middle and the high end of a band
@@ -362,8 +362,7 @@ def rounded_up(samples: int) -> int:
 
 def study(
     scene: Scene, base: int, seed: int, *, shares: bool = True,
-    level: str | None = None, course: tuple[np.ndarray, np.ndarray] | None = None, journal: Journal | None = None,
-    workers: int | None = None, dask: str | None = None, progress: Progress = in_silence,
+    level: str | None = None, course: tuple[np.ndarray, np.ndarray] | None = None, execution: Execution = IN_MEMORY,
 ) -> Study:  # fmt: skip
     """Return bands and Sobol' indices of slip and life.
 
@@ -377,9 +376,7 @@ def study(
     course : successive conditions, columns as `Inputs`, shape (m, 6), with NaN for the scene's own oil temperature, and the duration
         of each [s], shape (m,); None: the scene's own conditions.  With a course, slip is the mean over time and life that under the
         repeated course.
-    journal : of finished points, which are not computed again; None: kept in memory.
-    workers, dask : see `bearing_sim.sweep.tasks.run_tasks`.
-    progress : called with the number of finished points and of all points that are not in the journal.
+    execution : see `bearing_sim.sweep.tasks.Execution`.
 
     Raises
     ------
@@ -404,10 +401,7 @@ def study(
         {"settled": [[math.nan] * len(seconds)] * 2},
         scene.level,
         _BATCH if scene.level == "steady" else 1,
-        journal,
-        workers,
-        dask,
-        progress,
+        execution,
     )["settled"]
     answers = dict(zip(VALUES, _over_course(found, seconds)))
     absent = int(np.isnan(answers["cage_slip"]).sum())

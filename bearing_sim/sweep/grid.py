@@ -7,7 +7,8 @@ import math
 import re
 import types
 import typing
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Protocol
 
@@ -22,7 +23,7 @@ from bearing_sim.scene.scene import OPERATING_POINT, Scene
 from bearing_sim.simulation import positive_seconds
 from bearing_sim.sweep.point import DURATION, OTHER_STATE, REFUSED, RESULTS, TEXTS, Column, empty_row, point_row
 from bearing_sim.sweep.table import Table
-from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
+from bearing_sim.sweep.tasks import Journal, Progress, Task, in_silence, run_tasks, task
 
 _TYPES = {int: "a whole number", bool: "true or false", str: "a word"}
 
@@ -135,6 +136,11 @@ class Axis(NamedTuple):
     def shown(self) -> list:
         """The values in the display unit."""
         return [self.field.shown(value) for value in self.values]
+
+    @property
+    def about(self) -> dict:
+        """The axis as a table describes it."""
+        return {"field": self.field.path, "unit": self.field.unit, "values": self.shown}
 
     def override(self, value: float | int | str) -> str:
         """Return the override that sets the field to a value (see `bearing_sim.scene.loader.load_scene`)."""
@@ -291,7 +297,7 @@ def run_sweep(
     journal: Journal | str | Path | None = None,
     workers: int | None = None,
     dask: str | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Progress = in_silence,
 ) -> Table:
     """Run a scene at every combination of values, or at every point of a list, on all cores, until each point has settled.
 
@@ -326,9 +332,7 @@ def run_sweep(
     varied, points = read_varied(axes)
     changed = [*override_texts(overrides), *([f"level={level}"] if level else [])]
     plan = plan_sweep(scene, changed, varied, positive_seconds("duration", duration), points=points)
-    if isinstance(journal, Journal):
-        return plan.table(run_tasks(plan.tasks, journal, workers, dask, progress))
-    with Journal(None if journal is None else Path(journal)) as kept:
+    with nullcontext(journal) if isinstance(journal, Journal) else Journal(None if journal is None else Path(journal)) as kept:
         return plan.table(run_tasks(plan.tasks, kept, workers, dask, progress))
 
 
@@ -357,8 +361,7 @@ class Plan(NamedTuple):
     @property
     def tasks(self) -> list[Task]:
         """One task for each valid point."""
-        limits = (self.duration,) if self.longest is None else (self.duration, self.longest)
-        return [task(scene.level, point_row, scene, *limits) for scene in self.scenes if isinstance(scene, Scene)]
+        return [task(scene.level, point_row, scene, self.duration, self.longest) for scene in self.scenes if isinstance(scene, Scene)]
 
     def table(self, results: Iterable[dict]) -> Table:
         """Return the table of all points from the results of `tasks`."""
@@ -376,7 +379,7 @@ class Plan(NamedTuple):
             "scene": self.name,
             "overrides": list(self.overrides),
             "level": scene.level if all(axis.field.path != "level" for axis in self.axes) else "varied",
-            "axes" if self.is_grid else "varied": [{"field": each.field.path, "unit": each.field.unit, "values": each.shown} for each in self.axes],
+            "axes" if self.is_grid else "varied": [each.about for each in self.axes],
             "duration": self.duration,
             "version": package_version(),
             "commit": git_hash(),

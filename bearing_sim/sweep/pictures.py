@@ -336,7 +336,9 @@ def draw(path: Path | BinaryIO, table: Table, quantities: Sequence[str] = ()) ->
             figure.legend(handles=[no_result_patch()], loc="outside lower center", frameon=False)
     else:
         legend_below(figure, figure.axes[0], ncols=min(len(figure.axes[0].get_legend_handles_labels()[1]), 4))
-    figure.suptitle(_title(table), fontsize=11, wrap=True)
+    without = sum(row["status"] not in (OK, UNSETTLED) for row in table.rows)
+    missing = f"; {without} of {len(table.rows)} points have no result" if without else ""
+    figure.suptitle(f"{condition_title(table.about)}{missing}", fontsize=11, wrap=True)
     save(figure, path)
 
 
@@ -344,12 +346,6 @@ def condition_title(about: Mapping) -> str:
     """Return scene, level and overrides of a table, by what it says about itself, as a title."""
     changed = [each for each in about.get("overrides", ()) if not each.startswith("level=")]
     return f"{about['scene']} at level {about['level']}{' with ' if changed else ''}{', '.join(changed)}"
-
-
-def _title(table: Table) -> str:
-    without = sum(row["status"] not in (OK, UNSETTLED) for row in table.rows)
-    missing = f"; {without} of {len(table.rows)} points have no result" if without else ""
-    return f"{condition_title(table.about)}{missing}"
 
 
 def _is_dense(table, column) -> bool:

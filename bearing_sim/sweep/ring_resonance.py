@@ -37,7 +37,6 @@ class Resonance(NamedTuple):
     ring_mass: float  # of the inner ring alone [kg]
     frequencies: tuple[float, float]  # natural ones on the mean stiffness of the raceways, the lower one first [Hz]
     passage: float  # rollers that pass a point of the outer ring [Hz]
-    modulation: float  # half of the range of the stiffness over a pitch, over its mean
     multiplier: float  # see the docstring of the module
     multiplier_nearby: float  # the largest for frequencies from `_SOFTER` to `_STIFFER` times those
 
@@ -98,15 +97,11 @@ def ring_resonance(scene: Scene, slip: float = 0.0, inputs: Inputs | None = None
         return _multiplier(np.array(stiffness) * per_mass, np.array(damping) * per_mass, interval)
 
     frequencies = np.sqrt(np.linalg.eigvalsh(mean) / mass) / (2.0 * math.pi)
-    traces = np.trace(np.array(stiffness), axis1=1, axis2=2)
-    changes = np.array([np.linalg.norm(each - mean, 2) for each in stiffness])
-    modulation = float(changes.max() / traces.mean() * 2.0)
     return Resonance(
         mass,
         scene.bearing.inner_raceway.ring_mass,
         (float(frequencies[0]), float(frequencies[1])),
         passage,
-        modulation,
         multiplier(1.0),
         max(multiplier(factor) for factor in np.linspace(_SOFTER, _STIFFER, _BETWEEN)),
     )

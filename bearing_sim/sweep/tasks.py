@@ -258,6 +258,30 @@ def run_tasks(
     return [lost[task.key] if task.key in lost else journal[task.key] for task in tasks]
 
 
+class Execution(NamedTuple):
+    """How the tasks of a study are computed.
+
+    Attributes
+    ----------
+    journal : with finished results, which are not computed again; None keeps results in memory.
+    workers, dask : see `run_tasks`.
+    progress : called with the number of finished points and of all that are not in the journal.
+    """
+
+    journal: Journal | None = None
+    workers: int | None = None
+    dask: str | None = None
+    progress: Progress = in_silence
+
+    def run(self, tasks: Sequence[Task]) -> list[dict]:
+        """Return the results of tasks, see `run_tasks`."""
+        return run_tasks(tasks, Journal() if self.journal is None else self.journal, self.workers, self.dask, self.progress)
+
+
+IN_MEMORY = Execution()
+"""Tasks on all cores of this machine, results in memory."""
+
+
 def _computed(tasks, workers, dask) -> Iterator[tuple[Task, dict, bool]]:
     """Yield tasks with their results as they arrive, and whether to store them."""
     if dask is not None:

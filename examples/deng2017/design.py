@@ -27,7 +27,7 @@ from bearing_sim.sweep.conditions import Conditions
 from bearing_sim.sweep.grid import Axis, axis
 from bearing_sim.sweep.point import DURATION
 from bearing_sim.sweep.table import write_table
-from bearing_sim.sweep.tasks import Journal
+from bearing_sim.sweep.tasks import Execution, Journal
 from deng2017.pictures import DENG_REGION, Pictured
 
 SCENE, LOBES = "deng2017_table1", 3
@@ -50,7 +50,7 @@ def answer(journal: Journal, quick: bool, workers: int | None = None, dask: str 
     """
     overrides = [*overrides, "level=steady"]
     axes: Sequence[Axis] = [axis(*each) for each in _QUICK] if quick else default_axes(load_scene(SCENE, overrides))
-    return design(SCENE, overrides, _LIMITS, *axes, journal, DURATION, workers, dask)
+    return design(SCENE, overrides, _LIMITS, *axes, DURATION, Execution(journal, workers, dask))
 
 
 class Within(NamedTuple):

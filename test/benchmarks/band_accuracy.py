@@ -23,7 +23,7 @@ import numpy as np
 
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.response_points import at_points, obtain_response
-from bearing_sim.sweep.tasks import Journal
+from bearing_sim.sweep.tasks import Execution, Journal
 from bearing_sim.watchers.estimation.bands import QUANTITIES, BandEstimator, prior_draws
 from bearing_sim.watchers.estimation.lives import SlipAndOil
 from bearing_sim.watchers.estimation.response import ANSWERS, PROBABILITIES, conditions_at, domain_of, scene_fields
@@ -53,7 +53,7 @@ def samples_of(scene, points, samples, seed, journal):
     conditions = conditions_at(np.random.default_rng(seed).random((points, 4)), domain_of(scene))
     scores = np.concatenate([fields.scores_of(fields.own)[None], prior_draws(len(fields), samples, seed)])
     tiled = np.tile(scores, (points, 1)), np.repeat(conditions, len(scores), axis=0)
-    answers = at_points(scene, *tiled, journal).reshape(points, len(scores), -1)
+    answers = at_points(scene, *tiled, Execution(journal)).reshape(points, len(scores), -1)
     kept = np.isfinite(answers[:, 0, :4]).all(axis=1)
     print(f"{np.count_nonzero(~kept)} of {points} operating points without an answer of the scene itself")
     print(f"{np.isnan(answers[kept, 1:, 0]).sum()} of {answers[kept, 1:, 0].size} samples without an answer")

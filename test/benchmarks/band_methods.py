@@ -22,7 +22,7 @@ from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Matern, WhiteKernel
 
 from bearing_sim.studies.response_points import DRAWS, at_points, design
-from bearing_sim.sweep.tasks import Journal
+from bearing_sim.sweep.tasks import Execution, Journal
 from bearing_sim.watchers.estimation.bands import prior_draws
 from bearing_sim.watchers.estimation.lives import SlipAndOil
 from bearing_sim.watchers.estimation.response import (
@@ -151,7 +151,7 @@ def main():
     scene, given = scene_and_arguments(__doc__)
     nodes, scores = design(scene, POINTS)
     with Journal(given.journal) as journal:
-        training = nodes, scores, at_points(scene, scores, nodes, journal)
+        training = nodes, scores, at_points(scene, scores, nodes, Execution(journal))
         conditions, answers = samples_of(scene, given.points, given.samples, given.seed, journal)
     compare(scene, training, conditions, answers[:, :, SLIP])
 

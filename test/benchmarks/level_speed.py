@@ -24,11 +24,11 @@ from typing import NamedTuple
 import click
 import numpy as np
 
+from bearing_sim.cli.bench import one_core
 from bearing_sim.cli.options import flag, json_option, level_type, option, quick_option
 from bearing_sim.cli.reporting import announce_compilation, note, print_rows
 from bearing_sim.cli.results import Result, command
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.runtime.fleet import one_core
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation

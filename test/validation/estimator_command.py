@@ -44,7 +44,7 @@ def estimator(scene_name, overrides, runs, steps, hours, faults, level, measured
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.scene.uncertainty import ranges_of
     from bearing_sim.studies.uncertainty_propagation import UncertaintyError
-    from bearing_sim.sweep.tasks import ClusterError, JournalInUse
+    from bearing_sim.sweep.tasks import ClusterError, Execution, JournalInUse
 
     warm = "temperatures" in measured
     with as_usage_error(SceneError):
@@ -65,7 +65,7 @@ def estimator(scene_name, overrides, runs, steps, hours, faults, level, measured
         def in_part(first: float, last: float):
             return lambda done, total: show(first + (last - first) * done / max(total, 1))
 
-        response = obtain_response(scene, workers, dask, in_part(0.0, 0.3))
+        response = obtain_response(scene, Execution(None, workers, dask, in_part(0.0, 0.3)))
         _require_varied(scene, response, measured)
         slow, pause = level != "steady" or scene.heat.law == "network", study.PAUSE if warm else 0.0
         every = study.WANDERING_OF_SLOW_POINTS if slow else study.WANDERING

@@ -20,7 +20,7 @@ from bearing_sim.model.params import pack
 from bearing_sim.model.sample import new_block
 from bearing_sim.scene.scene import Scene
 from bearing_sim.studies.response_points import at_points
-from bearing_sim.sweep.tasks import Journal
+from bearing_sim.sweep.tasks import Execution, Journal
 from bearing_sim.watchers.estimation.causes import LOAD, OIL, SENSOR, group_of
 from bearing_sim.watchers.estimation.estimator import Estimator
 from bearing_sim.watchers.estimation.response import ANSWERS, ResponseModel
@@ -181,7 +181,7 @@ def machines(
     plateau = np.arange(count)[:, None] * steps + np.arange(steps + 1)  # the end of one is the start of the next
     asked_scores = np.concatenate([np.repeat(response.nominal[None], count, axis=0), *(each[plateau.ravel()] for each in scores)])
     asked_conditions = np.concatenate([course, *(np.repeat(each, steps + 1, axis=0) for each in conditions)])
-    answers = at_points(scene, asked_scores, asked_conditions, journal, workers, dask, progress, level=scene.level)
+    answers = at_points(scene, asked_scores, asked_conditions, Execution(journal, workers, dask, progress), scene.level)
     own = {tuple(row): each for row, each in zip(course, answers[:count])}
     return [
         Machine(each, score[-1], np.array([own[tuple(row)] for row in each]), found, pause)
@@ -334,7 +334,7 @@ def detections(
     operating = scene.operating
     there = np.array([operating.shaft_speed, operating.radial_load, scene.lubricant.temperature, operating.load_angle])
     asked = np.concatenate([response.nominal[None], both])
-    slips = at_points(scene, asked, np.repeat(there[None], len(asked), axis=0), None, workers, level=scene.level)[:, ANSWERS.index("cage_slip")]
+    slips = at_points(scene, asked, np.repeat(there[None], len(asked), axis=0), Execution(None, workers), scene.level)[:, ANSWERS.index("cage_slip")]
     own, pairs = float(slips[0]), slips[1:].reshape(runs, 2)
     return [_detected(scene, response, there, own, pair, field, known, random, seconds) for pair in pairs if np.isfinite(pair).all()]
 
@@ -460,7 +460,7 @@ def verdicts(
             actual[:, 2] += fault.sign * _FAULT_TEMPERATURE
         asked_scores += [np.repeat(each[None], _FAULT_POINTS, axis=0) for each in (response.nominal, before, after)]
         asked_conditions += [course, course, actual]
-    slips = at_points(scene, np.concatenate(asked_scores), np.concatenate(asked_conditions), None, workers, dask, level=scene.level)
+    slips = at_points(scene, np.concatenate(asked_scores), np.concatenate(asked_conditions), Execution(None, workers, dask), scene.level)
     slips = slips[:, ANSWERS.index("cage_slip")].reshape(len(cases), 3, _FAULT_POINTS)
     found = []
     for number, ((fault, course), each) in enumerate(zip(cases, slips)):
