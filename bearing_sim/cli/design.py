@@ -183,7 +183,7 @@ def _report_design(scene, designed) -> dict:
         report[kind] = [band.found._asdict() | {"verdict": band.verdict, "verified": band.verified and band.verified._asdict()} for band in bands]
     report["widest"] = designed.widest and designed.widest._asdict()
     report["checks"] = [check._asdict() for check in designed.checks]
-    return report | {"files": []}
+    return report | {"files": None}
 
 
 def _print_design(report) -> None:

@@ -36,7 +36,7 @@ class Result(NamedTuple):
     def deliver(self, as_json: bool = False, picture: Output | None = None, table: Output | None = None) -> None:
         """Write the table and the picture that are asked for, and print the result as JSON or for people, also where they cannot be written.
 
-        In a report that has them, ``picture`` and ``files`` are completed by what was written here.
+        Where a report has None for them, ``picture`` and ``files`` say what was written.
         """
         written, drawn = [str(file) for file in self.files], None
         try:
@@ -50,7 +50,7 @@ class Result(NamedTuple):
         finally:
             if as_json:
                 made = {"picture": drawn, "files": written}
-                print_json({**self.report, **{name: made[name] for name in made.keys() & self.report.keys()}})
+                print_json({name: made.get(name) if value is None else value for name, value in self.report.items()})
             else:
                 self.show()
                 for remark in [*self.remarks, *([", ".join(written)] if written else [])]:

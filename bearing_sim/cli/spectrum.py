@@ -130,7 +130,7 @@ def _report(scene, data, profile, result) -> dict:
         "share_at_rest": result.resting,
         "share_of_skid": result.skid,
         "share_without_result": result.missing,
-        "files": [],
+        "files": None,
         "warnings": counted(row["warnings"] for row in rows),
     }
 
