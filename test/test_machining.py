@@ -121,3 +121,10 @@ def test_what_cannot_be_machined_says_why(arguments, expected):
 def test_a_swallowed_lobe_is_told():
     ran = command("--arc-turn", "12 deg")
     assert ran.exit_code == 0 and "removed a lobe" in ran.output
+
+
+@pytest.mark.parametrize("arguments", [("--arcs", 7), ("--arcs", 6), ("--arc-turn", "70 deg", "--arcs", 5)])
+def test_arcs_that_overlap_or_leave_no_gap_are_refused(arguments):
+    """Six arcs of 60 deg press the whole ring evenly, so that no lobe is left."""
+    ran = command(*arguments)
+    assert ran.exit_code == 2 and "the arcs overlap, or leave no gap" in ran.output

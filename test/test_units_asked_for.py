@@ -123,6 +123,26 @@ def test_fields_prints_what_a_scene_may_say_and_a_misspelt_path_is_told_what_is_
     assert "twice radius" in called("fields", "bearing.inner_raceway.diameter", code=2)
 
 
+def test_observables_are_listed_as_a_table_and_as_json():
+    names = [each["name"] for each in json.loads(called("observables", "cage slip", "--json"))["observables"]]
+    assert "cage_slip" in names and "cage_slip" in called("observables", "cage slip")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "meant"),
+    [
+        (["run", "deng2017_table1", "--duration", "2e6"], "--duration 2e6: 2e+06 s is outside 1e-12 s to 1e+06 s"),
+        (["design", "deng2017_table1", "--slip-below", "110%", "--life-above", "300h"], "--slip-below 110%: 110 % is outside 0 % to 100 %"),
+        (["study", "cold-start", "--rise", "60s"], "--rise 60s: 60 s is outside 0.001 s to 10 s"),
+        (["machine", "--modulus", "3 GN"], "--modulus 3 GN: '3 GN' has the wrong dimension"),
+        (["catalog", "--bore", "60mm:50mm"], "--bore 60mm:50mm: expected a length such as 50mm, or a range such as 50mm:80mm"),
+        (["vibration", "a.npy", "--rollers", "13", "--band", "6kHz"], "--band 6kHz: expected LOW:HIGH"),
+    ],
+)
+def test_an_option_out_of_its_bounds_is_refused_with_the_bounds_in_its_unit(arguments, meant):
+    assert meant in called(*arguments, code=2)
+
+
 @pytest.mark.parametrize("command", ["uncertainty", "trade"])
 def test_a_removed_option_is_refused_with_its_successor(command):
     assert "--csv is no longer an option; give -o, --out instead" in called(command, "deng2017_table1", "--csv", "a.csv", code=2)

@@ -614,7 +614,7 @@ def test_the_command_refuses_what_does_not_go_together(tmp_path):
         (("--rollers", 13, "--channel", "acceleration", "--speed", "6000rpm", "--band", "1kHz:2kHz"), "half the sampling rate"),
         (("--rollers", 13, "--channel", "acceleration", "--speed", "30000rpm"), "too slow"),
         (("--rollers", 13, "--channel", "acceleration", "--speed", "600rpm"), "turns of the shaft"),
-        (("--rollers", 13, "--channel", "acceleration", "--speed", "600rpm", "--tolerance", "50%"), "at most 20 %"),
+        (("--rollers", 13, "--channel", "acceleration", "--speed", "600rpm", "--tolerance", "50%"), "to 20 %"),
         (("--rollers", 13, "--channel", "acceleration", "--speed", "600rpm", "--from", "5s"), "within the 1 s"),
     ):
         result = called(path, *arguments)

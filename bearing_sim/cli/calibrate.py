@@ -4,7 +4,7 @@
 import click
 from click import FloatRange
 
-from bearing_sim.cli.options import PATH, allow_outside_option, channel_sources, json_option, log_options, option, picture_option, set_option
+from bearing_sim.cli.options import PATH, allow_outside_option, json_option, log_options, option, picture_option, set_option
 from bearing_sim.cli.outputs import OutputFile
 from bearing_sim.cli.reporting import (
     UsageError,
@@ -44,7 +44,7 @@ _UNLIKELY = 0.01
 )
 @option("--cage-joint", "Name of the cage's joint in JointState messages.", default="cage", metavar="NAME")
 @json_option
-def calibrate(log, scene_name, overrides, fields, batch, confidence, out, cage, joint, cage_joint, stamps, longest_gap, **channels):
+def calibrate(log, scene_name, overrides, fields, batch, confidence, out, cage, cage_joint, reading):
     """Fit fields of a scene to the cage speed measured in RUN.mcap, within their ranges in the scene's block `uncertainty`.
 
     RUN.mcap is any rosbag2 recording in MCAP with shaft speed, radial load and measured cage speed: from bearing-sim, from any bag, or
@@ -52,7 +52,7 @@ def calibrate(log, scene_name, overrides, fields, batch, confidence, out, cage, 
     """
     scene = _scene(log, scene_name, overrides)
     warn_of_scene(scene, before_results=False)
-    measured, lines, unknown = _measured(log, scene, channels, cage, joint, stamps, cage_joint, longest_gap)
+    measured, lines, unknown = _measured(log, scene, reading, cage, cage_joint)
     announce_compilation(scene)
     from bearing_sim.studies.calibration import block_length, calibrate, cut, draw
 
@@ -81,20 +81,19 @@ def _scene(log, scene_name, overrides):
     return scene_from_yaml(scene_to_yaml(recorded), overrides, origin=f"{log}: scene in the metadata")
 
 
-def _measured(log, scene, channels, cage, joint, stamps, cage_joint, longest_gap):
+def _measured(log, scene, reading, cage, cage_joint):
     """Return the measured data, table rows that say where they come from, and for how long inputs are unknown."""
     import math
 
-    from bearing_sim.inputs.log import REQUIRED, read_input_log, source, summary_lines
+    from bearing_sim.inputs.log import REQUIRED, source, summary_lines
     from bearing_sim.messages.topics import MEASURED
     from bearing_sim.studies.calibration import Measured
 
-    names, constants = channel_sources(**channels)
     with as_usage_error(ValueError):
         if cage is not None:
-            names[MEASURED] = source(MEASURED, cage, channels["speed_unit"])
-        recorded = read_input_log(log, names, joint, stamps, cage_joint, (*REQUIRED, MEASURED), constants)
-        course = judged(recorded, scene, longest_gap)
+            reading.sources[MEASURED] = source(MEASURED, cage, reading.speed_unit)
+        recorded = reading.read(log, cage_joint=cage_joint, required=(*REQUIRED, MEASURED))
+        course = judged(recorded, scene, reading.longest_gap)
     inputs = course.at(course.instants, math.nan)  # NaN: the scene's own temperature, which may be a fitted field
     gaps = [(begin * 1e-9, end * 1e-9) for begin, end in course.gaps]
     lines = [*(("log", line) for line in summary_lines(recorded)), ("used", course.tally.counts)]

@@ -3,28 +3,27 @@
 
 import click
 
-from bearing_sim.cli.options import PATH, executor_options, json_option, option, picture_option, scene_argument, set_option, table_option
+from bearing_sim.cli.options import PATH, Amount, executor_options, json_option, option, picture_option, scene_argument, set_option, table_option
 from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
     note,
     print_rows,
-    quantity_of,
     refuse_idle_temperature,
     warn,
 )
-from bearing_sim.cli.results import Result, command, picture_into, resumed, signed
+from bearing_sim.cli.results import Result, command, resumed, signed
 
 _NONE = "none"
 
 
 @command("design")
 @scene_argument
-@option("--slip-below", "Largest cage slip, such as 10%.", required=True, metavar="SLIP")
-@option("--life-above", "Smallest life, such as 300h; the kind of life is chosen in the scene.", required=True, metavar="LIFE")
-@option("--speed-tolerance", "Tolerance of the speed, in both directions.", default="2%", metavar="FRACTION")
-@option("--load-tolerance", "Tolerance of the load, in both directions.", default="10%", metavar="FRACTION")
+@option("--slip-below", "Largest cage slip, such as 10%.", Amount("", 0.0, 1.0, "%"), required=True)
+@option("--life-above", "Smallest life, such as 300h; the kind of life is chosen in the scene.", Amount("h", 0.0, 1e9), required=True)
+@option("--speed-tolerance", "Tolerance of the speed, in both directions.", Amount("", 0.0, 0.5, "%"), default="2%")
+@option("--load-tolerance", "Tolerance of the load, in both directions.", Amount("", 0.0, 0.9, "%"), default="10%")
 @option(
     "--tolerance",
     "tolerances",
@@ -72,7 +71,6 @@ def design(
     out,
     workers,
     dask,
-    picture,
 ):
     """Map which low-point radii and D values keep the slip of SCENE below a limit and its life above another, and verify them.
 
@@ -110,12 +108,14 @@ def design(
     with resumed(out, study, raceways, parts=studied.TABLES) as journal:
         designed = studied.design(scene_name, overrides, limits, *axes, DURATION, Execution(journal, workers, dask, raceways.update), verify_level)
     designed.grid.about.update(signed(designed.grid, study).about)
-    files = studied.write_design(out.path, designed)
-    if picture is not None:
-        picture_into(picture, studied.draw, designed)
-        files.append(picture.path)
-    report = _report_design(scene, designed, files)
-    return Result(report, lambda: _print_design(report))
+    report = _report_design(scene, designed)
+    return Result(
+        report,
+        lambda: _print_design(report),
+        lambda draft: studied.draw(draft, designed),
+        files=studied.write_design(out.path, designed),
+        warnings=report["warnings"],
+    )
 
 
 def _cheapest(scene) -> str:
@@ -136,17 +136,6 @@ def _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tole
     from bearing_sim.studies.design import Limits
     from bearing_sim.sweep.conditions import Conditions, read_point, read_points, read_tolerance
 
-    found = []
-    for name, text, unit, factor, most in (
-        ("--slip-below", slip_below, "", 100.0, 100.0),
-        ("--life-above", life_above, "h", 1.0, 1e9),
-        ("--speed-tolerance", speed_tolerance, "", 1.0, 0.5),
-        ("--load-tolerance", load_tolerance, "", 1.0, 0.9),
-    ):
-        value = factor * quantity_of(name, text, unit)
-        if not 0.0 <= value <= most:
-            raise UsageError(f"{name} {text}: expected 0 to {most / factor:g}{f' {unit}' if unit else ''}")
-        found.append(value)
     if points and points_file:
         raise UsageError("--point and --points contradict each other; give one of them")
     mission = read_points(points_file) if points_file else tuple(map(read_point, points))
@@ -156,7 +145,7 @@ def _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tole
     for name in {each.field for each in off}:
         if sum(each.field == name for each in off) > 1:
             raise UsageError(f"--tolerance {name}: given more than once; give the largest")
-    return Limits(*found[:2], Conditions(*found[2:], off, mission))
+    return Limits(100.0 * slip_below, life_above, Conditions(speed_tolerance, load_tolerance, off, mission))
 
 
 def _verify_level(asked, scene) -> str | None:
@@ -177,7 +166,7 @@ def _verify_level(asked, scene) -> str | None:
     return found
 
 
-def _report_design(scene, designed, files) -> dict:
+def _report_design(scene, designed) -> dict:
     from bearing_sim.model.validity import counted
     from bearing_sim.studies.design import KINDS, STATE
 
@@ -194,7 +183,7 @@ def _report_design(scene, designed, files) -> dict:
         report[kind] = [band.found._asdict() | {"verdict": band.verdict, "verified": band.verified and band.verified._asdict()} for band in bands]
     report["widest"] = designed.widest and designed.widest._asdict()
     report["checks"] = [check._asdict() for check in designed.checks]
-    return report | {"files": list(map(str, files))}
+    return report | {"files": None}
 
 
 def _print_design(report) -> None:
@@ -221,8 +210,6 @@ def _print_design(report) -> None:
         if report["beyond_the_map"][kind]:
             click.echo(f"  {report['beyond_the_map'][kind]}")
     _print_checks(report)
-    warn(report["warnings"])
-    click.echo(", ".join(report["files"]))
 
 
 def _print_bands(condition, bands, level, verify_level) -> None:

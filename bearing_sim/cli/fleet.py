@@ -9,7 +9,6 @@ import click
 from bearing_sim.cli.options import (
     PATH,
     allow_outside_option,
-    channel_sources,
     executor_options,
     json_option,
     log_options,
@@ -23,13 +22,11 @@ from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
-    print_rows,
-    warn,
+    print_points,
 )
 from bearing_sim.cli.results import Result, command, resumed, signed
 
 _SHOWN = ("bearing", "running_hours", "revolutions", "slip_mean", "slip_p95", "slip_maximum", "above_slip_warning", "damage", "life", "status")
-_MOST_SHOWN = 40
 
 
 @command("replay-fleet")
@@ -44,7 +41,7 @@ _MOST_SHOWN = 40
 @table_option("fleet.parquet", "Results; also written: PATH.csv and")
 @executor_options
 @json_option
-def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, joint, stamps, longest_gap, out, workers, dask, **channels):
+def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, reading, out, workers, dask):
     """Run the model on many LOGS at once, one bearing each, and write one table: hours, revolutions, slip, life used, warnings.
 
     LOGS are recordings (MCAP, SQLite, bags) and measured tables (CSV, Parquet), or folders that are searched for them. Tables need a
@@ -60,6 +57,8 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
 
     bearing-sim replay-fleet scada/ --mapping scada.yaml --scene high_speed_shaft.yaml -o fleet.parquet
     """
+    from bearing_sim.cli.estimation import response_with_progress
+    from bearing_sim.cli.table import build_with_progress
     from bearing_sim.studies.fleet import OK, PARTLY, replay_fleet
     from bearing_sim.studies.fleet_logs import bearings_of, find_logs, read_bearings
     from bearing_sim.sweep.table import study_digest, write_table
@@ -69,7 +68,7 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
         raise UsageError("no logs; give files or folders, or --bearings TABLE.csv")
     if scene_name is None and bearings_path is None:
         raise UsageError("no bearing; give --scene, or --bearings TABLE.csv with a column scene")
-    reading = _reading(mapping_name, *channel_sources(**channels), joint, stamps)
+    longest_gap, reading = reading.longest_gap, _reading(mapping_name, reading)
     asked = [str(path.absolute()) for path in (*paths, *([bearings_path] if bearings_path is not None else []))]
     rows = read_bearings(bearings_path) if bearings_path is not None else []
     if not paths:
@@ -87,7 +86,12 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     bars = {"reading": reading_bar, "replay": replay_bar}
     with resumed(out, study, reading_bar, replay_bar) as journal:
         table = replay_fleet(
-            bearings, longest_gap, Execution(journal, workers, dask), lambda act, *counts: bars[act].update(*counts), _build_table, _respond
+            bearings,
+            longest_gap,
+            Execution(journal, workers, dask),
+            lambda act, *counts: bars[act].update(*counts),
+            build_with_progress,
+            response_with_progress,
         )
     files = write_table(out.path, signed(table, study))
     report, ending = _report(table, replay_bar, files), None
@@ -95,18 +99,27 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
         ending = FailedRun(f"{len(without)} of {len(table.rows)} bearings have no complete result; {files[1]} says why (columns status, reason)")
     elif partly := report["partly_used_bearings"]:
         ending = PartlyUsed(f"of the logs of {partly} bearings only a part was used; {files[1]} says why (columns status, reason)")
-    return Result(report | {"bearings": table.rows}, lambda: _print(table, report), ending=ending)
+    return Result(
+        report | {"bearings": table.rows},
+        lambda: _print(table),
+        remarks=[f"{replay_bar.computed} replays computed, {replay_bar.kept} kept from before"],
+        files=files,
+        warnings=report["warnings"],
+        ending=ending,
+    )
 
 
-def _reading(mapping_name, sources, constants, joint, stamps):
+def _reading(mapping_name, given):
     """Return how logs are read, from the options; raise `UsageError` if the mapping is invalid."""
     from bearing_sim.scene.loader import read_named
     from bearing_sim.studies.fleet_logs import Reading, mapping_of
 
-    overrides = tuple(f"{name}={_constant_field(name, value)}" for name, value in constants.items())
-    of_recordings = {"sources": tuple(sources.items()), "joint": joint, "stamps": stamps, "constants": tuple(constants.items())}
+    constants = tuple(given.constants.items())
+    overrides = tuple(f"{name}={_constant_field(name, value)}" for name, value in constants)
     text = read_named(mapping_name, "catalog/mappings", "mapping")[0] if mapping_name else ""
-    reading = Reading(text, overrides, mapping_name or "", **of_recordings)
+    reading = Reading(
+        text, overrides, mapping_name or "", sources=tuple(given.sources.items()), joint=given.joint, stamps=given.stamps, constants=constants
+    )
     if mapping_name:
         mapping_of(reading)
     return reading
@@ -125,18 +138,6 @@ def _require_a_scene(bearings) -> None:
         raise UsageError(str(bearings[0].scene))
 
 
-def _build_table(scene, temperatures) -> None:
-    from bearing_sim.cli.table import build_with_progress
-
-    build_with_progress(scene, temperatures)
-
-
-def _respond(scene):
-    from bearing_sim.cli.estimation import response_with_progress
-
-    return response_with_progress(scene)
-
-
 def _report(table, points, files) -> dict:
     from bearing_sim.model.validity import counted
     from bearing_sim.studies.fleet import STATUSES
@@ -153,16 +154,6 @@ def _report(table, points, files) -> dict:
     }
 
 
-def _print(table, report) -> None:
-    columns = [table.column(name) for name in _SHOWN]
-    names = [f"{column.name.replace('_', ' ')}{f', {column.unit}' if column.unit else ''}" for column in columns]
+def _print(table) -> None:
     worst_first = sorted(table.rows, key=lambda row: (row["status"] == "ok", -row["damage"] if row["damage"] == row["damage"] else 0.0))
-    rows = [[f"{row[name]:.4g}" if isinstance(row[name], float) else str(row[name]) for name in _SHOWN] for row in worst_first[:_MOST_SHOWN]]
-    print_rows(f"{len(table.rows)} bearings, most life used first", names, rows, words=("bearing", "status"))
-    if len(table.rows) > _MOST_SHOWN:
-        click.echo(f"... and {len(table.rows) - _MOST_SHOWN} more bearings; all are in the files")
-    reasons = Counter(f"{row['status']}: {row['reason']}" for row in table.rows if row["reason"])
-    for reason, count in reasons.most_common(5):
-        click.echo(f"{count} x {reason}")
-    warn(report["warnings"])
-    click.echo(f"{report['computed']} replays computed, {report['kept_from_before']} kept from before; {report['parquet']}, {report['csv']}")
+    print_points(f"{len(table.rows)} bearings, most life used first", table, _SHOWN, worst_first)

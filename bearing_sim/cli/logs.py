@@ -40,7 +40,7 @@ from bearing_sim.scene.loader import did_you_mean, load_scene
 @option("--time-format", "With --guess: how times are written, such as '%d/%m/%Y %H:%M:%S', or iso.", metavar="FORMAT")
 @json_option
 def import_csv(
-    data, mapping_name, out, guesses, load, speed, oil_temperature, delimiter, decimal, only, overrides, columns, units, sheet, time_format, as_json
+    data, mapping_name, out, guesses, load, speed, oil_temperature, delimiter, decimal, only, overrides, columns, units, sheet, time_format
 ):
     """Convert DATA.csv to an MCAP log for `bearing-sim replay`.
 
@@ -59,8 +59,7 @@ def import_csv(
         if mapping_name or overrides:
             raise UsageError("--guess makes a mapping; give none, and no --set")
         chosen = _pairs("--column", columns, _FIELDS), _pairs("--unit", units, _FIELDS)
-        _guess(data, out, as_json, *chosen, _constants(given), delimiter, decimal, time_format, _pairs("--only", only), sheet or "")
-        return
+        return _guess(data, out, *chosen, _constants(given), delimiter, decimal, time_format, _pairs("--only", only), sheet or "")
     if columns or units or time_format:
         raise UsageError("--column, --unit and --time-format go with --guess; a mapping is changed with --set, such as --set shaft_speed.unit=rpm")
     if not mapping_name:
@@ -77,9 +76,7 @@ def import_csv(
     with progress_bar(f"importing {data.name}", sum(map(len, table.stamps.values()))) as progress:
         write_log(table, text, data, out.path, progress, replace=out.force)
     tell_use(table.tally, data)
-    Result(_report(table, mapping, out), lambda: _print(table, mapping, data, out)).deliver(as_json)
-    if not as_json:
-        note(f"next: bearing-sim replay {out} --scene SCENE.yaml -o run.mcap; of a long log: bearing-sim spectrum SCENE.yaml {out}")
+    return Result(_report(table, mapping, out), lambda: _print(table, mapping, data, out))
 
 
 def _constants(given) -> dict[str, dict]:
@@ -126,13 +123,12 @@ def _pairs(option, texts, known=()) -> dict[str, str]:
     return found
 
 
-def _guess(data, out, as_json, *decided) -> None:
-    """Print a proposal for a mapping, and write it if there is a file for it; raise `FailedRun` if something has to be decided.
+def _guess(data, out, *decided) -> Result:
+    """Return a proposal for a mapping, and write it if there is a file for it; the command ends with `FailedRun` if something has to be decided.
 
     Parameters
     ----------
     data, out : the table, and the file of the mapping or None.
-    as_json : whether to print JSON.
     decided : the further arguments of `bearing_sim.inputs.csv_guess.guess`.
     """
     from bearing_sim.inputs.csv_guess import guess
@@ -143,13 +139,17 @@ def _guess(data, out, as_json, *decided) -> None:
     if out is not None:
         out.write_text(found.text)
     asked = "\n".join(f"  {name}: {question}" for name, question in found.questions.items())
-    Result(
+
+    def show():
+        click.echo(found.text, nl=False)
+        if out is not None:
+            note(f"{out}: check it, then: bearing-sim import-csv {data} {out} -o {data.with_suffix('.mcap').name}")
+
+    return Result(
         attributes(found, "reasons", "questions") | {"mapping": found.tree, "not_used": found.left, "out": out and str(out)},
-        lambda: click.echo(found.text, nl=False),
+        show,
         ending=FailedRun(f"the mapping is not complete; decide:\n{asked}") if asked else None,
-    ).deliver(as_json)
-    if out is not None and not as_json:
-        note(f"{out}: check it, then: bearing-sim import-csv {data} {out} -o {data.with_suffix('.mcap').name}")
+    )
 
 
 def _span(table) -> tuple[int, int]:
@@ -193,6 +193,7 @@ def _print(table, mapping, data, out) -> None:
     rows.append((f"gaps above {table.longest_step:.6g} s", f"{len(table.gaps)}" + (": " + "; ".join(gaps + more) if gaps else "")))
     rows += [("duration", f"{number((end - start) * 1e-9, 6)} s, a row every {table.spacing:.4g} s"), ("log", str(out))]
     print_table(f"{data.name} by {mapping.name}", rows)
+    note(f"next: bearing-sim replay {out} --scene SCENE.yaml -o run.mcap; of a long log: bearing-sim spectrum SCENE.yaml {out}")
 
 
 @command("mission")

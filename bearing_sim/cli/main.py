@@ -34,8 +34,8 @@ _STUDIES = _listed("""
 damage        study:damage           Compare the damage of a measured run between levels.
 clearance     study:clearance        Running clearance over speed and load, thermal runaway, and what is lost at which speed.
 friction      study:friction         Friction of a scene against makers' models.
-cold-oil      cold_oil:cold_oil      Slip and skid load over load, temperature and supply of oil, from rolling and from a skid.
-cold-start    cold_start:cold_start  A cold start over time: slip, films, temperatures and sliding power while idling and as the load comes.
+cold-oil      study:cold_oil         Slip and skid load over load, temperature and supply of oil, from rolling and from a skid.
+cold-start    study:cold_start       A cold start over time: slip, films, temperatures and sliding power while idling and as the load comes.
 extremes      study:extremes         Which variants of a scene, at its extremes, finish, are step-limited, are refused or fail.
 """)
 _STATES = _listed("""
@@ -51,8 +51,8 @@ replay-fleet  fleet:replay_fleet       Run the model on many logs at once, one b
 spectrum      spectrum:spectrum        Compute the life under a load spectrum: a table of shares of time, or a long log in classes.
 import-csv    logs:import_csv          Convert a measured table to an MCAP log.
 loads         bearings:loads           Show a scene's load distribution over rollers and slices, and the lives.
-catalog       catalog:catalog          List the bearings of the catalogue, or show one by its designation.
-new           catalog:new              Write the scene of a bearing by designation in an oil, commented.
+catalog       bearings:catalog         List the bearings of the catalogue, or show one by its designation.
+new           bearings:new             Write the scene of a bearing by designation in an oil, commented.
 machine       bearings:machine         Compute the raceway that pre-deformation machining produces.
 table         table:table              Build or inspect the table of operating points of level steady.
 uncertainty   uncertainty:uncertainty  Compute ranges of slip and life from uncertain fields, and each field's share.
@@ -61,7 +61,7 @@ vibration     vibration:vibration      Find cage speed and damage in the vibrati
 sweep         sweep:sweep              Run a scene at all combinations of field values, into a table.
 plot          plot:plot                Draw recorded runs over time or load, or the table of a sweep.
 design        design:design            Map which outer raceways keep slip and life within limits, and verify them.
-report        report:report            Make one HTML page of a sweep, a design or a recorded run.
+report        plot:report              Make one HTML page of a sweep, a design or a recorded run.
 trade         trade:trade              Measure speed against accuracy on a scene, and recommend a setting.
 bench         main:bench               Measure how fast the model is on this machine.
 compile       bench:compile_levels     Compile levels before their first run.
@@ -74,8 +74,8 @@ to-parquet    recordings:to_parquet    Export a recording as a Parquet table.
 state         main:state               Show, export and fill the stored states of bearings in service.
 view          view:view                Show a recording in rerun.
 mission       logs:mission             Write the bundled synthetic mission as an MCAP log.
-fields        fields:fields            Show the fields of a scene: unit, range, default and meaning.
-observables   fields:observables       List what a sample holds: name, unit and meaning.
+fields        bearings:fields          Show the fields of a scene: unit, range, default and meaning.
+observables   bearings:observables     List what a sample holds: name, unit and meaning.
 scenes        bearings:scenes          List the bundled scenes, bearings and oils.
 """)
 

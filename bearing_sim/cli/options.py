@@ -1,13 +1,17 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Options and arguments that several commands have."""
 
+import functools
+import inspect
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import click
 from click import Choice, FloatRange, IntRange
 
-from bearing_sim.cli.outputs import OutputFile, OutputTable
+from bearing_sim.cli.outputs import OutputFile, OutputTable, option_name
 from bearing_sim.cli.reporting import UsageError, as_usage_error
 from bearing_sim.files.outside import OPTION, allowing_outside
 from bearing_sim.scene.fidelity import LEVELS
@@ -45,6 +49,79 @@ def together(*decorators: Callable) -> Callable:
     return add
 
 
+def gathered(parameter: str, make: Callable, *options: Callable) -> Callable:
+    """Return a decorator that adds several options, which the command gets as one parameter, made of them by ``make``."""
+    names = inspect.signature(make).parameters
+
+    def add(command: Callable) -> Callable:
+        @functools.wraps(command)
+        def gathering(**given):
+            return command(**{parameter: make(**{name: given.pop(name) for name in names})}, **given)
+
+        return together(*options)(gathering)
+
+    return add
+
+
+_KINDS = {"": "fraction", "s": "time", "h": "hours", "m": "length", "rad/s": "speed", "Hz": "rate", "N": "force", "K": "temperature"}
+"""What help calls a quantity, by its SI unit."""
+
+
+class Amount(click.ParamType):
+    """The type of an option that is a quantity with a unit, or one of time, which may be a bare number of seconds; the command gets it in SI.
+
+    Parameters
+    ----------
+    unit : SI unit, ``""`` for a pure number or a percentage.
+    minimum, maximum : bounds, both included, in SI.
+    shown_in : unit of the bounds in messages.
+    """
+
+    def __init__(self, unit: str, minimum: float = -math.inf, maximum: float = math.inf, shown_in: str = ""):
+        self.name, self._declared = _KINDS.get(unit, "quantity"), (unit, "", minimum, maximum, shown_in)
+
+    def convert(self, value, param, ctx):
+        """Return the quantity in SI; `UsageError` if it is none of the unit's dimension and kind, a bare number, or out of bounds."""
+        from pydantic_core import PydanticCustomError
+
+        from bearing_sim.scene.quantity import Quantity
+
+        if not isinstance(value, str):
+            return value
+        declared, option = Quantity(*self._declared), option_name(param)
+        if declared.unit != "s" and (reason := declared.why_unit_is_needed(value)):
+            raise UsageError(f"{option}: {reason}")
+        try:
+            return declared.read(value)
+        except PydanticCustomError as error:
+            raise UsageError(f"{option} {value}: {error.message()}") from None
+
+
+class AmountRange(Amount):
+    """The type of an option that is a range of quantities, ``LOW:HIGH``; the command gets both ends in SI.
+
+    Parameters
+    ----------
+    unit : SI unit.
+    expected : what may stand here, in messages.
+    fewest : number of quantities, 2, or 1 if a single one will do, for both ends.
+    """
+
+    def __init__(self, unit: str, expected: str, fewest: int = 2):
+        super().__init__(unit)
+        self._expected, self._fewest = expected, fewest
+
+    def convert(self, value, param, ctx):
+        """Return the ends of the range in SI."""
+        if not isinstance(value, str):
+            return value
+        ends = [super(AmountRange, self).convert(part, param, ctx) for part in value.split(":")]
+        if not self._fewest <= len(ends) <= 2 or ends[0] > ends[-1]:
+            raise UsageError(f"{option_name(param)} {value}: expected {self._expected}")
+        return ends[0], ends[-1]
+
+
+SECONDS = Amount("s", 1e-12, 1e6)
 level_type = click.Choice(LEVELS)
 
 
@@ -83,7 +160,63 @@ scene_argument = together(click.argument("scene_name", metavar="SCENE"), allow_o
 """The argument for a scene, ``scene_name``, and the option that allows it to name files outside of its folder."""
 scene_options = together(scene_argument, set_option)
 """The scene, and overrides of its fields, ``overrides``."""
-log_options = together(
+
+
+class LogReading(NamedTuple):
+    """What the options of `log_options` say of a log."""
+
+    sources: dict[str, object]  # of channels in a recording, by channel
+    constants: dict[str, float]  # values [SI] of channels that are constant; a channel that no option concerns is in neither
+    joint: str  # of the shaft
+    stamps: str  # header or log
+    longest_gap: float | None  # [s]
+    speed_unit: str | None
+
+    @property
+    def is_given(self) -> bool:
+        """Whether an option concerns a channel."""
+        return bool(self.sources or self.constants)
+
+    def read(self, *paths: Path, **more):
+        """Return the input log of recordings; further parameters as of `bearing_sim.inputs.log.read_input_log`."""
+        from bearing_sim.inputs.log import read_input_log
+
+        return read_input_log(paths, self.sources, self.joint, self.stamps, constants=self.constants, **more)
+
+
+def _log_reading(
+    speed,
+    load,
+    temperature,
+    inner_ring,
+    outer_ring,
+    speed_unit,
+    load_unit,
+    temperature_unit,
+    joint,
+    stamps,
+    longest_gap,
+) -> LogReading:
+    """Return what the texts of `log_options` say."""
+    from bearing_sim.inputs.log import constant, is_constant, source
+
+    given = (
+        ("shaft_speed", speed, speed_unit),
+        ("radial_load", load, load_unit),
+        # A channel with a unit must be there: of the rings only one that is named, of the oil one that may be meant.
+        ("oil_temperature", temperature, temperature_unit if temperature or not (inner_ring or outer_ring) else None),
+        ("inner_ring_temperature", inner_ring, inner_ring and temperature_unit),
+        ("outer_ring_temperature", outer_ring, outer_ring and temperature_unit),
+    )
+    with as_usage_error(ValueError):
+        constants = {channel: constant(channel, text, unit) for channel, text, unit in given if is_constant(text)}
+        sources = {channel: source(channel, text, unit) for channel, text, unit in given if (text or unit) and channel not in constants}
+    return LogReading(sources, constants, joint, stamps, longest_gap, speed_unit)
+
+
+log_options = gathered(
+    "reading",
+    _log_reading,
     option(
         "--speed",
         "--speed-topic",
@@ -106,8 +239,18 @@ log_options = together(
         "Oil temperature, likewise, or a constant such as 60degC [default: /oil_temperature, if present, or the scene's].",
         metavar="TOPIC",
     ),
-    option("--inner-ring-temperature", "Of the inner ring as measured, likewise [default: /inner_ring_temperature, if present].", metavar="TOPIC"),
-    option("--outer-ring-temperature", "Of the outer ring as measured, likewise [default: /outer_ring_temperature, if present].", metavar="TOPIC"),
+    option(
+        "--inner-ring-temperature",
+        "inner_ring",
+        "Of the inner ring as measured, likewise [default: /inner_ring_temperature, if present].",
+        metavar="TOPIC",
+    ),
+    option(
+        "--outer-ring-temperature",
+        "outer_ring",
+        "Of the outer ring as measured, likewise [default: /outer_ring_temperature, if present].",
+        metavar="TOPIC",
+    ),
     option("--speed-unit", "Unit of the shaft speed in the log, such as rpm [default: rad/s].", metavar="UNIT"),
     option("--load-unit", "Unit of the load in the log, such as kN [default: N].", metavar="UNIT"),
     option("--temperature-unit", "Unit of the temperatures in the log [default: degC].", metavar="UNIT"),
@@ -120,29 +263,7 @@ log_options = together(
         metavar="S",
     ),
 )
-"""The options that say where a log holds what: topics, units, constants, stamps and gaps (see `channel_sources`)."""
-
-
-def channel_sources(
-    speed, load, temperature, inner_ring_temperature, outer_ring_temperature, speed_unit, load_unit, temperature_unit
-) -> tuple[dict, dict[str, float]]:
-    """Return the sources of channels in a recording, and the values [SI] of those that are constant, from the texts of `log_options`.
-
-    Both are by channel; a channel that no option concerns is in neither.
-    """
-    from bearing_sim.inputs.log import constant, is_constant, source
-
-    given = (
-        ("shaft_speed", speed, speed_unit),
-        ("radial_load", load, load_unit),
-        # A channel with a unit must be there: of the rings only one that is named, of the oil one that may be meant.
-        ("oil_temperature", temperature, temperature_unit if temperature or not (inner_ring_temperature or outer_ring_temperature) else None),
-        ("inner_ring_temperature", inner_ring_temperature, temperature_unit if inner_ring_temperature else None),
-        ("outer_ring_temperature", outer_ring_temperature, temperature_unit if outer_ring_temperature else None),
-    )
-    with as_usage_error(ValueError):
-        constants = {channel: constant(channel, text, unit) for channel, text, unit in given if is_constant(text)}
-        return {channel: source(channel, text, unit) for channel, text, unit in given if (text or unit) and channel not in constants}, constants
+"""The options that say where a log holds what: topics, units, constants, stamps and gaps; the command gets them as a `LogReading`."""
 
 
 executor_options = together(

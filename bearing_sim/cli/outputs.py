@@ -39,13 +39,19 @@ class OutputFile(click.ParamType):
             raise UsageError(f"{option_name(param)} {output}: expected a name that ends in {', '.join(self.suffixes)}")
         return output
 
+    may_exist = False  # because it is continued, or because the command itself decides whether it may replace it
+
+    def beside(self, path: Path) -> list[Path]:
+        """Return further files that this option makes, which may exist."""
+        return []
+
     def made(self, path: Path) -> list[Path]:
         """Return the files that this option makes, which must not exist unless by force."""
-        return [path]
+        return [] if self.may_exist else [path]
 
     def continued(self, path: Path) -> list[Path]:
-        """Return the files that may exist, because they are continued, or because the command itself decides whether it may replace them."""
-        return []
+        """Return the files that this option makes and that may exist."""
+        return [path, *self.beside(path)] if self.may_exist else self.beside(path)
 
     def check(self, output: Output) -> None:
         """Raise `RefusedOutput` if one of the files must not be written."""
@@ -56,11 +62,17 @@ class OutputFile(click.ParamType):
 
 
 class OutputRecording(OutputFile):
-    """The type of an option that names a recording, which is ``PATH.active`` while it is written."""
+    """The type of an option that names a recording, which is ``PATH.active`` while it is written; one that a killed run has left is set aside."""
 
-    def continued(self, path: Path) -> list[Path]:
-        """Return the recording's draft; one that a killed run has left is set aside."""
+    def beside(self, path: Path) -> list[Path]:
+        """Return the recording's draft."""
         return [path.with_name(f"{path.name}.active")]
+
+
+class OutputJournal(OutputFile):
+    """The type of an option that names a journal, to which results are appended."""
+
+    may_exist = True
 
 
 class OutputWithJournal(OutputFile):
@@ -69,13 +81,11 @@ class OutputWithJournal(OutputFile):
     Whether a file that exists may be replaced is for the command to decide once it knows its study (`bearing_sim.sweep.table.same_points`).
     """
 
-    def made(self, path: Path) -> list[Path]:
-        """Return no file."""
-        return []
+    may_exist = True
 
-    def continued(self, path: Path) -> list[Path]:
-        """Return the file and the journal."""
-        return [path, path.with_suffix(".journal")]
+    def beside(self, path: Path) -> list[Path]:
+        """Return the journal."""
+        return [path.with_suffix(".journal")]
 
 
 class OutputTable(OutputWithJournal):
@@ -94,20 +104,8 @@ class OutputTable(OutputWithJournal):
 
     def continued(self, path: Path) -> list[Path]:
         """Return the tables and the journal."""
-        tables = [path.with_name(f"{path.stem}{part}{suffix}") for part in self._parts for suffix in (".parquet", ".csv")]
-        return [*tables, path.with_suffix(".journal")]
-
-
-class OutputJournal(OutputFile):
-    """The type of an option that names a journal, to which results are appended."""
-
-    def made(self, path: Path) -> list[Path]:
-        """Return no file."""
-        return []
-
-    def continued(self, path: Path) -> list[Path]:
-        """Return the journal."""
-        return [path]
+        tables = (path.with_name(f"{path.stem}{part}{suffix}") for part in self._parts for suffix in (".parquet", ".csv"))
+        return [*tables, *self.beside(path)]
 
 
 class OutputFolder(OutputFile):

@@ -1,15 +1,16 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""``bearing-sim plot``: pictures of recorded runs and of the tables of sweeps, without a viewer."""
+"""``bearing-sim plot`` and ``report``: pictures of recorded runs and of the tables of sweeps without a viewer, and pages of any result."""
 
 import math
+from pathlib import Path
 
 import click
 from click import Choice, IntRange
 
 from bearing_sim.cli.options import PATH, option, picture_option
-from bearing_sim.cli.outputs import default_output
+from bearing_sim.cli.outputs import OutputFile, default_output
 from bearing_sim.cli.reporting import Points, UsageError, as_usage_error, note, progress_bar, tell_use
-from bearing_sim.cli.results import command
+from bearing_sim.cli.results import Result, command
 
 _TABLES = (".parquet", ".csv")
 
@@ -41,17 +42,20 @@ def plot(paths, picture, over, panels, band, quantities):
             raise UsageError("--panel and --band are for recordings; a table has --quantity")
         if over == "time":
             raise UsageError("--over time is for recordings; a sweep is drawn over what was varied, or --over load")
-        _plot_table(tables[0], picture, over, quantities)
+        draw = _of_table(tables[0], over, quantities)
     else:
         if quantities:
             raise UsageError("--quantity is for tables of sweeps; a recording has --panel")
         if over == "load" and (panels or band):
             raise UsageError("--panel and --band go with a picture over time")
-        _plot_recordings(paths, picture, over, panels, band)
-    click.echo(str(picture))
+        draw = _of_recordings(paths, over, panels, band)
+    with picture.draft() as draft:
+        draw(draft)
+    return Result({}, files=[picture.path])
 
 
-def _plot_recordings(paths, picture, over, panels, band) -> None:
+def _of_recordings(paths, over, panels, band):
+    """Return what draws recordings into a file."""
     from bearing_sim.recording.reader import Recording
     from bearing_sim.scene.loader import did_you_mean
     from bearing_sim.studies.run_plot import DEFAULT_PANELS, PANELS, SlipBand, draw_over_load, draw_over_time, read_course
@@ -72,8 +76,7 @@ def _plot_recordings(paths, picture, over, panels, band) -> None:
     for course in courses:
         simulated.setdefault(f"{course.scene.name} at level {course.scene.level}", []).append(course.name)
     title = "; ".join(f"{scene}: {', '.join(names)}" for scene, names in simulated.items())
-    with picture.draft() as draft:
-        (draw_over_load if over == "load" else draw_over_time)(draft, courses, title)
+    return lambda draft: (draw_over_load if over == "load" else draw_over_time)(draft, courses, title)
 
 
 def _band_of(course, samples):
@@ -105,7 +108,8 @@ def _band_of(course, samples):
     return times, low, high
 
 
-def _plot_table(path, picture, over, quantities) -> None:
+def _of_table(path, over, quantities):
+    """Return what draws a table into a file."""
     from bearing_sim.sweep.pictures import draw
     from bearing_sim.sweep.table import read_any_table, written_by_us
 
@@ -114,23 +118,25 @@ def _plot_table(path, picture, over, quantities) -> None:
         if over == "load":
             if quantities:
                 raise UsageError("--quantity does not go with --over load, which draws slip and life")
-            _plot_over_load(path, picture, table)
-        elif table.about and "axes" not in table.about:
-            raise UsageError(
-                f"{path}: the table of another study ({table.about.get('kind', 'unknown')}), not of a sweep; `bearing-sim report` shows it"
-            )
-        elif not table.about:
-            raise UsageError(f"{path}: there is no .parquet beside it, so what was varied is not known; give --over load, or the .parquet")
-        else:
-            with picture.draft() as draft:
-                draw(draft, table, quantities)
+            return _over_load(path, table)
+    if not table.about:
+        raise UsageError(f"{path}: there is no .parquet beside it, so what was varied is not known; give --over load, or the .parquet")
+    if "axes" not in table.about:
+        kind = table.about.get("kind", "unknown")
+        raise UsageError(f"{path}: the table of another study ({kind}), not of a sweep; `bearing-sim report` shows it")
+
+    def draw_sweep(draft):
+        with as_usage_error(ValueError), written_by_us(path):
+            draw(draft, table, quantities)
+
+    return draw_sweep
 
 
 _LOAD, _SPEED = "operating.radial_load", "operating.shaft_speed"
 
 
-def _plot_over_load(path, picture, table) -> None:
-    """Draw slip and life of a table over its column of loads."""
+def _over_load(path, table):
+    """Return what draws slip and life of a table over its column of loads into a file."""
     from bearing_sim.scene.display import heading
     from bearing_sim.scene.loader import SceneError, scene_from_yaml
     from bearing_sim.studies.run_plot import draw_table_over_load
@@ -166,5 +172,25 @@ def _plot_over_load(path, picture, table) -> None:
     ]
     about = table.about
     where = condition_title(about) if "scene" in about else path.name
-    with picture.draft() as draft:
-        draw_table_over_load(draft, points, scene, where, heading(life))
+    return lambda draft: draw_table_over_load(draft, points, scene, where, heading(life))
+
+
+@command("report")
+@click.argument("source", metavar="RESULT")
+@option("-o", "--out", "The page [default: RESULT.html, or report.html in a folder].", OutputFile(".html", ".htm"), metavar="PATH.html")
+def report(source, out):
+    """Make one page of RESULT: scene and bearing, tables, pictures, warnings, where it comes from, and the command that made it.
+
+    RESULT is a table written by `sweep`, `design` or `study` (.parquet, or the .csv beside it), a recording written by `run` or `replay`
+    (.mcap, or a bag's folder), or a folder of such files. The page is self-contained: it
+    needs no network and no other file.
+    """
+    from bearing_sim.studies.report_page import page_of
+
+    result = Path(source)
+    if source == "validation" and not result.exists():
+        raise UsageError("report validation is no longer part of the program; from a checkout of the repository: python test/validation report")
+    out = out or default_output(result / "report.html" if result.is_dir() else result.with_suffix(".html"))
+    page = page_of(result, tell_use)
+    out.write_text(page)
+    return Result({}, remarks=[f"{out}: {len(page.encode()) / 1e6:.1f} MB"])

@@ -10,29 +10,28 @@ import click
 from click import FloatRange
 
 from bearing_sim.cli.estimation import band_numbers, band_rows, response_with_progress
-from bearing_sim.cli.options import PATH, allow_outside_option, channel_sources, flag, json_option, log_options, option, set_option, verbose_option
+from bearing_sim.cli.options import PATH, allow_outside_option, flag, json_option, log_options, option, set_option, verbose_option
 from bearing_sim.cli.outputs import OutputFile, OutputRecording, recording_into
 from bearing_sim.cli.reporting import (
     FailedRun,
     UsageError,
     announce_compilation,
-    as_ending,
     as_usage_error,
     attributes,
     command_line,
+    judged,
     note,
-    print_json,
     print_table,
     progress_bar,
+    scene_of,
     suggest_level,
-    tell_idle_temperature,
     tell_use,
     unknown_report,
     warn_of_limits,
     warn_of_scene,
     warnings_report,
 )
-from bearing_sim.cli.results import command
+from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.display import hours
 
 
@@ -55,23 +54,7 @@ from bearing_sim.scene.display import hours
 @log_options
 @verbose_option
 @json_option
-def replay(
-    logs,
-    scene_name,
-    from_recording,
-    overrides,
-    out,
-    rrd,
-    rate,
-    state_file,
-    serial,
-    joint,
-    stamps,
-    longest_gap,
-    verbose,
-    as_json,
-    **channels,
-):
+def replay(logs, scene_name, from_recording, overrides, out, rrd, rate, state_file, serial, reading, verbose):
     """Run the model on IN.mcap and write inputs and outputs to OUT.mcap.
 
     IN.mcap is any rosbag2 recording, MCAP or sqlite3: a file, finished or not, a bag's folder, or several that belong together. It holds
@@ -87,61 +70,53 @@ def replay(
     if serial and state_file is None:
         raise UsageError("--serial names the bearing of a state: give --state-file as well")
     if from_recording:
-        if len(logs) > 1 or overrides or rate or rrd or state_file or any(channels.values()):
+        if len(logs) > 1 or overrides or rate or rrd or state_file or reading.is_given:
             raise UsageError("--from-recording takes exactly one recording and reproduces it as it was; it can be combined with -o and --json only")
-        reproduce(logs[0], out, as_json)
-        return
+        return _reproduction(logs[0], out)
     import numpy as np
 
-    from bearing_sim.inputs.log import read_input_log
-    from bearing_sim.inputs.profile import judge
     from bearing_sim.recording.writer import COMMAND, McapSink
     from bearing_sim.runtime.replay import replay
-    from bearing_sim.scene.loader import load_scene
-    from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+    from bearing_sim.simulation import IntegrationError, Simulation
     from bearing_sim.sweep.grading import graded
     from bearing_sim.watchers.stored_state.keeper import RECORD, StateKeeper
     from bearing_sim.watchers.stored_state.state_file import checked_serial
 
-    names, constants = channel_sources(**channels)
-    with as_ending():
-        for log in logs:
-            _require_one_log(log, scene_name)
-        scene = load_scene(scene_name, overrides)
-        suggest_level(scene)
-        warn_of_scene(scene)
-        recorded = read_input_log(logs, names, joint, stamps, constants=constants)
-        held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
-        course = judge(recorded, scene.accepted_inputs, held, longest_gap, scene.heat.law)
-        tell_idle_temperature(scene, recorded)
-        seconds = course.end * 1e-9
-        with ExitStack() as stack:
-            recording, names_of = None, [log.name for log in logs]
-            keeper = None if state_file is None else StateKeeper(state_file, scene, checked_serial(serial), once=True)
-            if keeper is not None:
-                stack.callback(keeper.close)
-            if out is not None:
-                out.check()  # again, now that scene and logs have been read
-                metadata = {"bearing_sim_replay": {"log": " ".join(names_of)}, COMMAND: {"command": command_line()}}
-                metadata |= {RECORD: keeper.record} if keeper is not None else {}
-                recording = stack.enter_context(recording_into(out, McapSink(out.path, scene, course.start_ns, metadata, replace=out.force)))
-            watchers = []
-            if rrd is not None:
-                from bearing_sim.view.worker import RerunFile
+    for log in logs:
+        _require_one_log(log, scene_name)
+    scene = scene_of(scene_name, overrides)
+    suggest_level(scene)
+    warn_of_scene(scene)
+    recorded = reading.read(*logs)
+    course = judged(recorded, scene, reading.longest_gap)
+    seconds = course.end * 1e-9
+    with ExitStack() as stack:
+        recording, names_of = None, [log.name for log in logs]
+        keeper = None if state_file is None else StateKeeper(state_file, scene, checked_serial(serial), once=True)
+        if keeper is not None:
+            stack.callback(keeper.close)
+        if out is not None:
+            out.check()  # again, now that scene and logs have been read
+            metadata = {"bearing_sim_replay": {"log": " ".join(names_of)}, COMMAND: {"command": command_line()}}
+            metadata |= {RECORD: keeper.record} if keeper is not None else {}
+            recording = stack.enter_context(recording_into(out, McapSink(out.path, scene, course.start_ns, metadata, replace=out.force)))
+        watchers = []
+        if rrd is not None:
+            from bearing_sim.view.worker import RerunFile
 
-                watchers.append(stack.enter_context(RerunFile(scene, stack.enter_context(rrd.draft()), course.start_ns, seconds)))
-            announce_compilation(scene)
-            choice = _choice(scene, course)
-            response = response_with_progress(scene) if scene.estimation.is_asked else None
-            started = time.perf_counter()
-            with suppress(IntegrationError):  # the replay itself will report it
-                warm = choice.get("model", Simulation)(scene)
-                warm.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
-                if warm.takes_profiles:
-                    warm.advance_profile(np.array([1e-6]), np.array([warm.inputs]))
-            start_up = time.perf_counter() - started
-            progress = stack.enter_context(progress_bar(f"replaying {', '.join(names_of)}", seconds))
-            result = replay(scene, course, recording, watchers, rate, progress, keeper=keeper, response=response, **choice)
+            watchers.append(stack.enter_context(RerunFile(scene, stack.enter_context(rrd.draft()), course.start_ns, seconds)))
+        announce_compilation(scene)
+        choice = _choice(scene, course)
+        response = response_with_progress(scene) if scene.estimation.is_asked else None
+        started = time.perf_counter()
+        with suppress(IntegrationError):  # the replay itself will report it
+            warm = choice.get("model", Simulation)(scene)
+            warm.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
+            if warm.takes_profiles:
+                warm.advance_profile(np.array([1e-6]), np.array([warm.inputs]))
+        start_up = time.perf_counter() - started
+        progress = stack.enter_context(progress_bar(f"replaying {', '.join(names_of)}", seconds))
+        result = replay(scene, course, recording, watchers, rate, progress, keeper=keeper, response=response, **choice)
     warnings = graded(scene, result.warnings, result.worst_samples, ("slip", "life"))
     for event in keeper.news(0.0) + keeper.events(0.0) if keeper is not None else []:
         note(f"{event.level.name.lower().replace('ok', 'note')}: {event.text}")
@@ -152,23 +127,19 @@ def replay(
             f"note: the outputs are coarser than the motion: cage slip changes by {100 * jump.slip:.3g} points within the {jump.interval:.3g} s "
             f"before {jump.time:.6g} s, drawn as a straight line; take finer outputs with --rate, such as --rate {finer:g}"
         )
-    if as_json:
-        stored = {} if keeper is None else {"state": keeper.summary()}
-        print_json(
-            {
-                **_report(result, course, recorded, scene, out),
-                "outputs_coarse_at": jump and jump._asdict(),
-                **stored,
-                **warnings_report(scene, warnings),
-                "start_up_seconds": start_up,
-            }
-        )
-    else:
-        _print(result, course, recorded, scene, out, keeper)
-    warn_of_limits(scene, warnings, verbose)
-    if result.given_up:
-        raise FailedRun(result.given_up)
-    tell_use(course.tally, recorded.path, *([course.unknown_event.text] if course.unknown_seconds else []))
+    report = {
+        **_report(result, course, recorded, scene, out),
+        "outputs_coarse_at": jump and jump._asdict(),
+        **({} if keeper is None else {"state": keeper.summary()}),
+        **warnings_report(scene, warnings),
+        "start_up_seconds": start_up,
+    }
+    return Result(
+        report,
+        lambda: _print(result, course, recorded, scene, out, keeper),
+        after=lambda: warn_of_limits(scene, warnings, verbose),
+        ending=FailedRun(result.given_up) if result.given_up else None,
+    )
 
 
 def _require_one_log(log: Path, scene_name: str) -> None:
@@ -310,15 +281,8 @@ def _below(below: float, turning: float, rule: str, slip_from_speed: float) -> s
     return f"{span_text(below)} of {span_text(turning)} that the shaft turns, {100 * below / turning:.3g} % ({rule})"
 
 
-def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
-    """Compute a recorded run again, record it if requested, and print a summary.
-
-    Parameters
-    ----------
-    path : a recording of bearing-sim, finished or not.
-    out : the `bearing_sim.files.outputs.Output` of the new recording, or None.
-    as_json : whether to print JSON.
-    """
+def _reproduction(path: Path, out) -> Result:
+    """Compute a recorded run again, and record it if there is an output for it."""
     from bearing_sim.files.provenance import git_hash, package_version
     from bearing_sim.recording.reader import Recording
     from bearing_sim.recording.writer import McapSink
@@ -340,12 +304,12 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
     tell_use(recording.tally, path)
     was = {name: recording.metadata.get(name, "") for name in ("package_version", "git_hash")}
     now = {"package_version": package_version(), "git_hash": git_hash()}
-    if as_json:
-        report = {"recording": str(path), "out": out and str(out), "scene": recording.scene.name, "level": recording.scene.level}
-        bands = {name: vars(each) for name, each in result.bands.items()}
-        print_json({**report, **vars(result), "bands": bands, "recorded_with": was, "repeated_with": now, "read": recording.tally.report()})
-        return
+    report = {"recording": str(path), "out": out and str(out), "scene": recording.scene.name, "level": recording.scene.level}
+    bands = {name: vars(each) for name, each in result.bands.items()}
+    report |= {**vars(result), "bands": bands, "recorded_with": was, "repeated_with": now, "read": recording.tally.report()}
     rows = [
+        ("used", recording.tally.counts),
+        *(("not read", text) for text in recording.tally.unread),
         ("level", recording.scene.level),
         ("recorded with", _version(was)),
         ("reproduced with", _version(now)),
@@ -360,8 +324,7 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
         *((f"band of {name}", _differing(each)) for name, each in result.bands.items()),
         ("recording", f"{out}; bearing-sim compare {path} {out} shows the differences" if out else "none"),
     ]
-    rows[:0] = [("used", recording.tally.counts), *(("not read", text) for text in recording.tally.unread)]
-    print_table(f"{path.name} reproduced on {recording.scene.name}", rows)
+    return Result(report, lambda: print_table(f"{path.name} reproduced on {recording.scene.name}", rows))
 
 
 def _differing(band) -> str:

@@ -3,6 +3,7 @@
 
 import csv
 import errno
+import functools
 import importlib.util
 import json
 import math
@@ -13,6 +14,7 @@ import sys
 import textwrap
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -92,24 +94,19 @@ def require_whole(context: click.Context) -> None:
 
 
 @contextmanager
-def as_usage_error(*kinds: type[Exception]) -> Iterator[None]:
-    """Convert exceptions of these types to a `UsageError`."""
+def as_usage_error(*kinds: type[Exception], ending: type[Ending] = UsageError) -> Iterator[None]:
+    """Convert exceptions of these types to a `UsageError`, or to another ending of the command."""
     try:
         yield
     except kinds as error:
-        raise UsageError(str(error)) from None
+        raise ending(str(error)) from None
 
 
-@contextmanager
-def as_failed_run(*kinds: type[Exception]) -> Iterator[None]:
-    """Convert exceptions of these types to a `FailedRun`."""
-    try:
-        yield
-    except kinds as error:
-        raise FailedRun(str(error)) from None
+as_failed_run = functools.partial(as_usage_error, ending=FailedRun)
+"""Convert exceptions of these types to a `FailedRun`."""
 
 
-_FAILURES = ("IntegrationError", "NoWebViewer")  # errors of the package that no other argument or input would have avoided
+_FAILURES = ("IntegrationError", "NoWebViewer", "ViewerFailed")  # errors of the package that no other argument or input would have avoided
 _DISK_FAILED = (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)
 
 
@@ -187,27 +184,15 @@ def unknown_report(profile) -> dict:
     return {"read": profile.tally.report(), **seconds, "verdict": profile.verdict}
 
 
-def quantity_of(option: str, text: str, unit: str) -> float:
-    """Return the quantity of an option in SI; raise `UsageError` if it is none of that unit's dimension and kind, or a bare number.
+def scene_of_point(name: str, overrides: Sequence[str], level: str | None = None, fields: Sequence[str] = (), before_results: bool = True):
+    """Return a scene as `scene_of` for results in thermal equilibrium, and print what is implausible about it as `warn_of_scene`.
 
-    A time may be a bare number, of seconds.
+    An oil temperature that its network computes is refused, among the overrides and further fields (`refuse_idle_temperature`).
     """
-    from bearing_sim.scene.quantity import Quantity, to_si
-
-    if unit != "s" and (reason := Quantity(unit, "").why_unit_is_needed(text)):
-        raise UsageError(f"{option}: {reason}")
-    try:
-        return to_si(text, unit)
-    except ValueError as error:
-        raise UsageError(f"{option}: {error}") from None
-
-
-def seconds_of(duration: str, option: str = "--duration") -> float:
-    """Return the time of an option in seconds; raise `UsageError` if it is not a time of at most 1e6 s."""
-    seconds = quantity_of(option, duration, "s")
-    if not 0.0 < seconds <= 1e6:
-        raise UsageError(f"{option} {duration}: expected more than 0 and at most 1e6 s")
-    return seconds
+    scene = scene_of(name, overrides, level)
+    refuse_idle_temperature(scene, [*overrides, *fields])
+    warn_of_scene(scene, before_results)
+    return scene
 
 
 ARGUMENTS = "bearing_sim.arguments"
@@ -370,6 +355,8 @@ def _finite(value):
 
 def write_csv(output: Output, rows: Sequence[Mapping]) -> None:
     """Write rows to a CSV table; the keys of the first row are the columns of all."""
+    if not rows:
+        raise UsageError(f"{output}: nothing to write")
     with output.draft() as draft, open(draft, "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0])
         writer.writeheader()
@@ -411,7 +398,29 @@ def print_rows(
     parts = _parts(least, available, keys)
     for number, part in enumerate(parts):
         some = "" if len(parts) == 1 else f" ({number + 1} of {len(parts)})"
-        _print_part(f"{title}{some}", [columns[place] for place in part], [[row[place] for place in part] for row in rows], words, available)
+        headings, cells = [columns[place] for place in part], [[row[place] for place in part] for row in rows]
+        _draw(f"{title}{some}", headings, [cells], _widths(headings, cells, words, available), [name in words for name in headings])
+
+
+def print_points(title: str, table, names: Sequence[str], rows: Sequence[Mapping] | None = None, keys: int = 1, most: int = 50) -> None:
+    """Print columns of a table of many points, of a long one the first rows, and the commonest reasons why points have no or no good result.
+
+    Parameters
+    ----------
+    title : above the table.
+    table : a `bearing_sim.sweep.table.Table`.
+    names : of its columns.
+    rows : in another order.
+    keys : as of `print_rows`.
+    most : number of rows that are printed.
+    """
+    rows = table.rows if rows is None else rows
+    columns = [column_texts(table.column(name), [row[name] for row in rows[:most]]) for name in names]
+    print_rows(title, [heading for heading, _ in columns], zip(*(texts for _, texts in columns)), words=("bearing", "status"), keys=keys)
+    if len(rows) > most:
+        click.echo(f"... and {len(rows) - most} more; all are in the files")
+    for reason, count in Counter(f"{row['status']}: {row['reason']}" for row in rows if row["reason"]).most_common(5):
+        click.echo(f"{count} x {reason}")
 
 
 def column_texts(column, values) -> tuple[str, list[str]]:
@@ -450,10 +459,6 @@ def _parts(least: Sequence[int], available: int, keys: int) -> list[list[int]]:
         part.append(place)
         left -= needed
     return [*parts, first + part]
-
-
-def _print_part(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], words: Container[str], width: int) -> None:
-    _draw(title, columns, [rows], _widths(columns, rows, words, width), [name in words for name in columns])
 
 
 def _draw(title: str, columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]], widths: Sequence[int], left: Sequence[bool]) -> None:

@@ -19,41 +19,49 @@ from bearing_sim.files.outputs import FORCE, Output, protecting_inputs
 class Result(NamedTuple):
     """What a command found: for programs, for people and for files.
 
-    The options ``--json``, ``--picture`` and the CSV table of ``-o`` are answered from it, unless the command takes them as parameters itself.
+    The options ``--json``, ``--picture`` and the CSV table of ``-o`` are answered from it; a command need not take them as parameters.
     """
 
     report: Mapping  # the one object that --json prints
-    show: Callable[[], None]  # prints it for people
+    show: Callable[[], None] = lambda: None  # prints it for people
     draw: Callable[[Path], None] | None = None  # draws it into a file
-    rows: Sequence[Mapping] = ()  # of the table
+    rows: Sequence[Mapping] | None = None  # of the table
     remarks: Sequence[str] = ()  # printed after it for people
     warnings: Sequence[str] = ()  # printed on stderr after it
+    files: Sequence[Path] = ()  # that were written
+    after: Callable[[], None] | None = None  # prints on stderr what comes after the result
     code: int = 0  # of exit
     ending: Ending | None = None  # raised at the end: what was found is no success
 
     def deliver(self, as_json: bool = False, picture: Output | None = None, table: Output | None = None) -> None:
-        """Write the table and the picture that are asked for, and print the result as JSON or for people."""
-        if table is not None:
-            write_csv(table, self.rows)
-        if picture is not None:
-            picture_into(picture, self.draw)
-        if as_json:
-            print_json(self.report)
-        else:
-            self.show()
-            for remark in self.remarks:
-                click.echo(remark)
+        """Write the table and the picture that are asked for, and print the result as JSON or for people, also where they cannot be written.
+
+        Where a report has None for them, ``picture`` and ``files`` say what was written.
+        """
+        written, drawn = [str(file) for file in self.files], None
+        try:
+            if table is not None and self.rows is not None:
+                write_csv(table, self.rows)
+                written.append(str(table))
+            if picture is not None and self.draw is not None:
+                with picture.draft() as draft:
+                    self.draw(draft)
+                written.append(drawn := str(picture))
+        finally:
+            if as_json:
+                made = {"picture": drawn, "files": written}
+                print_json({name: made.get(name) if value is None else value for name, value in self.report.items()})
+            else:
+                self.show()
+                for remark in [*self.remarks, *([", ".join(written)] if written else [])]:
+                    click.echo(remark)
         warn(self.warnings)
+        if self.after is not None:
+            self.after()
         if self.ending is not None:
             raise self.ending
         if self.code:
             sys.exit(self.code)
-
-
-def picture_into(picture: Output, draw: Callable, *arguments) -> None:
-    """Draw a picture: ``draw`` gets the path of its draft and the arguments."""
-    with picture.draft() as draft:
-        draw(draft, *arguments)
 
 
 @contextmanager
@@ -116,7 +124,8 @@ class Command(click.Command):
     def _delivered(self, context):
         """Run the command with the parameters that it takes, and deliver its result by the others."""
         taken = inspect.signature(self.callback).parameters
-        ours = {name: context.params.pop(name) for name in ("as_json", "picture", "table") if name in context.params and name not in taken}
+        ours = {name: context.params[name] for name in ("as_json", "picture", "table") if name in context.params}
+        context.params = {name: value for name, value in context.params.items() if name in taken or name not in ours}
         result = super().invoke(context)
         if not isinstance(result, Result):
             return result

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from click import Choice, FloatRange, IntRange
 
 from bearing_sim.cli.estimation import estimation_with_progress, live_band_numbers, live_band_rows
-from bearing_sim.cli.options import json_option, option, scene_options, verbose_option
+from bearing_sim.cli.options import SECONDS, json_option, option, scene_options, verbose_option
 from bearing_sim.cli.outputs import OutputFile, OutputRecording, recording_into
 from bearing_sim.cli.reporting import (
     Unsettled,
@@ -18,16 +18,13 @@ from bearing_sim.cli.reporting import (
     announce_compilation,
     command_line,
     print_groups,
-    print_json,
     progress_bar,
-    refuse_idle_temperature,
-    seconds_of,
+    scene_of_point,
     suggest_level,
     warn_of_limits,
-    warn_of_scene,
     warnings_report,
 )
-from bearing_sim.cli.results import command
+from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.display import number
 
 _BLOCK = 10  # samples
@@ -38,8 +35,8 @@ _LEAST_SAMPLES = 100  # of the shortest run that can be judged
 
 @command("run")
 @scene_options
-@option("--duration", "Simulated time, such as 0.5 or '300 ms' [default: until slip and life rest, at least 0.5 s].", metavar="S")
-@option("--at-most", "End a run without --duration here [default: 1000 s, or 2000 cage turns if these take longer].", metavar="S")
+@option("--duration", "Simulated time, such as 0.5 or '300 ms' [default: until slip and life rest, at least 0.5 s].", SECONDS)
+@option("--at-most", "End a run without --duration here [default: 1000 s, or 2000 cage turns if these take longer].", SECONDS)
 @option("--level", "Level of fidelity, instead of the scene's.", metavar="LEVEL")
 @option("--start", "How the cage begins.", Choice(["rolling", "skid"]), default="rolling")
 @option(
@@ -53,7 +50,7 @@ _LEAST_SAMPLES = 100  # of the shortest run that can be judged
 @option("--uncertainty", "Also compute ranges of slip and life from N samples of uncertain fields.", IntRange(2, 65536), metavar="N")
 @verbose_option
 @json_option
-def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, uncertainty, verbose, as_json):
+def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, uncertainty, verbose):
     """Run SCENE (a bundled scene or a YAML file) under its constant conditions, from ideal rolling or a skid, until it has settled.
 
     A run has settled when cage slip is known to 0.05 points and life to 2 %, and neither is going to change by more. One that has not
@@ -68,7 +65,6 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
     """
     from bearing_sim.messages.events import validity_event
     from bearing_sim.model.validity import outside
-    from bearing_sim.scene.loader import load_scene
     from bearing_sim.simulation import Simulation, start_sample
     from bearing_sim.sweep.grading import graded
     from bearing_sim.sweep.states import SKID, other_states, skid_start, state_rows
@@ -77,17 +73,13 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
 
     if duration is not None and at_most is not None:
         raise UsageError("--at-most is for a run without --duration; give one of them")
-    seconds = seconds_of(duration) if duration is not None else None
-    most = seconds_of(at_most, "--at-most") if at_most is not None else None
-    scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
-    refuse_idle_temperature(scene, overrides)
+    scene = scene_of_point(scene_name, overrides, level)
     suggest_level(scene)
-    warn_of_scene(scene)
-    plan = _plan(scene, seconds, most, rate)
+    plan = _plan(scene, duration, at_most, rate)
     estimation, corrected = estimation_with_progress(scene), _corrected_table(scene)
     with ExitStack() as stack:
-        sinks = _sinks(stack, scene, seconds, plan.interval, out, rrd)
-        until = "" if seconds else f" until it has settled, at most {plan.longest:.4g} s"
+        sinks = _sinks(stack, scene, duration, plan.interval, out, rrd)
+        until = "" if duration else f" until it has settled, at most {plan.longest:.4g} s"
         progress = stack.enter_context(progress_bar(f"running {scene.name}{until}", plan.longest))
         started = time.perf_counter()
         announce_compilation(scene, with_states=True)
@@ -109,20 +101,17 @@ def run(scene_name, overrides, duration, at_most, level, start, rate, out, rrd, 
                 sink.write(validity_event(outcome.simulated, each))
     report = {**_report(simulation, outcome, wall, first - started), **warnings_report(scene, warnings), **_states_report(others, start)}
     report |= live_band_numbers(estimation.newest) if estimation is not None else {}
-    bands = _bands(scene, uncertainty) if uncertainty else None
-    if as_json:
-        print_json({**report, "uncertainty": bands} if bands else report)
-    else:
-        _print(report, scene, bands, estimation, state_rows(others, start) if math.isfinite(outcome.slip) else [], verbose)
-    warn_of_limits(scene, warnings, verbose)
-    if seconds is None and not outcome.settled:
-        raise Unsettled(f"not settled: {outcome.reason}; give more time with --at-most")
+    if uncertainty:
+        from bearing_sim.cli.uncertainty import bands_of
 
-
-def _bands(scene, samples) -> dict:
-    from bearing_sim.cli.uncertainty import bands_of
-
-    return bands_of(scene, samples)[1]
+        report["uncertainty"] = bands_of(scene, uncertainty)[1]
+    unsettled = duration is None and not outcome.settled
+    return Result(
+        report,
+        lambda: _print(report, scene, estimation, state_rows(others, start) if math.isfinite(outcome.slip) else [], verbose),
+        after=lambda: warn_of_limits(scene, warnings, verbose),
+        ending=Unsettled(f"not settled: {outcome.reason}; give more time with --at-most") if unsettled else None,
+    )
 
 
 class _Plan(NamedTuple):
@@ -225,11 +214,11 @@ def _states_report(others, start) -> dict:
     return {"start": start, "other_states": states, "skid_load": others.skid_load, "ring_resonance": ring or None}
 
 
-def _print(report, scene, bands, estimation, states, verbose) -> None:
+def _print(report, scene, estimation, states, verbose) -> None:
     from bearing_sim.studies.sheet import sheet
 
     ranges = list(live_band_rows(estimation.newest, scene)) if estimation is not None else []
-    if bands:
+    if bands := report.get("uncertainty"):
         from bearing_sim.cli.uncertainty import band_rows
 
         ranges += band_rows(bands)

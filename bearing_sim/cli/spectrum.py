@@ -8,7 +8,7 @@ import click
 
 from bearing_sim.cli.options import (
     PATH,
-    channel_sources,
+    SECONDS,
     executor_options,
     json_option,
     log_options,
@@ -23,20 +23,28 @@ from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
     judged,
-    note,
-    print_rows,
+    print_points,
     print_table,
     refuse_idle_temperature,
     scene_of,
-    seconds_of,
+    unknown_report,
     warn,
     warn_of_scene,
 )
-from bearing_sim.cli.results import Result, command, picture_into, resumed, signed
+from bearing_sim.cli.results import Result, command, resumed, signed
 
-_MOST_SHOWN = 20
 _EQUILIBRIUM = "of thermal equilibrium at each point; while a bearing warms up, its oil is thicker and its life longer (bearing-sim replay)"
 _MOST_CLASSES = 1000  # each that a log has time in is a run
+
+
+def _counts(context, option, classes: str) -> tuple[int, int, int]:
+    match = re.fullmatch(r"(\d{1,3})x(\d{1,3})(?:x(\d{1,3}))?", classes.strip().lower())
+    counts = tuple(int(text or 1) for text in match.groups()) if match else (0, 0, 0)
+    if not 1 <= math.prod(counts) <= _MOST_CLASSES:
+        raise UsageError(
+            f"--classes {classes}: expected numbers of classes of speed, load and oil temperature such as 8x8x2, {_MOST_CLASSES} at most"
+        )
+    return counts
 
 
 @command("spectrum")
@@ -44,14 +52,14 @@ _MOST_CLASSES = 1000  # each that a log has time in is a run
 @click.argument("data", type=PATH, metavar="TABLE.csv|LOG.mcap")
 @set_option
 @option("--level", "Level of fidelity, instead of the scene's.", metavar="LEVEL")
-@option("--duration", "Shortest simulated time per point; extended until it has settled.", default="0.5 s", metavar="S")
-@option("--classes", "Classes of speed, load and oil temperature of a log.", default="8x8x2", metavar="NxNxN")
+@option("--duration", "Shortest simulated time per point; extended until it has settled.", SECONDS, default="0.5 s")
+@option("--classes", "Classes of speed, load and oil temperature of a log.", default="8x8x2", metavar="NxNxN", callback=_counts)
 @log_options
 @table_option("spectrum_life.parquet", "Points; also written: PATH.csv and")
 @executor_options
 @picture_option("Draw shares of time, loads and shares of damage")
 @json_option
-def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamps, longest_gap, out, workers, dask, picture, **channels):
+def spectrum(scene_name, data, overrides, level, duration, classes, reading, out, workers, dask):
     """Compute the life of SCENE under a load spectrum, with slip and share of damage at each point.
 
     TABLE.csv has a line for each operating point: its share of the time, or its hours, shaft speed and radial load and, optionally, axial
@@ -70,48 +78,36 @@ def spectrum(scene_name, data, overrides, level, duration, classes, joint, stamp
     from bearing_sim.sweep.table import study_digest, write_table
     from bearing_sim.sweep.tasks import Execution
 
-    seconds, counts = seconds_of(duration), _counts(classes)
-    names, constants = channel_sources(**channels)
     profile = None
     scene = scene_of(scene_name, overrides, level)
     if is_text(data):
-        if names or constants:
+        if reading.is_given:
             raise UsageError(f"{data} is a table of operating points; --speed, --load and the other options of logs do not go with it")
         found = read_spectrum(data)
         if any(point.oil_temperature is not None for point in found.points):
             refuse_idle_temperature(scene, ["lubricant.temperature"])
     else:
-        from bearing_sim.inputs.log import read_input_log
-
-        profile = judged(read_input_log([data], names, joint, stamps, constants=constants), scene, longest_gap)
-        found = studied.spectrum_of_log(profile, scene.lubricant.temperature, counts)
+        profile = judged(reading.read(data), scene, reading.longest_gap)
+        found = studied.spectrum_of_log(profile, scene.lubricant.temperature, classes)
     warn_of_scene(scene)
     warn(found.notes)
     announce_compilation(scene)
-    points, study = Points("spectrum", len(found.points)), study_digest("spectrum", scene, found, seconds)
+    points, study = Points("spectrum", len(found.points)), study_digest("spectrum", scene, found, duration)
     with resumed(out, study, points) as journal:
-        result = studied.evaluate(scene, found, seconds, Execution(journal, workers, dask, points.update))
+        result = studied.evaluate(scene, found, duration, Execution(journal, workers, dask, points.update))
     result.table.about.update(signed(result.table, study).about, source=str(data))
     files = write_table(out.path, result.table)
-    if picture is not None:
-        picture_into(picture, studied.draw, result.table)
-        files = (*files, picture.path)
-    report = _report(scene, data, profile, result, files)
-    return Result(report | {"points": result.table.rows}, lambda: _print(scene, report, result), warnings=report["warnings"])
+    report = _report(scene, data, profile, result)
+    return Result(
+        report | {"points": result.table.rows},
+        lambda: _print(scene, report, result),
+        lambda draft: studied.draw(draft, result.table),
+        files=files,
+        warnings=report["warnings"],
+    )
 
 
-def _counts(classes: str) -> tuple[int, int, int]:
-    match = re.fullmatch(r"(\d{1,3})x(\d{1,3})(?:x(\d{1,3}))?", classes.strip().lower())
-    counts = tuple(int(text or 1) for text in match.groups()) if match else (0, 0, 0)
-    if not 1 <= math.prod(counts) <= _MOST_CLASSES:
-        raise UsageError(
-            f"--classes {classes}: expected numbers of classes of speed, load and oil temperature such as 8x8x2, {_MOST_CLASSES} at most"
-        )
-    return counts
-
-
-def _report(scene, data, profile, result, files) -> dict:
-    from bearing_sim.cli.reporting import unknown_report
+def _report(scene, data, profile, result) -> dict:
     from bearing_sim.inputs.gate import covered
     from bearing_sim.model.validity import counted
     from bearing_sim.studies.design import life_name
@@ -134,7 +130,7 @@ def _report(scene, data, profile, result, files) -> dict:
         "share_at_rest": result.resting,
         "share_of_skid": result.skid,
         "share_without_result": result.missing,
-        "files": list(map(str, files)),
+        "files": None,
         "warnings": counted(row["warnings"] for row in rows),
     }
 
@@ -145,30 +141,9 @@ def _print(scene, report, result) -> None:
     from bearing_sim.studies.spectrum import by_damage
 
     rows = by_damage(result.table)
-    columns = ["share [%]", "speed [rpm]", "load", "oil [°C]", "slip [%]", "life [h]", "damage [%]", "S_0", "status"]
-    if any(row["axial_load"] for row in rows):
-        columns.insert(3, "axial load")
-    shown = [
-        [
-            number(row["share"], 3),
-            number(row["shaft_speed"], 4),
-            force(row["radial_load"]),
-            *([force(row["axial_load"])] if "axial load" in columns else []),
-            number(row["oil_temperature"], 3),
-            number(row["cage_slip"], 3),
-            hours(row["modified_rating_life"]).removesuffix(" h"),
-            number(row["damage_share"], 3),
-            number(row["static_safety"], 3),
-            row["status"],
-        ]
-        for row in rows[:_MOST_SHOWN]
-    ]
-    print_rows(f"{scene.name} at level {scene.level}: points, the most harmful first", columns, shown, words=("status",))
-    if len(rows) > _MOST_SHOWN:
-        click.echo(f"... and {len(rows) - _MOST_SHOWN} more points; all are in the files")
-    for row in rows:
-        if row["reason"]:
-            note(f"{row['status']} at {number(row['shaft_speed'], 4)} rpm, {force(row['radial_load'])}: {row['reason']}")
+    axial = ["axial_load"] if any(row["axial_load"] for row in rows) else []
+    names = ("share", "shaft_speed", "radial_load", *axial, "oil_temperature", "cage_slip", "modified_rating_life", "damage_share", "static_safety")
+    print_points(f"{scene.name} at level {scene.level}: points, the most harmful first", result.table, (*names, "status"), rows, most=20)
 
     def lasting(share):
         """Return a share of the time in words, with its hours where the spectrum has any."""
@@ -203,6 +178,5 @@ def _print(scene, report, result) -> None:
             ("at rest", lasting(result.resting)),
             *([("temperatures", _EQUILIBRIUM)] if scene.heat.law == "network" else []),
             *log,
-            ("written", ", ".join(report["files"])),
         ],
     )

@@ -140,7 +140,7 @@ def export(name, out):
 
         with out.draft() as draft:
             export_days(draft, days, as_parquet=suffix == ".parquet")
-    click.echo(f"{out}: {len(days)} day{'s' * (len(days) != 1)}")
+    return Result({}, remarks=[f"{out}: {len(days)} day{'s' * (len(days) != 1)}"])
 
 
 @command("merge")
@@ -194,4 +194,4 @@ def adopt(name, scene_name, overrides, serial):
         file.write(state)
     finally:
         file.close()
-    click.echo(f"{path}: {', '.join(changes) or 'nothing has changed'}")
+    return Result({}, remarks=[f"{path}: {', '.join(changes) or 'nothing has changed'}"])

@@ -8,6 +8,8 @@ from click import FloatRange, IntRange
 
 from bearing_sim.cli.options import (
     PATH,
+    SECONDS,
+    Amount,
     allow_outside_option,
     csv_option,
     json_option,
@@ -23,19 +25,18 @@ from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
     as_usage_error,
-    column_texts,
     judged,
+    print_points,
     print_rows,
     print_table,
     progress_bar,
-    quantity_of,
-    refuse_idle_temperature,
     scene_of,
+    scene_of_point,
     unknown_report,
     warn_of_scene,
 )
-from bearing_sim.cli.results import Result, command, picture_into, signed
-from bearing_sim.scene.display import number
+from bearing_sim.cli.results import Result, command, signed
+from bearing_sim.scene.display import force, number
 
 
 @command("damage")
@@ -90,18 +91,16 @@ def friction(scene_name, overrides, series):
 
     With heat.law network SCENE is in thermal equilibrium, as in `bearing-sim run`; where there is none, the command fails and says why.
     """
-    from bearing_sim.scene.display import force, power
+    from bearing_sim.scene.display import power
     from bearing_sim.studies.friction import SERIES, compare, series_of
     from bearing_sim.studies.sheet import temperatures, temperatures_text
 
     announce_compilation()
-    scene = scene_of(scene_name, overrides)
-    refuse_idle_temperature(scene, overrides)
+    scene = scene_of_point(scene_name, overrides, before_results=False)
     series = " ".join(series.upper().split()) if series else series_of(scene.bearing.designation or scene.bearing.name)
     if series not in SERIES:
         named = scene.bearing.designation or scene.bearing.name
         raise UsageError(f"--series: makers publish constants for series {', '.join(SERIES)}; name that of {named!r}, or the nearest")
-    warn_of_scene(scene, before_results=False)
     with as_usage_error(ValueError):
         found = compare(scene, series)
     warm = temperatures(found.temperatures)
@@ -129,11 +128,11 @@ def friction(scene_name, overrides, series):
 @scene_options
 @option("--speed", "speeds", "Shaft speeds [default: 9 from 20 to 120 % of the scene's].", metavar="START:STOP:N")
 @option("--load", "loads", "Radial loads, or one [default: 7 from 0.5 to 3.5 times the scene's].", metavar="START:STOP:N")
-@option("--life-above", "Life below which it counts as lost.", default="10 h", metavar="LIFE")
+@option("--life-above", "Life below which it counts as lost.", Amount("h"), default="10 h")
 @option("-o", "--out", "Also write the table, and PATH.csv.", OutputTable(), metavar="PATH.parquet")
 @picture_option("Draw the map; lines with one load")
 @json_option
-def clearance(scene_name, overrides, speeds, loads, life_above, out, picture):
+def clearance(scene_name, overrides, speeds, loads, life_above, out):
     """Map the running clearance of SCENE over speed and load, in thermal equilibrium where it has a thermal network.
 
     Says at which speeds the clearance is gone, the fit of the shaft is lost, the life is too short, and above which heat closes the bearing
@@ -158,23 +157,21 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out, picture):
     )
     with as_usage_error(ValueError):
         grid = [sorted(read_axis(f"{field}={text}", written=True).values) for field, text in defaults]
-        least = quantity_of("--life-above", life_above, "h")
-    files, study = [], study_digest("clearance", scene, grid, least)
+    files, study = [], study_digest("clearance", scene, grid, life_above)
     if out is not None:
         require_same_study(out, study)
     with progress_bar("points", math.prod(map(len, grid))) as show, as_usage_error(ValidationError):
-        found = map_clearance(scene, *grid, least, show)
+        found = map_clearance(scene, *grid, life_above, show)
     if out is not None:
         require_same_study(out, study)
         files += write_table(out.path, signed(found.table, study))
-    if picture is not None:
-        picture_into(picture, draw, _title(scene, overrides), found)
-        files.append(picture.path)
     words, losses = in_words(found), [each._asdict() for each in found.losses]
     return Result(
         {"scene": scene.name, "heat": scene.heat.law, "found": words, "losses": losses, "points": found.table.rows},
-        lambda: _print_clearances(found.table),
-        remarks=[*words, *([", ".join(map(str, files))] if files else [])],
+        lambda: print_points(f"{scene.name}: running clearance, heat.law {scene.heat.law}", found.table, _CLEARANCE_SHOWN, keys=2),
+        lambda draft: draw(draft, _title(scene, overrides), found),
+        remarks=words,
+        files=files,
     )
 
 
@@ -207,10 +204,155 @@ _CLEARANCE_SHOWN = (
 )
 
 
-def _print_clearances(table) -> None:
-    headings, columns = zip(*(column_texts(table.column(name), table.values(name)) for name in _CLEARANCE_SHOWN))
-    title = f"{table.about['scene']}: running clearance, heat.law {table.about['heat']}"
-    print_rows(title, headings, zip(*columns), words=("status",), keys=2)
+_LOAD = Amount("N", 1e-6, 1e8)
+
+
+def _prepare_turning(scene) -> None:
+    """Print what is implausible about a scene and compile what it needs; raise `UsageError` if its shaft does not turn."""
+    if not scene.operating.shaft_speed:
+        raise UsageError("operating.shaft_speed: 0; slip is studied while the shaft turns: give a speed")
+    warn_of_scene(scene, before_results=False)
+    announce_compilation(scene, with_states=True)
+
+
+@command("cold-oil")
+@scene_options
+@option("--supply", "supplies", "Supply of oil; can be repeated  [default: oil_bath, circulating, oil_jet].", multiple=True)
+@option("--temperature", "temperatures", "Oil temperature; can be repeated  [default: 0 to 80 °C].", Amount("K"), multiple=True)
+@option("--load", "loads", "Radial load; can be repeated  [default: 0.08 to 3 times the minimum load].", Amount("N"), multiple=True)
+@picture_option("Draw the map")
+@json_option
+def cold_oil(scene_name, overrides, supplies, temperatures, loads):
+    """Map the slip of SCENE over load and oil temperature, from ideal rolling and from a skid, by supply of oil.
+
+    Says below which load a skid lasts, and where a skid depends on how fast the shaft runs up. All parts are as warm as the oil.
+    """
+    from bearing_sim.simulation import IntegrationError
+    from bearing_sim.studies.cold_oil import SUPPLIES, TEMPERATURES, draw_map, run_ups, skid_map
+
+    scene = scene_of(scene_name, overrides)
+    _prepare_turning(scene)
+    celsius = [round(each - 273.15, 9) for each in temperatures] or TEMPERATURES
+    with as_usage_error(IntegrationError):
+        found = skid_map(scene, supplies or SUPPLIES, celsius, loads)
+        run_up = run_ups(scene, found)
+    parts = {"points": found.points, "skid_loads": found.skid_loads, "run_ups": run_up}
+    return Result(
+        {"scene": scene.name, "minimum_load": found.minimum_load, **{name: [one._asdict() for one in each] for name, each in parts.items()}},
+        lambda: _print_skids(scene, found, run_up),
+        lambda draft: draw_map(found, draft, f"{scene.name}: slip with cold oil"),
+    )
+
+
+def _print_skids(scene, found, run_up) -> None:
+    for supply in dict.fromkeys(point.supply for point in found.points):
+        columns = [point.celsius for point in found.skid_loads if point.supply == supply]
+        rows = [
+            (force(load), *(_slips(point) for point in found.points if (point.supply, point.load) == (supply, load)))
+            for load in dict.fromkeys(point.load for point in found.points)
+        ]
+        rows.append(("skid load", *(force(each.load) for each in found.skid_loads if each.supply == supply)))
+        title = f"{scene.name}, {supply}: cage slip [%], and from a skid where that differs; minimum load {force(found.minimum_load)}"
+        print_rows(title, ("load", *(f"{number(each)} °C" for each in columns)), rows)
+    if run_up:
+        rows = [
+            (each.supply, force(each.load), f"{number(each.celsius)} °C", f"{number(each.seconds)} s", f"{number(100 * each.slip, 3)} %")
+            for each in run_up
+        ]
+        print_rows("slip after a run-up from rest", ("supply", "load", "oil", "run-up", "cage slip"), rows, words=("supply",))
+
+
+def _slips(point) -> str:
+    rolling, skid = number(100 * point.rolling, 3), number(100 * point.skid, 3)
+    return rolling if rolling == skid else f"{rolling} / {skid}"
+
+
+@command("cold-start")
+@allow_outside_option
+@click.argument("scene_name", metavar="[SCENE]", required=False)
+@set_option
+@option("--load", "loads", "Load while idling; can be repeated  [default: 5 and 30 % of the minimum load].", _LOAD, multiple=True)
+@option("--loaded", "Load afterwards  [default: 0.1 of the dynamic load rating].", _LOAD)
+@option("--idling", "Time under the first load.", SECONDS, default="1 h")
+@option("--temperature", "Of all parts, the oil and the air at the start.", Amount("K"), default="0 degC")
+@option("--rise", "Time in which the load rises, at most 10 s.", Amount("s", 1e-3, 10.0), default="1 s")
+@picture_option("Draw the courses", "-o", "--out")
+@json_option
+def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise):
+    """Follow SCENE from a cold start: it idles, its losses warm it, then the load comes, until it is near thermal equilibrium.
+
+    Once from ideal rolling and once from a skid.  A second table says what the load does to the cage if it comes earlier, and to a warm machine that
+    idles again: the largest sliding power of a contact, before and while the load rises.  Without SCENE: the NU 232 of a wind gearbox, in a bath.
+    """
+    from bearing_sim.studies.cold_start import DEFAULT_OVERRIDES, DEFAULT_SCENE, SHARES, cold_scene, draw_courses
+    from bearing_sim.studies.cold_start import cold_start as follow
+
+    scene = scene_of(scene_name or DEFAULT_SCENE, [*(() if scene_name else DEFAULT_OVERRIDES), *overrides])
+    scene = cold_scene(scene, temperature)
+    _prepare_turning(scene)
+    with progress_bar("cold start", len(loads or SHARES)) as show:
+        found = follow(scene, loads, loaded, idling, temperature, rise, show)
+    return Result(
+        _courses_report(scene, found),
+        lambda: [_print_course(scene, found, load) for load in dict.fromkeys(course.load for course in found.courses)],
+        lambda draft: draw_courses(found, draft, f"{scene.name}: cold start from {temperature - 273.15:g} °C"),
+    )
+
+
+def _courses_report(scene, found) -> dict:
+    from bearing_sim.model.sample import NODE_OBSERVABLES
+
+    courses = [
+        {
+            **course._asdict(),
+            "instants": [each._asdict() | {"temperatures": dict(zip(NODE_OBSERVABLES, each.temperatures))} for each in course.instants],
+        }
+        for course in found.courses
+    ]
+    return {"scene": scene.name, **found._asdict(), "courses": courses, "loadings": [each._asdict() for each in found.loadings]}
+
+
+_INSTANTS = 12  # instants of a course
+
+
+def _print_course(scene, found, load) -> None:
+    from bearing_sim.studies.cold_start import ROLLING, SKID
+
+    share = f"{number(100 * load / found.minimum_load, 3)} % of the minimum load"
+    title = f"{scene.name}: idling under {force(load)}, {share}, then {force(found.loaded)}"
+    pair = {course.start: course for course in found.courses if course.load == load}
+    skid, rolling = pair[SKID], pair[ROLLING]
+    marked = {round(k * (len(skid.instants) - 1) / (_INSTANTS - 1)) for k in range(_INSTANTS)}
+    rows = []
+    for k in sorted(marked):
+        at, beside = skid.instants[k], min(rolling.instants, key=lambda each: abs(each.time - skid.instants[k].time))
+        warmth = [f"{each - 273.15:.0f}" for each in at.temperatures]
+        asperities = "" if math.isnan(at.asperity_share) else f"{100 * round(at.asperity_share, 6):.2g}"
+        films = f"{1e6 * at.film:.3g}", f"{100 * at.film_left:.3g}", asperities
+        slips = f"{100 * at.cage_slip:.3g}", f"{100 * beside.cage_slip:.3g}"
+        rows.append((f"{at.time / 60:.3g}", *slips, *films, f"{at.sliding_power:.3g}", *warmth))
+    parts = ("shaft", "inner", "rollers", "outer", "housing", "oil")
+    columns = ("time [min]", "slip [%]", "slip from rolling [%]", "film [µm]", "film left [%]", "asperities [%]", "sliding [W]", *parts)
+    print_rows(f"{title}; temperatures in °C", columns, rows)
+    rows = [
+        (
+            f"{each.time / 60:.3g}",
+            "skid" if each.start == SKID else "rolling",
+            f"{100 * each.cage_slip:.3g}",
+            f"{each.idling_power:.3g}",
+            f"{each.contact_power:.3g}",
+            f"{1e-6 * each.intensity:.3g}",
+            f"{each.energy:.3g}",
+            "never" if math.isinf(each.rolls_after) else f"{each.rolls_after:.3g}",
+        )
+        for each in found.loadings
+        if each.load == load
+    ]
+    columns = (
+        *("time [min]", "from", "slip [%]", "worst contact idling [W]", "as the load comes [W]", "intensity [W/mm²]", "energy [J]"),
+        "rolls after [s]",
+    )
+    print_rows("if the load comes at that time; the last lines: if a warm machine has idled again", columns, rows, words=("from",))
 
 
 @command("extremes")

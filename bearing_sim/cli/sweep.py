@@ -1,24 +1,19 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim sweep``: a scene at every combination of values."""
 
-from collections import Counter
 from contextlib import suppress
 
-import click
-
-from bearing_sim.cli.options import executor_options, json_option, option, picture_option, scene_argument, set_option, table_option
+from bearing_sim.cli.options import SECONDS, executor_options, json_option, option, picture_option, scene_argument, set_option, table_option
 from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
-    column_texts,
-    print_rows,
+    print_points,
     refuse_idle_temperature,
     scene_of,
-    seconds_of,
     warn,
 )
-from bearing_sim.cli.results import Result, command, picture_into, resumed, signed
+from bearing_sim.cli.results import Result, command, resumed, signed
 
 
 @command("sweep")
@@ -33,12 +28,12 @@ from bearing_sim.cli.results import Result, command, picture_into, resumed, sign
 )
 @set_option
 @option("--level", "Level of fidelity, instead of the scene's.", metavar="LEVEL")
-@option("--duration", "Shortest simulated time per point; extended until it has settled.", default="0.5 s", metavar="S")
+@option("--duration", "Shortest simulated time per point; extended until it has settled.", SECONDS, default="0.5 s")
 @table_option("sweep.parquet", "Results; also written: PATH.csv and")
 @executor_options
 @picture_option("Draw the results")
 @json_option
-def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, picture, as_json):
+def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, picture):
     """Run SCENE at every combination of values, on all cores, until each point has settled.
 
     Slip, lives, loads and powers are means over the last fifth of a run, largest loads are those over the roller pitch of cage rotation
@@ -52,7 +47,6 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
     from bearing_sim.sweep.grid import plan_sweep, point_count, read_axis
     from bearing_sim.sweep.tasks import run_tasks
 
-    seconds = seconds_of(duration)
     varied = [read_axis(text, written=True) for text in axes]
     count = point_count(varied)
     _check_sweep(varied, level)
@@ -65,22 +59,22 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
     from bearing_sim.sweep.table import study_digest, write_table
 
     points = Points("sweep", count)
-    plan = plan_sweep(scene_name, [*overrides, *([f"level={level}"] if level else [])], varied, seconds)
+    plan = plan_sweep(scene_name, [*overrides, *([f"level={level}"] if level else [])], varied, duration)
     first = next(each for each in plan.scenes if not isinstance(each, SceneError))
     refuse_idle_temperature(first, [*overrides, *(axis.field.path for axis in varied)])
     study = study_digest("sweep", [(axis.field.path, axis.values) for axis in plan.axes], plan.duration, list(map(_defined, plan.scenes)))
     with resumed(out, study, points) as journal:
         table = plan.table(run_tasks(plan.tasks, journal, workers, dask, points.update))
     files = write_table(out.path, signed(table, study))
-    drawn = None
-    try:
-        if picture is not None:
-            picture_into(picture, draw, table)
-            drawn = picture
-    finally:  # what was computed is told, also where the picture cannot be written
-        report = _report_sweep(table, points, files, drawn)
-        result = Result(report | {"points": table.rows}, lambda: _print_sweep(table, report))
-        result.deliver(as_json)
+    report = _report_sweep(table, points, files)
+    return Result(
+        report | {"points": table.rows},
+        lambda: _print_sweep(table, report),
+        lambda draft: draw(draft, table),
+        remarks=[f"{points.computed} points computed, {points.kept} kept from before"],
+        files=files,
+        warnings=report["warnings"],
+    )
 
 
 def _defined(scene):
@@ -97,7 +91,7 @@ def _check_sweep(axes, level) -> None:
         raise UsageError("--level and --vary level= contradict each other; give one of them")
 
 
-def _report_sweep(table, points, files, picture) -> dict:
+def _report_sweep(table, points, files) -> dict:
     from bearing_sim.model.validity import counted
 
     statuses = table.values("status")
@@ -109,7 +103,7 @@ def _report_sweep(table, points, files, picture) -> dict:
         **{f"{status}_points": statuses.count(status) for status in ("ok", "unsettled", "failed", "refused")},
         "parquet": str(files[0]),
         "csv": str(files[1]),
-        "picture": picture and str(picture),
+        "picture": None,
         "warnings": counted(row["warnings"] for row in table.rows),
     }
 
@@ -117,15 +111,6 @@ def _report_sweep(table, points, files, picture) -> dict:
 def _print_sweep(table, report) -> None:
     from bearing_sim.sweep.pictures import default_quantities
 
-    names = (*(axis["field"] for axis in table.about["axes"]), *default_quantities(table), "shaft_power", "status")
-    shown = table.rows if len(table.rows) <= 60 else table.rows[:50]
-    headings, columns = zip(*(column_texts(table.column(name), [row[name] for row in shown]) for name in names))
-    print_rows(f"{report['scene']} at level {report['level']}", headings, zip(*columns), words=("status",), keys=len(table.about["axes"]))
-    if len(shown) < len(table.rows):
-        click.echo(f"... and {len(table.rows) - len(shown)} more points; all are in the files")
-    reasons = Counter(f"{row['status']}: {row['reason']}" for row in table.rows if row["reason"])
-    for reason, count in reasons.most_common(5):
-        click.echo(f"{count} x {reason}")
-    warn(report["warnings"])
-    counts = f"{report['computed']} points computed, {report['kept_from_before']} kept from before"
-    click.echo(f"{counts}; {', '.join(filter(None, (report['parquet'], report['csv'], report['picture'])))}")
+    varied = [axis["field"] for axis in table.about["axes"]]
+    title = f"{report['scene']} at level {report['level']}"
+    print_points(title, table, [*varied, *default_quantities(table), "shaft_power", "status"], keys=len(varied))

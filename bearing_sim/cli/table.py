@@ -54,7 +54,9 @@ def table(scene_name, overrides, rebuild, workers, points, out, shared, bands, d
         raise UsageError("--dask goes with --bands only: the table itself is built by the threads of this machine; leave --dask out, or add --bands")
     asked = [_condition(text, scene) for text in points]
     if shared is not None:
-        table, quality = _taken(shared, scene)
+        from bearing_sim.levels.steady.shared_table import take_table
+
+        table, quality = take_table(shared, scene)
     else:
         announce_compilation(scene)
         table, quality = build_with_progress(scene, None, workers, rebuild)
@@ -110,13 +112,6 @@ def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
             correction = obtain_correction(scene, temperatures, workers, lambda done, most: show(done / most), rebuild)
     with progress_bar("operating points", 1.0) as show:
         return obtain_table(scene, temperatures, workers, lambda done, most: show(done / most), rebuild, correction and (lambda: correction))
-
-
-def _taken(path, scene):
-    """Return the table of a file that another machine has written, and its quality, and keep it for the scene."""
-    from bearing_sim.levels.steady.shared_table import take_table
-
-    return take_table(path, scene)
 
 
 def _condition(text, scene) -> tuple[float, float, float, float]:

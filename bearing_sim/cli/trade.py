@@ -8,7 +8,6 @@ import click
 from click import FloatRange, IntRange
 
 from bearing_sim.cli.options import (
-    channel_sources,
     csv_option,
     json_option,
     level_type,
@@ -93,9 +92,7 @@ def trade(
     mapping_name,
     windows,
     window_turns,
-    joint,
-    stamps,
-    longest_gap,
+    reading,
     factor,
     error,
     journal,
@@ -104,7 +101,6 @@ def trade(
     front,
     chosen,
     quick,
-    **channels,
 ):
     """Measure real-time factor and errors in slip, largest roller load and life of every level and tolerance or step on SCENE.
 
@@ -119,8 +115,7 @@ def trade(
     overrides = [*overrides, "front=null"]  # a front that is to be written need not be there yet
     scene = scene_of(scene_name, overrides)  # fails before anything is compiled
     _require_use(scene, front, chosen, factor, error, quick)
-    reading = mapping_name, joint, stamps, channels
-    course = _course(course_name, scene, reading, windows, window_turns, longest_gap, quick)
+    course = _course(course_name, scene, mapping_name, reading, windows, window_turns, quick)
     announce_compilation()
     from bearing_sim.studies.trade import draw, recommend, trade
 
@@ -214,11 +209,10 @@ def _write_chosen(out, scene, name: str, found, best, by_wants: bool) -> str:
     return f"{out} has the fields of {setting.name}"
 
 
-def _course(name, scene, reading, windows, window_turns, longest_gap, quick):
+def _course(name, scene, mapping_name, reading, windows, window_turns, quick):
     """Return what `bearing_sim.studies.trade.trade` takes as the course: a name, or a function of the scene."""
-    mapping_name, joint, stamps, channels = reading
     if name in _COURSES:
-        if mapping_name or any(channels.values()) or longest_gap:
+        if mapping_name or reading.is_given or reading.longest_gap:
             raise UsageError(f"--course {name} is built in; --mapping and options that say where a log holds what go with a log")
         return name
     path = Path(name)
@@ -226,7 +220,7 @@ def _course(name, scene, reading, windows, window_turns, longest_gap, quick):
         from bearing_sim.scene.errors import did_you_mean
 
         raise UsageError(f"--course {name}: no such file or built-in course{did_you_mean(name, _COURSES)}; built in: {', '.join(_COURSES)}")
-    profile = judged(_read(path, mapping_name, joint, stamps, channels), scene, longest_gap)
+    profile = judged(_read(path, mapping_name, reading), scene, reading.longest_gap)
     segment = profile.segment(None, scene.lubricant.temperature)
     times = segment.instants * 1e-9
 
@@ -240,14 +234,12 @@ def _course(name, scene, reading, windows, window_turns, longest_gap, quick):
     return windows_in
 
 
-def _read(path, mapping_name, joint, stamps, channels):
+def _read(path, mapping_name, reading):
     """Return the input log of a recording or, with a mapping, of a table."""
     from bearing_sim.inputs.csv_import import input_log, load_mapping, read_table
-    from bearing_sim.inputs.log import read_input_log
 
-    names, constants = channel_sources(**channels)
     if mapping_name:
-        if names or constants:
+        if reading.is_given:
             raise UsageError("--mapping says what the columns are; give constants there, and leave out the options for topics")
         return input_log(read_table(path, load_mapping(mapping_name)[0]), path)
     from bearing_sim.studies.fleet_logs import is_text
@@ -255,7 +247,7 @@ def _read(path, mapping_name, joint, stamps, channels):
     if path.is_file() and is_text(path):
         hint = f"propose one with: bearing-sim import-csv --guess {path} -o mapping.yaml"
         raise UsageError(f"--course {path} is a table, which needs a mapping that says which columns are what (--mapping): {hint}")
-    return read_input_log(path, names, joint, stamps, constants=constants)
+    return reading.read(path)
 
 
 def rows_of(found) -> list[dict]:

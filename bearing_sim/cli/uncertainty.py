@@ -15,13 +15,11 @@ from bearing_sim.cli.reporting import (
     judged,
     note,
     print_table,
-    refuse_idle_temperature,
-    scene_of,
+    scene_of_point,
     unknown_report,
-    warn_of_scene,
     write_csv,
 )
-from bearing_sim.cli.results import Result, command, picture_into
+from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities, shown, without_dimensions, without_range
 
@@ -39,7 +37,7 @@ SEED = 2017
 @csv_option("Write all points; also written: PATH.journal, from which an interrupted run resumes.", OutputWithJournal())
 @picture_option("Draw ranges and shares")
 @json_option
-def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, workers, dask, table, picture):
+def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, workers, dask, table):
     """Compute quantiles (5, 50 and 95 %) of slip and life of SCENE, with uncertain fields drawn from the ranges in its block `uncertainty`.
 
     With N samples and d ranges the bearing is computed N (d + 2) times; Sobol' indices show which fields the spread comes from.
@@ -49,9 +47,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     """
     from bearing_sim.sweep.tasks import Journal
 
-    scene = scene_of(scene_name, overrides)
-    refuse_idle_temperature(scene, overrides)
-    warn_of_scene(scene, before_results=False)
+    scene = scene_of_point(scene_name, overrides, before_results=False)
     scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
     from bearing_sim.studies.uncertainty_propagation import rounded_up
     from bearing_sim.sweep.table import note_points, same_points, study_digest
@@ -66,13 +62,20 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
             write_csv(table, _rows(found))
             note_points(journal, digest, table.path)
     name = scene.name if log is None else f"{scene.name} under {log.name}"
-    if picture is not None:
+
+    def draw(draft):
         from bearing_sim.studies.run_plot import life_label
         from bearing_sim.studies.uncertainty_propagation import draw
 
         title = f"{name}: {len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
-        picture_into(picture, draw, title, found, life_label([scene]), course and course.middles)
-    return Result({"scene": scene.name, "log": log and log.name, **report, **unknown}, lambda: print_bands(name, report))
+        draw(draft, title, found, life_label([scene]), course and course.middles)
+
+    return Result(
+        {"scene": scene.name, "log": log and log.name, **report, **unknown},
+        lambda: print_bands(name, report),
+        draw,
+        files=[table.path] if table is not None else [],
+    )
 
 
 def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, workers=None, dask=None):

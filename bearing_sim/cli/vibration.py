@@ -7,62 +7,100 @@ import click
 import numpy as np
 from click import IntRange
 
-from bearing_sim.cli.options import PATH, allow_outside_option, csv_option, flag, json_option, option, picture_option
-from bearing_sim.cli.reporting import (
-    UsageError,
-    print_rows,
-    print_table,
-    quantity_of,
-    tell_use,
-    write_csv,
+from bearing_sim.cli.options import (
+    PATH,
+    SECONDS,
+    Amount,
+    AmountRange,
+    allow_outside_option,
+    csv_option,
+    flag,
+    gathered,
+    json_option,
+    option,
+    picture_option,
 )
+from bearing_sim.cli.reporting import UsageError, announce_compilation, print_rows, print_table, tell_use
 from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.loader import load_bearing, load_scene
 
 _LARGEST_PARTS = 100_000
+_LENGTH = Amount("m", 1e-9)
 _MARGIN = 1.5  # times the largest slip of the model and of draws of its uncertain fields (assumption: draws are few)
 _CAGE = "the cage, or a roller at each turn of the cage"
 _SOURCES = {"lines": "by its own lines", "recorded": "as recorded", "given": "as given; it has no clear lines of its own"}
 
 
+def _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, measured):
+    """Return the geometry by the options, and the name of the scene."""
+    from bearing_sim.watchers.vibration.analysis import Geometry
+
+    if sum(each is not None for each in (bearing, scene_name, rollers)) != 1:
+        raise UsageError("the number of rollers must be known: give one of --bearing, --scene and --rollers")
+    if rollers is not None:
+        if measured:
+            raise UsageError("--measured-geometry goes with --bearing or --scene; with --rollers give --roller-diameter and --pitch-diameter")
+        if (roller_diameter is None) != (pitch_diameter is None):
+            raise UsageError("--roller-diameter and --pitch-diameter go together")
+        if roller_diameter is None:
+            return Geometry(rollers, name=f"{rollers} rollers"), scene_name
+        size = roller_diameter / pitch_diameter
+        if not 0.02 <= size <= 0.5 or rollers * math.asin(min(size, 1.0)) > 1.001 * math.pi:
+            raise UsageError(
+                f"{rollers} rollers of {1e3 * roller_diameter:g} mm do not go on a circle of {1e3 * pitch_diameter:g} mm; check the diameters"
+            )
+        return Geometry(rollers, size, True, f"{rollers} rollers"), scene_name
+    if roller_diameter is not None or pitch_diameter is not None:
+        raise UsageError("--roller-diameter and --pitch-diameter go with --rollers")
+    chosen = load_bearing(bearing) if bearing is not None else load_scene(scene_name).bearing
+    return Geometry(chosen.roller.count, chosen.roller.diameter / chosen.pitch_diameter, measured, chosen.designation or chosen.name), scene_name
+
+
+_bearing_options = gathered(
+    "bearing",
+    _geometry,
+    option("--bearing", "Designation such as 'NU 205', or a bundled bearing; its rollers and diameters are used.", metavar="BEARING"),
+    option("--scene", "scene_name", "Scene whose bearing it is, instead.", metavar="SCENE"),
+    option("--rollers", "Number of rollers, where the bearing is not known otherwise.", IntRange(3, 400), metavar="Z"),
+    option("--roller-diameter", "Diameter of the rollers as measured, such as 7.5mm.", _LENGTH),
+    option("--pitch-diameter", "Diameter of their pitch circle as measured, such as 38.5mm.", _LENGTH),
+    flag("--measured-geometry", "measured", "The diameters of --bearing or --scene were measured on this bearing."),
+)
+
+
 @command("vibration")
 @click.argument("data", type=PATH, metavar="FILE")
 @allow_outside_option
-@option("--bearing", "Designation such as 'NU 205', or a bundled bearing; its rollers and diameters are used.", metavar="BEARING")
-@option("--scene", "scene_name", "Scene whose bearing it is, instead.", metavar="SCENE")
-@option("--rollers", "Number of rollers, where the bearing is not known otherwise.", IntRange(3, 400), metavar="Z")
-@option("--roller-diameter", "Diameter of the rollers as measured, such as 7.5mm.", metavar="LENGTH")
-@option("--pitch-diameter", "Diameter of their pitch circle as measured, such as 38.5mm.", metavar="LENGTH")
-@flag("--measured-geometry", "The diameters of --bearing or --scene were measured on this bearing.")
-@option("--speed", "Shaft speed, about, such as 600rpm; it is taken from the shaft's own lines.", metavar="SPEED")
-@option("--tolerance", "Within which the speed is known.", default="2%", metavar="FRACTION")
+@_bearing_options
+@option("--speed", "Shaft speed, about, such as 600rpm; it is taken from the shaft's own lines.", Amount("rad/s"))
+@option("--tolerance", "Within which the speed is known.", Amount("", 1e-6, 0.2, "%"), default="2%")
 @option(
     "--largest-slip",
     "Of the cage that is possible: no other lines are looked for [default: with --scene what level steady finds, with its uncertain fields;"
     " otherwise 10%].",
-    metavar="FRACTION",
+    Amount("", 0.0, 0.95, "%"),
 )
 @flag("--no-shaft-lines", "Take the speed as it is given, without looking for the shaft's own lines.")
 @option("--channel", "The vibration in FILE: a column, variable, data set, matrix column as NAME[k], or /topic.field.", metavar="NAME")
-@option("--rate", "Sampling rate, such as 50kHz [default: as FILE says].", metavar="RATE")
+@option("--rate", "Sampling rate, such as 50kHz [default: as FILE says].", Amount("Hz", 1e-6))
 @option("--time-channel", "Column of times in seconds, from which the rate follows [default: one that is called so].", metavar="NAME")
 @option("--speed-channel", "Shaft speed in FILE, one value a sample.", metavar="NAME")
 @option("--speed-unit", "Of --speed-channel.", default="rpm", metavar="UNIT")
-@option("--band", "Band of the envelope, such as 6kHz:12kHz [default: chosen by kurtogram].", metavar="LOW:HIGH")
-@option("--from", "begin", "Leave out what is before this time of the record, such as 2s.", metavar="TIME")
-@option("--to", "end", "Leave out what is after this time of the record.", metavar="TIME")
-@option("--every", "Cage speed in parts of this length [default: quarters of the record].", metavar="TIME")
+@option(
+    "--band",
+    "Band of the envelope, such as 6kHz:12kHz [default: chosen by kurtogram].",
+    AmountRange("Hz", "LOW:HIGH, such as 6kHz:12kHz"),
+    metavar="LOW:HIGH",
+)
+@option("--from", "begin", "Leave out what is before this time of the record, such as 2s.", Amount("s"))
+@option("--to", "end", "Leave out what is after this time of the record.", Amount("s"))
+@option("--every", "Cage speed in parts of this length [default: quarters of the record].", SECONDS)
 @csv_option("Write the cage speed in parts of the record to a table.")
 @picture_option("Draw the envelope spectrum with the lines that were found")
 @json_option
 def vibration(
     data,
     bearing,
-    scene_name,
-    rollers,
-    roller_diameter,
-    pitch_diameter,
-    measured_geometry,
     speed,
     tolerance,
     largest_slip,
@@ -76,7 +114,6 @@ def vibration(
     begin,
     end,
     every,
-    table,
 ):
     """Find the cage speed in the vibration that FILE holds, and which ring or roller shows; or that there is no line.
 
@@ -90,27 +127,20 @@ def vibration(
     from bearing_sim.watchers.vibration.analysis import analyse
     from bearing_sim.watchers.vibration.reading import read_vibration
 
-    hertz = None if rate is None else _positive("--rate", rate, "Hz")
-    shaft_speed = None if speed is None else quantity_of("--speed", speed, "rad/s")
-    if shaft_speed is not None and speed_channel is not None:
+    if speed is not None and speed_channel is not None:
         raise UsageError("--speed and --speed-channel both give the shaft speed; give one")
-    within = quantity_of("--tolerance", tolerance, "")
-    if not 0.0 < within <= 0.2:
-        raise UsageError(f"--tolerance {tolerance}: expected more than 0 and at most 20 %, such as 2%")
-    geometry = _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, measured_geometry)
-    record = read_vibration(data, channel, hertz, time_channel, speed_channel, speed_unit)
+    geometry, scene_name = bearing
+    record = read_vibration(data, channel, rate, time_channel, speed_channel, speed_unit)
     if record.tally is not None:
         tell_use(record.tally, data)
     record = _cut(record, begin, end)
     VIBRATION_ANALYSED.check(len(record.samples), f"{record.name}, which --from and --to cut")
     parts = _parts(record, every)
-    geometry = geometry._replace(largest_slip=_largest_slip(largest_slip, scene_name, shaft_speed, record))
-    found = analyse(record, geometry, shaft_speed, within, _band(band, record.rate), not no_shaft_lines, parts)
+    if largest_slip is None:
+        largest_slip = _largest_slip(scene_name, speed, record)
+    geometry = geometry._replace(largest_slip=largest_slip)
+    found = analyse(record, geometry, speed, tolerance, _band(band, record.rate), not no_shaft_lines, parts)
     rows = [_row(part) for part in found.parts]
-    if table is not None and not rows:
-        raise UsageError(f"{table}: nothing to write: {found.reason}")
-    if table is not None:
-        write_csv(table, rows)
 
     def draw(draft):
         from bearing_sim.watchers.vibration.picture import draw
@@ -118,51 +148,15 @@ def vibration(
         draw(draft, record, geometry, found)
 
     report = {"file": data.name, **_report(found, record, geometry), "parts": rows}
-    return Result(report, lambda: _print(data.name, record, geometry, found), draw)
+    return Result(report, lambda: _print(data.name, record, geometry, found), draw, rows)
 
 
-def _positive(option: str, text: str, unit: str) -> float:
-    value = quantity_of(option, text, unit)
-    if not 0.0 < value < math.inf:
-        raise UsageError(f"{option} {text}: expected more than 0")
-    return value
-
-
-def _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, measured):
-    """Return the geometry by the options."""
-    from bearing_sim.watchers.vibration.analysis import Geometry
-
-    if sum(each is not None for each in (bearing, scene_name, rollers)) != 1:
-        raise UsageError("the number of rollers must be known: give one of --bearing, --scene and --rollers")
-    if rollers is not None:
-        if measured:
-            raise UsageError("--measured-geometry goes with --bearing or --scene; with --rollers give --roller-diameter and --pitch-diameter")
-        if (roller_diameter is None) != (pitch_diameter is None):
-            raise UsageError("--roller-diameter and --pitch-diameter go together")
-        if roller_diameter is None:
-            return Geometry(rollers, name=f"{rollers} rollers")
-        size = _positive("--roller-diameter", roller_diameter, "m") / _positive("--pitch-diameter", pitch_diameter, "m")
-        if not 0.02 <= size <= 0.5 or rollers * math.asin(min(size, 1.0)) > 1.001 * math.pi:
-            raise UsageError(f"{rollers} rollers of {roller_diameter} do not go on a circle of {pitch_diameter}; check the diameters")
-        return Geometry(rollers, size, True, f"{rollers} rollers")
-    if roller_diameter is not None or pitch_diameter is not None:
-        raise UsageError("--roller-diameter and --pitch-diameter go with --rollers")
-    chosen = load_bearing(bearing) if bearing is not None else load_scene(scene_name).bearing
-    return Geometry(chosen.roller.count, chosen.roller.diameter / chosen.pitch_diameter, measured, chosen.designation or chosen.name)
-
-
-def _largest_slip(text, scene_name, shaft_speed, record) -> float:
-    """Return the largest possible slip: as given, by the model of a scene, or the usual assumption."""
+def _largest_slip(scene_name, shaft_speed, record) -> float:
+    """Return the largest possible slip: by the model of a scene, or the usual assumption."""
     from bearing_sim.watchers.vibration.analysis import LARGEST_SLIP
 
-    if text is not None:
-        largest = quantity_of("--largest-slip", text, "")
-        if not 0.0 <= largest <= 0.95:
-            raise UsageError(f"--largest-slip {text}: expected 0 to 95 %, such as 10%")
-        return largest
     if scene_name is None:
         return LARGEST_SLIP
-    from bearing_sim.cli.reporting import announce_compilation
     from bearing_sim.simulation import IntegrationError, scene_inputs
     from bearing_sim.studies.uncertainty_propagation import UncertaintyError, largest_slip
 
@@ -180,8 +174,7 @@ def _largest_slip(text, scene_name, shaft_speed, record) -> float:
 
 def _cut(record, begin, end):
     """Return the part of a record between two times."""
-    first = 0.0 if begin is None else quantity_of("--from", begin, "s")
-    last = record.duration if end is None else quantity_of("--to", end, "s")
+    first, last = begin or 0.0, record.duration if end is None else end
     if not 0.0 <= first < last <= record.duration * (1.0 + 1e-9):
         raise UsageError(f"--from {first:g} s and --to {last:g} s: expected times in order within the {record.duration:.6g} s of the record")
     return record if begin is None and end is None else record.part(round(first * record.rate), round(last * record.rate))
@@ -190,24 +183,23 @@ def _cut(record, begin, end):
 def _parts(record, every) -> int:
     if every is None:
         return 4
-    length = _positive("--every", every, "s")
-    count = int(record.duration / length + 1e-9)
+    count = int(record.duration / every + 1e-9)
     if not 1 <= count <= _LARGEST_PARTS:
-        raise UsageError(f"--every {every}: expected at most the {record.duration:.6g} s of the record, and at least {record.duration / 1e5:.2g} s")
+        raise UsageError(
+            f"--every {every:g} s: expected at most the {record.duration:.6g} s of the record, and at least {record.duration / 1e5:.2g} s"
+        )
     return count
 
 
-def _band(text, rate):
-    if text is None:
+def _band(ends, rate):
+    if ends is None:
         return None
     from bearing_sim.watchers.vibration.signal import Band
 
-    low, colon, high = text.partition(":")
-    if not colon:
-        raise UsageError(f"--band {text}: expected LOW:HIGH, such as 6kHz:12kHz")
-    band = Band(quantity_of("--band", low, "Hz"), quantity_of("--band", high, "Hz"))
+    band = Band(*ends)
     if not 0.0 <= band.low < band.high <= rate / 2.0:
-        raise UsageError(f"--band {text}: expected frequencies in order up to half the sampling rate, {rate / 2.0:g} Hz")
+        text = f"--band {band.low:g} Hz:{band.high:g} Hz"
+        raise UsageError(f"{text}: expected frequencies in order up to half the sampling rate, {rate / 2.0:g} Hz")
     return band
 
 
@@ -286,17 +278,18 @@ def _print(name, record, geometry, found) -> None:
         rows.append(("something else", f"with a probability of {100.0 * found.doubt:.2g} %, at most"))
     print_table(name, rows)
     if len(found.parts) <= 60:
-        columns = ("from [s]", "to [s]", "shaft [rpm]", "cage [rpm]", "±", "cage over shaft", "±")
+        rpm = 30.0 / math.pi
         texts = [
             (
                 f"{part.begin:.3f}",
                 f"{part.end:.3f}",
-                f"{part.shaft_speed * 30 / math.pi:.2f}",
-                f"{part.cage_speed * 30 / math.pi:.3f}",
-                f"{part.cage_speed_error * 30 / math.pi:.3f}",
+                f"{rpm * part.shaft_speed:.2f}",
+                f"{rpm * part.cage_speed:.3f}",
+                f"{rpm * part.cage_speed_error:.3f}",
                 f"{part.ratio:.6f}",
                 f"{part.ratio_error:.6f}",
             )
             for part in found.parts
         ]
+        columns = ("from [s]", "to [s]", "shaft [rpm]", "cage [rpm]", "±", "cage over shaft", "±")
         print_rows("in parts of the record", columns, texts)

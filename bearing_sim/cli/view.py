@@ -1,18 +1,72 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim view``: a recording in rerun."""
 
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import click
 from click import IntRange
 
-from bearing_sim.cli.options import PATH, flag, option, size_option
+from bearing_sim.cli.options import PATH, flag, gathered, option, size_option
 from bearing_sim.cli.outputs import OutputFile, default_output
 from bearing_sim.cli.reporting import FailedRun, UsageError, as_usage_error, note, progress_bar, tell_use
 from bearing_sim.cli.results import command
 from bearing_sim.files.outputs import Output
+
+
+def _lines(speed=None, load=None, cage=None, clearance=None, temperature=None, speed_unit=None, load_unit=None, clearance_unit=None):
+    """Return by role where its quantity is recorded, and the values [SI] of those that are constant, from texts of options with their units."""
+    from bearing_sim.inputs.log import constant, is_constant, source
+    from bearing_sim.view.bag import Line
+
+    lines, constants = {}, {}
+    with as_usage_error(ValueError):
+        for role, channel, text, unit in (
+            ("speed", "shaft_speed", speed, speed_unit),
+            ("load", "radial_load", load, load_unit),
+            ("cage_speed", "cage_speed_measured", cage, speed_unit),
+            ("temperature", "oil_temperature", temperature, None),
+            ("clearance", "running_clearance_measured", clearance, clearance_unit),
+        ):
+            if is_constant(text):
+                constants[role] = constant(channel, text, unit)
+            elif text:
+                lines[role] = Line(*source(channel, text, unit))
+    return lines, constants
+
+
+_line_options = gathered(
+    "lines",
+    _lines,
+    option(
+        "--speed",
+        "--speed-topic",
+        "speed",
+        "In a bag from another source: shaft speed, /topic or /topic.field[0] or a constant such as 1500rpm [default: /shaft_speed].",
+        metavar="TOPIC",
+    ),
+    option("--load", "--load-topic", "load", "Likewise for the radial load, or 800N [default: /radial_load].", metavar="TOPIC"),
+    option("--cage", "--cage-topic", "cage", "Likewise for a measured cage speed [default: /cage_speed_measured].", metavar="TOPIC"),
+    option(
+        "--clearance",
+        "--clearance-topic",
+        "clearance",
+        "Likewise for a measured running clearance [default: /running_clearance_measured].",
+        metavar="TOPIC",
+    ),
+    option(
+        "--oil-temperature",
+        "--temperature",
+        "--temperature-topic",
+        "temperature",
+        "Likewise for the oil temperature [default: /oil_temperature].",
+        metavar="TOPIC",
+    ),
+    option("--speed-unit", "Unit of the speeds that are fields, such as rpm [default: rad/s].", metavar="UNIT"),
+    option("--load-unit", "Unit of a load that is a field, such as kN [default: N].", metavar="UNIT"),
+    option("--clearance-unit", "Unit of a clearance that is a field, such as um [default: m].", metavar="UNIT"),
+)
 
 
 @command("view")
@@ -21,33 +75,7 @@ from bearing_sim.files.outputs import Output
 @option("--screenshot", "Write a picture of the view instead of opening it.", OutputFile(), metavar="PICTURE.png")
 @option("--at", "seconds", "Simulated time of the picture [default: the end].", float, metavar="SECONDS")
 @size_option
-@option(
-    "--speed",
-    "--speed-topic",
-    "speed",
-    "In a bag from another source: shaft speed, /topic or /topic.field[0] or a constant such as 1500rpm [default: /shaft_speed].",
-    metavar="TOPIC",
-)
-@option("--load", "--load-topic", "load", "Likewise for the radial load, or 800N [default: /radial_load].", metavar="TOPIC")
-@option("--cage", "--cage-topic", "cage", "Likewise for a measured cage speed [default: /cage_speed_measured].", metavar="TOPIC")
-@option(
-    "--clearance",
-    "--clearance-topic",
-    "clearance",
-    "Likewise for a measured running clearance [default: /running_clearance_measured].",
-    metavar="TOPIC",
-)
-@option(
-    "--oil-temperature",
-    "--temperature",
-    "--temperature-topic",
-    "temperature",
-    "Likewise for the oil temperature [default: /oil_temperature].",
-    metavar="TOPIC",
-)
-@option("--speed-unit", "Unit of the speeds that are fields, such as rpm [default: rad/s].", metavar="UNIT")
-@option("--load-unit", "Unit of a load that is a field, such as kN [default: N].", metavar="UNIT")
-@option("--clearance-unit", "Unit of a clearance that is a field, such as um [default: m].", metavar="UNIT")
+@_line_options
 @flag("--web", "is_web", "Show it in a browser: serve rerun's web viewer on 127.0.0.1 until Ctrl-C.")
 @option("--web-port", "Port on 127.0.0.1 for --web; 0 for any that is free [default: 9090].", IntRange(0, 65535), metavar="PORT")
 @option("--open/--no-open", "opens", "Open rerun [default: if there is a display].", default=None)
@@ -57,14 +85,7 @@ def view(
     screenshot,
     seconds,
     size,
-    speed,
-    load,
-    cage,
-    clearance,
-    temperature,
-    speed_unit,
-    load_unit,
-    clearance_unit,
+    lines,
     is_web,
     web_port,
     opens,
@@ -80,9 +101,6 @@ def view(
         raise UsageError("--web-port goes with --web")
     if is_web and screenshot is not None:
         raise UsageError("--web and --screenshot contradict each other; give one of them")
-    given = {"speed": (speed, speed_unit), "load": (load, load_unit), "cage_speed": (cage, speed_unit), "temperature": (temperature, None)}
-    given["clearance"] = clearance, clearance_unit
-    lines = _lines({role: texts for role, texts in given.items() if texts[0]})
     with ExitStack() as stack:
         if out is None and screenshot is not None:  # nobody has asked for the file itself
             out = Output(Path(stack.enter_context(TemporaryDirectory())) / "view.rrd")
@@ -100,19 +118,6 @@ def view(
 
 
 _MOST_LEFT_OUT = 30  # lines
-_CHANNELS = {"speed": "shaft_speed", "load": "radial_load", "temperature": "oil_temperature"}
-_CHANNELS |= {"cage_speed": "cage_speed_measured", "clearance": "running_clearance_measured"}
-
-
-def _lines(given: dict[str, tuple[str, str | None]]) -> tuple[dict, dict[str, float]]:
-    """Return by role where its quantity is recorded, and the values [SI] of those that are constant, from texts of options with their units."""
-    from bearing_sim.inputs.log import constant, is_constant, source
-    from bearing_sim.view.bag import Line
-
-    with as_usage_error(ValueError):
-        constants = {role: constant(_CHANNELS[role], text, unit) for role, (text, unit) in given.items() if is_constant(text)}
-        lines = {role: Line(*source(_CHANNELS[role], text, unit)) for role, (text, unit) in given.items() if role not in constants}
-    return lines, constants
 
 
 def _write(recording: Path, out: Path, seconds: float | None, lines: dict, constants: dict[str, float]) -> tuple[float, float]:
@@ -168,14 +173,11 @@ def _convert(source, out: Path) -> None:
 
 
 def _take_picture(rrd: Path, picture: Output, seconds: float, size: tuple[int, int]) -> None:
-    from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed
+    from bearing_sim.view.screenshot import HeadlessViewer
 
-    try:
-        with HeadlessViewer(rrd, size) as viewer:
-            viewer.seek(seconds)
-            content, problems = viewer.png(), viewer.problems()
-    except ViewerFailed as error:
-        raise FailedRun(f"no picture: {error}") from None
+    with HeadlessViewer(rrd, size) as viewer:
+        viewer.seek(seconds)
+        content, problems = viewer.png(), viewer.problems()
     picture.write_bytes(content)
     if problems:
         raise FailedRun(f"{picture} was written, but the viewer reports: {'; '.join(problems)}")
@@ -186,19 +188,14 @@ def _serve(rrd: Path, port: int, opens: bool | None) -> None:
     import time
     import webbrowser
 
-    from bearing_sim.view.web import NoWebViewer, WebViewer
+    from bearing_sim.view.web import WebViewer
 
-    try:
-        with WebViewer(port, recording=rrd) as viewer:
-            click.echo(f"{rrd} is shown at {viewer.url} for browsers on this machine; end with Ctrl-C")
-            if opens or (opens is None and _has_display()):
-                webbrowser.open(viewer.url)
-            while True:
-                time.sleep(3600.0)
-    except NoWebViewer as error:
-        raise FailedRun(str(error)) from None
-    except KeyboardInterrupt:
-        pass
+    with suppress(KeyboardInterrupt), WebViewer(port, recording=rrd) as viewer:
+        click.echo(f"{rrd} is shown at {viewer.url} for browsers on this machine; end with Ctrl-C")
+        if opens or (opens is None and _has_display()):
+            webbrowser.open(viewer.url)
+        while True:
+            time.sleep(3600.0)
 
 
 def _has_display() -> bool:

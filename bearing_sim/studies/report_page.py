@@ -143,10 +143,10 @@ def _part(path: Path, tell: _Tell) -> _Part:
         raise NoResults(f"{path}: {error}") from None
 
 
-def _picture(title: str, draw: Callable, *arguments, caption: str = "", **more) -> str:
+def _picture(title: str, draw: Callable, *arguments, caption: str = "") -> str:
     """Return an embedded picture that a function draws into a stream."""
     stream = io.BytesIO()
-    draw(stream, *arguments, **more)
+    draw(stream, *arguments)
     return picture(stream.getvalue(), title, caption)
 
 
@@ -327,7 +327,7 @@ def _recording_part(recording: Recording) -> _Part:
         {
             "Summary": pairs(summary),
             f"Answer sheet, mean {over}": _sheet(scene, at_end),
-            "Pictures": _picture("Conditions and results over time", draw_over_time, [course], form="png")
+            "Pictures": _picture("Conditions and results over time", draw_over_time, [course])
             + _picture("Load distribution", _draw_loads, settled, caption=f"Roller loads over the azimuth from +y, mean {over} of the recording."),
             "Observables": _observables(blocks, settled, scene),
             "Events": _events_table(events),
@@ -455,7 +455,7 @@ def _draw_loads(stream, settled: np.ndarray) -> None:
     axes.set(xlabel="azimuth [deg]", ylabel="roller load [N]", xlim=(0, 360), xticks=range(0, 361, 45))
     axes.grid(alpha=0.3)
     axes.legend(frameon=False)
-    save(figure, stream, dpi=110, format="png")
+    save(figure, stream, dpi=110)
 
 
 # What all pages have

@@ -316,17 +316,16 @@ def _one_per_cell(rows: np.ndarray) -> np.ndarray:
     return rows[np.unique([*first, *extremes])]
 
 
-def draw_over_time(path: Path | BinaryIO, courses: Sequence[Course], title: str = "", form: str | None = None) -> "object":
+def draw_over_time(path: Path | BinaryIO, courses: Sequence[Course], title: str = "") -> "object":
     """Draw runs over time into a file, one panel below the other, and return the figure.
 
     A life has a logarithmic axis; what exceeds the shortest by more than six decades is cut off.
 
     Parameters
     ----------
-    path : its suffix gives the format, or a stream.
+    path : its suffix gives the format; or a stream, for PNG.
     courses : at least one; several are compared, each from its own start.
     title : of the picture.
-    form : format of a stream.
     """
     panels = [PANELS[name] for name in courses[0].panels]
     figure = new_figure(10, 0.9 + 1.75 * len(panels))
@@ -342,7 +341,7 @@ def draw_over_time(path: Path | BinaryIO, courses: Sequence[Course], title: str 
     plain_numbers(axes[-1].xaxis)
     _name_courses(figure, courses)
     figure.align_ylabels(axes)
-    return _saved(figure, path, title, form)
+    return _saved(figure, path, title)
 
 
 def _time_label(courses: Sequence[Course], span: float, unit: str) -> str:
@@ -451,8 +450,8 @@ def _add_legend(figure, handles: Sequence) -> None:
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, fontsize=8)
 
 
-def _saved(figure, path: Path | BinaryIO, title: str, form: str | None) -> "object":
-    save(figure, path, _shortened(title, _LONGEST_TITLE), 10, format=form)
+def _saved(figure, path: Path | BinaryIO, title: str) -> "object":
+    save(figure, path, _shortened(title, _LONGEST_TITLE), 10)
     return figure
 
 
@@ -465,20 +464,20 @@ def minimum_loads(scene: Scene, speeds: np.ndarray) -> np.ndarray:
     return np.broadcast_to(minimum_load(scene, np.asarray(speeds, float) / RPM)[0], np.shape(speeds))
 
 
-def draw_over_load(path: Path | BinaryIO, courses: Sequence[Course], title: str = "", form: str | None = None) -> "object":
+def draw_over_load(path: Path | BinaryIO, courses: Sequence[Course], title: str = "") -> "object":
     """Draw slip and life of the samples of runs over the radial load, with the minimum load, and return the figure.
 
     The minimum load rises with the speed; between its values at the speeds of a run that turns it is a strip.
 
     Parameters
     ----------
-    path, courses, title, form : see `draw_over_time`.
+    path, courses, title : see `draw_over_time`.
     """
     series = [course.loaded[:, 1:].T for course in courses]
     runs = [(course.scene, course.loaded[_turning(course), 0], course.name) for course in courses]
     style = {"ms": 3, "ls": "", "alpha": 0.6, "mew": 0}
     figure = _draw_slip_and_life(series, style, runs, _course_names(courses, True), life_label([course.scene for course in courses]) + " [h]", 4.6)
-    return _saved(figure, path, title, form)
+    return _saved(figure, path, title)
 
 
 def _draw_slip_and_life(series, style: Mapping, runs, names: Sequence[str], life_heading: str, height: float):
@@ -543,14 +542,12 @@ def _draw_minimum_loads(axes, runs: Sequence[tuple[Scene, np.ndarray, str]], new
     return handles
 
 
-def draw_table_over_load(
-    path: Path, points: Sequence[Mapping], scene: Scene | None, title: str, life_heading: str, form: str | None = None
-) -> "object":
+def draw_table_over_load(path: Path, points: Sequence[Mapping], scene: Scene | None, title: str, life_heading: str) -> "object":
     """Draw slip and life of the points of a table over the radial load, a line for each speed, with the minimum load; return the figure.
 
     Parameters
     ----------
-    path, title, form : see `draw_over_time`.
+    path, title : see `draw_over_time`.
     points : each with ``load`` [N], ``slip`` [%], ``life`` [h], ``speed`` [rpm] and ``family``, what else was varied, in words.
     scene : whose minimum load is drawn; None if it is not known.
     life_heading : label of the axis of the life.
@@ -565,4 +562,4 @@ def draw_table_over_load(
     speeds = np.array(sorted({float(point["speed"]) for point in points if math.isfinite(point["speed"])}))
     runs = [(scene, speeds, "")] if scene is not None and len(speeds) else []
     figure = _draw_slip_and_life(series, {"ms": 4, "lw": 1.2}, runs, [_shortened(name, 60) for name in names], life_heading, 4.8)
-    return _saved(figure, path, title, form)
+    return _saved(figure, path, title)
