@@ -260,12 +260,14 @@ def test_a_live_model_without_a_response_says_what_builds_one():
         bench.live.close()
 
 
-def test_a_live_model_estimates_by_a_response_that_comes_later(response):
+def test_a_live_model_estimates_by_a_response_that_comes_later(response, monkeypatch):
     bench = Bench(scene=["estimation.bands=true"])
     try:
         bench.run(0.3)
         assert bench.live.bands() == []
-        bench.live.estimate_by(response)
+        assert bench.live.watchers.complete() == {}
+        monkeypatch.setattr("bearing_sim.watchers.estimation.live.kept_response", lambda scene: response)
+        assert bench.live.watchers.complete() == {"estimation": response}
         bench.run(0.3)
         assert bench.live.bands()[0].times[0] > 0.25, "none of what was before"
         condition = bench.live.condition(bench.now_ns)

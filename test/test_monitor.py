@@ -9,7 +9,7 @@ import pytest
 from bearing_sim.messages.events import Level
 from bearing_sim.model.oil import oil_at
 from bearing_sim.model.params import pack
-from bearing_sim.model.sample import new_block
+from bearing_sim.model.sample import joined, new_block
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.watchers.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.watchers.monitoring.monitor import Monitor
@@ -201,7 +201,7 @@ def test_blocks_judged_together_leave_the_same_events_and_numbers_as_one_by_one(
     while begin < count:
         size = int(noise.integers(1, 40))
         samples = [block[k : k + 1].copy() for k in range(begin, min(begin + size, count))]
-        together.take_all(samples)
+        together.see(joined(samples))
         for sample in samples:
             single.take(sample)
         now = float(samples[-1]["time"][0])
@@ -214,7 +214,6 @@ def test_blocks_judged_together_leave_the_same_events_and_numbers_as_one_by_one(
         assert found == pytest.approx(expected, nan_ok=True)
         told_ones |= {event.kind for event in together.events(now)}
         begin += size
-    together.take_all([])
     assert {"bearing.slip", "bearing.life"} <= told_ones
 
 

@@ -502,7 +502,7 @@ class TemperatureResiduals(Watcher):
         for monitor in self._monitors.values():
             monitor.adjust(detection, 0.0)
 
-    def restart(self, why: str) -> None:
+    def restart(self, why: str = "") -> None:
         """Wait until the network has settled after a reset; what is usual is kept."""
         self._next = -math.inf
         for monitor in self._monitors.values():

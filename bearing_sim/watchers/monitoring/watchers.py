@@ -277,8 +277,17 @@ def kind_of(name: str) -> type[Watcher]:
 
 def resources(scene: Scene, run: Run | None = None) -> dict[str, object]:
     """Return the resources that are there of the watchers that a scene asks for (`Watcher.resource`), by their names, as `Watchers` takes them."""
-    needed = (name for name, kind in BUILT_IN.items() if kind.absent is not None and kind.is_asked(scene, run or Run()))
-    return {name: found for name in needed if (found := kind_of(name).resource(scene)) is not None}
+    return {name: found for name in _needed(scene, run) if (found := kind_of(name).resource(scene)) is not None}
+
+
+def are_missing(scene: Scene) -> bool:
+    """Return whether a watcher that a scene asks for lacks its resource."""
+    return len(resources(scene)) < len(_needed(scene))
+
+
+def _needed(scene: Scene, run: Run | None = None) -> list[str]:
+    """Return the names of the watchers that a scene asks for and that need a resource."""
+    return [name for name, kind in BUILT_IN.items() if kind.absent is not None and kind.is_asked(scene, run or Run())]
 
 
 def recorded(scene: Scene, records: Mapping[str, Mapping[str, str]]) -> dict[str, Watcher]:
