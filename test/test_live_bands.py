@@ -267,7 +267,7 @@ def test_a_live_model_estimates_by_a_response_that_comes_later(response, monkeyp
         assert bench.live.bands() == []
         assert bench.live.watchers.complete() == {}
         monkeypatch.setattr("bearing_sim.watchers.estimation.live.kept_response", lambda scene: response)
-        assert bench.live.watchers.complete() == {"estimation": response}
+        assert [*bench.live.watchers.complete()] == ["estimation"]
         bench.run(0.3)
         assert bench.live.bands()[0].times[0] > 0.25, "none of what was before"
         condition = bench.live.condition(bench.now_ns)

@@ -433,7 +433,7 @@ def test_damage_continues_over_restarts_and_resets_and_only_grows(tmp_path):
 
 def test_without_a_state_every_run_begins_at_zero(tmp_path):
     live = LiveModel(SCENE, FakeSimulation(), time.time_ns())
-    assert live.watchers.life_used is None and "revolutions" not in live.condition(time.time_ns()).values
+    assert live.watchers.memory.life_used is None and "revolutions" not in live.condition(time.time_ns()).values
     live.close()
 
 

@@ -677,7 +677,7 @@ class BearingInterface:
 
     def _start_recording(self, path: Path) -> None:
         def records() -> dict[str, dict[str, str]]:
-            found = dict(self.live.watchers.records)
+            found = dict(self.live.watchers.memory.records)
             if self._settings and isinstance(self.live, LiveModel):
                 found[GOVERNOR_RECORD] = governor_record(self._settings, self.live.setting)
             return found
@@ -751,7 +751,7 @@ class BearingInterface:
     def _reset(self, _) -> tuple[bool, str]:
         """Return the model to the start of the scene; without a stored state, damage as well."""
         if self.live.reset():
-            is_new = self.live.watchers.life_used is None
+            is_new = self.live.watchers.memory.life_used is None
             return True, "state and damage are reset" if is_new else "the model is reset; the totals of the bearing continue"
         return False, "not done within two seconds; the reset follows after the running tick"
 

@@ -65,7 +65,7 @@ def put_at_start(simulation: Simulation, inputs: Inputs, run: Run, is_there: boo
     ----------
     is_there : whether the simulation is at the start that the scene says.
     """
-    known = run.watchers.temperatures(run.begins_at()) if simulation.thermal is not None else None
+    known = run.watchers.memory.temperatures(run.begins_at()) if simulation.thermal is not None else None
     if known is not None:
         begin_at_temperatures(simulation, inputs, *map(np.array, known))
     elif not is_there:

@@ -236,7 +236,7 @@ class Model(Run):
                 raise OSError("the model is busy and did not stop within two seconds; call the service again")
             self._take(self.solver.take(), 0.0 if self.solver.newest is None else float(self.solver.newest["time"]))
             self.watchers.replace(name, change())
-            self.solver.continue_from(self.watchers.life_used)
+            self.solver.continue_from(self.watchers.memory.life_used)
             self.solver.reset(_REPLACED_WITHIN)
             self.watchers.begin()
         finally:
@@ -494,7 +494,7 @@ class LiveModel(Model):
         gate = InputGate(scene.accepted_inputs, held, heat_law=scene.heat.law, stamp_tolerance=stamp_tolerance)
         super().__init__(scene, gate, start_ns, given, inputs_expected_within)
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / tick_schedule(sample_rate, math.inf).tick)
-        ways = governor, self._advanced, threads, partial(put_at_start, run=self), self.watchers.life_used
+        ways = governor, self._advanced, threads, partial(put_at_start, run=self), self.watchers.memory.life_used
         self.solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, *ways)
         self._starts_ns = [start_ns]  # by the clock now, and before it was set
         self._sample_decimator, self._publish_decimator, self._due = Decimator(sample_rate), Decimator(publish_rate), due

@@ -128,7 +128,7 @@ class _Run(Run):
         self.scene, self._sink, self.start_ns, self.heard = recording.scene, sink, recording.start_ns, set()
         self.watchers = Watchers(self.scene, self, {**given, **recorded_watchers(self.scene, recording.records)}, only_given=True)
         self.watchers.begin()
-        self._is_remembered = self.watchers.life_used is not None  # damage then continues over resets
+        self._is_remembered = self.watchers.memory.life_used is not None  # damage then continues over resets
         self._interval = recording.duration / max(recording.samples - 1, 1)
         self._duration = float(recording.metadata.get("advance_seconds") or 0.0)  # of one call of the recorded run
         self.together = int(recording.metadata.get("advance_samples") or 1)  # samples that it returned

@@ -63,6 +63,10 @@ class LiveEstimation(Watcher):
             self._estimator.interrupt()
             self._use_posterior()
 
+    def _know_what_is_heard(self) -> None:
+        if self.run.heard is not None:
+            self.know(self.run.heard)
+
     def know(self, channels: Collection[str]) -> None:
         """Take which input channels have messages: what is measured is not uncertain."""
         known = frozenset([_OIL] if "oil_temperature" in channels else [])
@@ -137,7 +141,8 @@ class LiveEstimation(Watcher):
         take = {MEASURED: self.measure, MEASURED_CLEARANCE: self.measure_clearance}.get(channel)
         if take is None or not self.run.is_predicted or (self.run.acts_on_arrival and self.run.newest is None):
             return
-        if not self.run.watchers.contained(self.run.stamp(time)):
+        self._know_what_is_heard()
+        if not self.run.watchers.memory.contained(self.run.stamp(time)):
             take(time, value, standard_error)
 
     def is_calm(self, block: np.ndarray) -> bool:
@@ -162,8 +167,7 @@ class LiveEstimation(Watcher):
         block : samples in order, shape (n,), n at least 1, see `bearing_sim.model.sample`.
         """
         found = []
-        if self.run.heard is not None:
-            self.know(self.run.heard)
+        self._know_what_is_heard()
         if self._estimator is not None:
             if self._estimator.take(block):
                 self._use_posterior()

@@ -90,10 +90,8 @@ class Watcher:
     replaces : names of watchers whose events are none as long as this one has better ones.
     remark : what its status says while there is no event.
     learned : what is to be remembered until the next run of the bearing, as JSON has it; None where it learns nothing.
-    life_used : fraction of its life that the bearing had used before the run; None where it is not known.
     estimates : value, 5 and 95 % quantile [SI] of fields of the scene that it has calibrated, by path.
     exceedances, worst_samples : limits of validity that the run has exceeded, each with its worst value; the sample of each by the law's name.
-    records : metadata records of a recording that begins now, by name.
     """
 
     run = Run()
@@ -103,11 +101,9 @@ class Watcher:
     replaces: Collection[str] = ()
     remark = ""
     learned: dict | None = None
-    life_used: float | None = None
     estimates: Mapping[str, tuple[float, float, float]] = NOTHING
     exceedances: Sequence[Exceedance] = ()
     worst_samples: Mapping[str, np.void] = NOTHING
-    records: Mapping[str, Mapping[str, str]] = NOTHING
 
     def __init__(self, scene: Scene):
         self.scene = scene
@@ -159,20 +155,6 @@ class Watcher:
         seconds : simulated time that each stands for [s], shape (n,); 0 at the start of a run.
         """
 
-    def temperatures(self, now_ns: int) -> tuple[Sequence[float], Sequence[float]] | None:
-        """Return those of thermal nodes and rings [K] to begin the run with at an instant [ns since the epoch]; None where it does not know them.
-
-        It is called on the thread that advances the simulation.
-        """
-        return None
-
-    def contained(self, time_ns: int) -> bool:
-        """Return whether the bearing was watched at an instant [ns since the epoch] in an earlier run, so that nothing of it counts again."""
-        return False
-
-    def remind(self, name: str, watcher: "Watcher") -> None:
-        """Let another watcher continue from what is remembered of what it has learned."""
-
     def recall(self, learned: Mapping, seconds: float) -> None:
         """Continue from what was learned some time ago [s]; from nothing where it is empty.
 
@@ -194,7 +176,45 @@ class Watcher:
         """Answer a service of the node: whether it was done, and what to say; None where it is not one of this watcher."""
 
     @classmethod
-    def recorded(cls, scene: Scene, record: Mapping[str, str]) -> "Watcher":
+    def resource(cls, scene: Scene) -> object | None:
+        """Return what it needs beside the scene, such as a table on disk, which may take a moment; None where that is not there."""
+        return None
+
+
+class Memory(Watcher):
+    """A watcher that remembers a bearing from run to run; by itself one that remembers nothing.
+
+    Attributes
+    ----------
+    life_used : fraction of its life that the bearing has used; None where it is not known.
+    records : metadata records of a recording that begins now, by name.
+    """
+
+    life_used: float | None = None
+    records: Mapping[str, Mapping[str, str]] = NOTHING
+
+    def begin(self) -> None:
+        """Let the other watchers continue from what they have learned about the bearing."""
+        for name in BUILT_IN:
+            if (watcher := self.run.watchers.get(name)) is not None:
+                self.remind(name, watcher)
+
+    def remind(self, name: str, watcher: Watcher) -> None:
+        """Let another watcher continue from what is remembered of what it has learned."""
+
+    def temperatures(self, now_ns: int) -> tuple[Sequence[float], Sequence[float]] | None:
+        """Return those of thermal nodes and rings [K] to begin the run with at an instant [ns since the epoch]; None where they are not known.
+
+        It is called on the thread that advances the simulation.
+        """
+        return None
+
+    def contained(self, time_ns: int) -> bool:
+        """Return whether the bearing was watched at an instant [ns since the epoch] in an earlier run, so that nothing of it counts again."""
+        return False
+
+    @classmethod
+    def recorded(cls, scene: Scene, record: Mapping[str, str]) -> "Memory":
         """Return what takes its place where a recorded run is computed again, by its metadata record (`records`).
 
         Raises
@@ -203,11 +223,6 @@ class Watcher:
             The record cannot be used.
         """
         raise NotImplementedError
-
-    @classmethod
-    def resource(cls, scene: Scene) -> object | None:
-        """Return what it needs beside the scene, such as a table on disk, which may take a moment; None where that is not there."""
-        return None
 
 
 class Kind(NamedTuple):
@@ -291,7 +306,7 @@ def _needed(scene: Scene, run: Run | None = None) -> list[str]:
 
 
 def recorded(scene: Scene, records: Mapping[str, Mapping[str, str]]) -> dict[str, Watcher]:
-    """Return the watchers of a recorded run that its metadata records tell of (`Watcher.recorded`), by their names, as `Watchers` takes them.
+    """Return the watchers of a recorded run that its metadata records tell of (`Memory.recorded`), by their names, as `Watchers` takes them.
 
     Raises
     ------
@@ -378,8 +393,7 @@ class Watchers:
         for name, resource in found.items():
             del self._absent[name]
             self._add(name, resource)
-            for watcher in self:
-                watcher.remind(name, self._watchers[name])
+            self.memory.remind(name, self._watchers[name])
         return found
 
     def absent(self, now: float) -> list[Event]:
@@ -475,18 +489,10 @@ class Watchers:
         """Let all know the setting that is computed."""
         self._all("follow", scene)
 
-    def temperatures(self, now_ns: int) -> tuple[Sequence[float], Sequence[float]] | None:
-        """Return those of thermal nodes and rings [K] to begin the run with; None where nobody knows them."""
-        return next((found for watcher in self if (found := watcher.temperatures(now_ns)) is not None), None)
-
     @property
-    def life_used(self) -> float | None:
-        """Fraction of its life that the bearing had used before the run; None where nobody knows."""
-        return next((used for watcher in self if (used := watcher.life_used) is not None), None)
-
-    def contained(self, time_ns: int) -> bool:
-        """Return whether an instant [ns since the epoch] was watched in an earlier run."""
-        return any(watcher.contained(time_ns) for watcher in self)
+    def memory(self) -> Memory:
+        """The one that remembers the bearing; one that remembers nothing where the run has none."""
+        return next((watcher for watcher in self if isinstance(watcher, Memory)), Memory(self._scene))
 
     @property
     def exceedances(self) -> list[Exceedance]:
@@ -505,11 +511,6 @@ class Watchers:
     def measured(self) -> list[tuple[str, tuple[float, ...]]]:
         """Return what they have measured themselves since the last call."""
         return [reading for _, readings in self._each(0.0, "measured") for reading in readings]
-
-    @property
-    def records(self) -> dict[str, Mapping[str, str]]:
-        """Metadata records of a recording that begins now, by name."""
-        return {name: record for watcher in self for name, record in watcher.records.items()}
 
     def serve(self, service: str) -> tuple[bool, str] | None:
         """Return the answer of the one whose service it is; None where the run has none."""

@@ -16,7 +16,7 @@ import numpy as np
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES, joined
 from bearing_sim.scene.scene import Scene, Thresholds
-from bearing_sim.watchers.monitoring.watchers import BUILT_IN, Watcher
+from bearing_sim.watchers.monitoring.watchers import BUILT_IN, Memory, Watcher
 from bearing_sim.watchers.stored_state.counting import LifeCounter
 from bearing_sim.watchers.stored_state.covered import Covered
 from bearing_sim.watchers.stored_state.history import history_paths, move_days
@@ -38,16 +38,10 @@ _CLOSE_WITHIN = 5.0  # [s] for the last write
 _MOVE_AGAIN = 3600.0  # [s] after a move of days to the history that failed
 
 
-class _Memory(Watcher):
-    """What remembers a bearing, and reminds the other watchers of a run of what they have learned about it."""
+class _StateMemory(Memory):
+    """What remembers a bearing by its state."""
 
     state: StoredState
-
-    def begin(self) -> None:
-        """Remind all."""
-        for name in BUILT_IN:
-            if (watcher := self.run.watchers.get(name)) is not None:
-                self.remind(name, watcher)
 
     def remind(self, name: str, watcher: Watcher) -> None:
         """Let a watcher continue from what it has learned; from nothing if another version of it had learned it.
@@ -60,7 +54,7 @@ class _Memory(Watcher):
             watcher.recall({}, 0.0)
 
 
-class RecordedState(_Memory):
+class RecordedState(_StateMemory):
     """The state with which the bearing of a recorded run began: adds the life used before where the run is computed again.
 
     Parameters
@@ -92,7 +86,7 @@ class RecordedState(_Memory):
         return self._covered is not None and time_ns in self._covered
 
 
-class StateKeeper(_Memory):
+class StateKeeper(_StateMemory):
     """The state of one bearing in use.
 
     All methods belong to one thread; the files are written by another.
