@@ -265,8 +265,9 @@ def test_a_live_model_estimates_by_a_response_that_comes_later(response, monkeyp
     try:
         bench.run(0.3)
         assert bench.live.bands() == []
+        kept = [None, response]
+        monkeypatch.setattr("bearing_sim.watchers.estimation.live.kept_response", lambda scene: kept.pop(0))
         assert bench.live.watchers.complete() == {}
-        monkeypatch.setattr("bearing_sim.watchers.estimation.live.kept_response", lambda scene: response)
         assert [*bench.live.watchers.complete()] == ["estimation"]
         bench.run(0.3)
         assert bench.live.bands()[0].times[0] > 0.25, "none of what was before"
