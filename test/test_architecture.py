@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from bearing_sim.model.sample import COLUMN, OBSERVABLES, SCALARS, sample_dtype
+from bearing_sim.watchers.monitoring.watchers import BUILT_IN
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "bearing_sim"
@@ -93,6 +94,29 @@ def test_the_law_names_all_rooms_and_no_arrow_that_nobody_needs():
     used = {(_room(name), _room(imported)) for name, path in MODULES.items() for imported in _imports(path) if imported.startswith("bearing_sim")}
     assert {_room(name) for name in MODULES} == set(ROOMS)
     assert {(room, other) for room, (_, rooms) in ROOMS.items() for other in rooms.split()} == {(a, b) for a, b in used if a != b}
+
+
+def test_a_run_its_node_and_its_view_know_watchers_by_their_interface_alone():
+    """Whatever watches is found by name in a table and imported only then."""
+    interface = "bearing_sim.watchers.monitoring.watchers"
+    named = {
+        f"{name} imports {imported}"
+        for name, path in MODULES.items()
+        if _room(name) in ("runtime", "ros", "view")
+        for imported in _imports(path)
+        if imported.startswith("bearing_sim.watchers.") and imported != interface
+    }
+    kinds = {kind.place for kind in BUILT_IN.values()}
+    assert named == set() and len(kinds) == len(BUILT_IN) and all(place.partition(":")[0] in MODULES for place in kinds)
+
+
+def test_the_interface_of_watchers_imports_no_watcher():
+    code = (
+        "import sys; from bearing_sim.runtime import live, replay, reproduction, sim_time\n"
+        "print(*sorted(name for name in sys.modules if name.startswith('bearing_sim.watchers.') and name.count('.') == 3))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, cwd=ROOT, check=True)
+    assert done.stdout.split() == ["bearing_sim.watchers.monitoring.watchers"]
 
 
 def test_the_house_has_few_rooms_and_few_arrows_between_them():

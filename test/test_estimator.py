@@ -144,7 +144,7 @@ def test_a_measured_clearance_teaches_the_raceway(scene, response):
         live.measure_clearance(rig.now + 0.05, 5e-6 * (positions[0] - positions[1]) + 2e-6 * rig.random.normal())
         block = np.repeat(rig.sample()[None], 1, axis=0)
         block["time"] = rig.now = rig.now + 0.1
-        live.take(block)
+        live.see(block)
     _, low, high = live.estimates[RADIUS]
     assert high - low < 0.6 * (prior.high - prior.low) and low <= response.fields.values_of(rig.scores)[2] <= high
 

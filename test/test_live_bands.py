@@ -164,9 +164,9 @@ def test_another_memory_of_the_damage_rate_acts_on_the_remaining_life_from_then_
     block["modified_rating_life"], block["damage"] = [400.0, 400.0, 40.0, 40.0], 0.0
     kept, adjusted = (LiveEstimation(SCENE, response) for _ in range(2))
     for live in (kept, adjusted):
-        live.take(block[:2])
+        live.see(block[:2])
     adjusted.adjust(dataclasses.replace(SCENE.thresholds, remaining_life_memory=1e-3))
-    slow, quick = (live.take(block[2:])[0].numbers[-1, NAMES.index("remaining_life")] for live in (kept, adjusted))
+    slow, quick = (live.see(block[2:])[0].numbers[-1, NAMES.index("remaining_life")] for live in (kept, adjusted))
     assert quick[0] == pytest.approx(40.0) and slow[0] > 1.5 * quick[0] and (slow[1:] > 1.5 * quick[1:]).all()
 
 
@@ -174,13 +174,13 @@ def test_bands_come_at_most_at_the_rate_of_the_scene(response):
     block = synthetic_block(SCENE, 0.005 * np.arange(200))
     for rate, expected in (("50 Hz", 50), ("10 Hz", 10), ("1000 Hz", 200)):
         live = LiveEstimation(asking_scene(f"estimation.rate={rate}"), response)
-        times = np.concatenate([bands.times for part in np.array_split(block, 7) for bands in live.take(part)])
+        times = np.concatenate([bands.times for part in np.array_split(block, 7) for bands in live.see(part)])
         assert len(times) == expected and (np.diff(times) > 0.0).all()
 
 
 def test_a_band_lies_about_the_value_of_the_sample_as_the_field_moves_it(response):
     live, block = LiveEstimation(SCENE, response), synthetic_block(SCENE, 0.1 * np.arange(20), slips=(0.02, 0.02))
-    (bands,) = live.take(block)
+    (bands,) = live.see(block)
     slip, life = bands.numbers[:, 0], bands.numbers[:, 1]
     assert np.array_equal(slip[:, 0], block["cage_slip"]) and np.array_equal(life[:, 0], block["rating_life"])
     # The middle nine tenths of a uniform range, 0.02 to 0.06, about the scene's own 0.03, at a quarter of it.
@@ -199,7 +199,7 @@ def test_the_life_that_remains_is_what_damage_has_left_of_the_modified_life(resp
 def test_diagnostics_show_both_edges_with_their_subject(response):
     live = LiveEstimation(SCENE, response)
     assert live.values(0.0) == {}
-    live.take(synthetic_block(SCENE, 0.1 * np.arange(20)))
+    live.see(synthetic_block(SCENE, 0.1 * np.arange(20)))
     status = {each["name"].partition(": ")[2]: {pair["key"] for pair in each["values"]} for each in report(START, (), live.values(2.0))["status"]}
     assert {"cage slip 5 % [fraction]", "cage slip 95 % [fraction]"} <= status["slip"]
     assert {"rating life 5 % [h]", "remaining life 95 % [h]"} <= status["life"]
@@ -226,7 +226,7 @@ def replayed(scene, tmp_path, measured=None, **options):
 
 
 def test_a_replay_writes_bands_and_sums_them_up(response, tmp_path):
-    result, sink = replayed(SCENE, tmp_path, response=response)
+    result, sink = replayed(SCENE, tmp_path, given={"estimation": response})
     assert sum(len(bands.times) for bands in sink.bands) == result.samples
     low, high = result.band_statistics()["cage_slip"]
     assert low == pytest.approx(0.01 * FACTOR**-0.2, rel=0.05) and high == pytest.approx(0.01 * FACTOR**0.7, rel=0.05)
@@ -234,12 +234,12 @@ def test_a_replay_writes_bands_and_sums_them_up(response, tmp_path):
 
 def test_a_scene_that_does_not_ask_has_no_bands_and_no_topic_of_them(response, tmp_path):
     scene = load_scene("deng2017_table1")
-    result, sink = replayed(scene, tmp_path, response=response)
+    result, sink = replayed(scene, tmp_path, given={"estimation": response})
     assert sink.bands == [] and result.band_statistics() == {} and topics.estimated(scene) == {}
 
 
 def test_a_live_model_records_and_hands_on_bands(response):
-    bench, sink = Bench(scene=["estimation.bands=true"], response=response), ListSink()
+    bench, sink = Bench(scene=["estimation.bands=true"], given={"estimation": response}), ListSink()
     bench.live.open("list", lambda start_ns: sink)
     try:
         bench.run(0.6)
@@ -261,12 +261,15 @@ def test_a_live_model_without_a_response_says_what_builds_one():
         bench.live.close()
 
 
-def test_a_live_model_estimates_by_a_response_that_comes_later(response):
+def test_a_live_model_estimates_by_a_response_that_comes_later(response, monkeypatch):
     bench = Bench(scene=["estimation.bands=true"])
     try:
         bench.run(0.3)
         assert bench.live.bands() == []
-        bench.live.estimate_by(response)
+        kept = [None, response]
+        monkeypatch.setattr("bearing_sim.watchers.estimation.live.kept_response", lambda scene: kept.pop(0))
+        assert bench.live.watchers.complete() == {}
+        assert [*bench.live.watchers.complete()] == ["estimation"]
         bench.run(0.3)
         assert bench.live.bands()[0].times[0] > 0.25, "none of what was before"
         condition = bench.live.condition(bench.now_ns)
@@ -299,7 +302,7 @@ def test_bands_and_calibrated_fields_have_plots_only_where_a_scene_asks_for_them
 def test_a_band_without_numbers_leaves_a_gap(response):
     block = synthetic_block(SCENE, 0.1 * np.arange(4))
     block["oil_temperature"][1] = 800.0  # outside of what the response was fitted to
-    (bands,) = LiveEstimation(SCENE, response).take(block)
+    (bands,) = LiveEstimation(SCENE, response).see(block)
     assert np.isnan(bands.numbers[1, 0, 1:]).all() and not math.isnan(bands.numbers[1, 0, 0]) and np.isfinite(bands.numbers[2, 0]).all()
 
 
@@ -315,7 +318,7 @@ def measured_run(live, seconds, true_slip, start=0.0):
             block[f"{name}_measured"] = math.nan
         for sample in block:
             live.measure(float(sample["time"]), float(sample["ideal_cage_speed"]) * (1.0 - true_slip - 0.001 * random.normal()))
-        found += live.take(block)
+        found += live.see(block)
     return found
 
 
@@ -358,7 +361,7 @@ def test_measured_clearances_of_a_log_calibrate_are_recorded_and_can_be_read_aga
         log = read_input_log(path)
         profile = judge(log, CALIBRATED.accepted_inputs, Inputs(0.0, 0.0, 0.0, 393.15))
         with McapSink(recording, CALIBRATED, profile.start_ns) as sink:
-            replay(CALIBRATED, profile, sink, model=model, response=response)
+            replay(CALIBRATED, profile, sink, model=model, given={"estimation": response})
         return [(profile.start_ns + round(1e9 * time), *reading) for time, *reading in profile.measured_clearance]
 
     log = write(tmp_path / "log.mcap", course(2.0, cage=True))
@@ -370,7 +373,7 @@ def test_measured_clearances_of_a_log_calibrate_are_recorded_and_can_be_read_aga
 
 
 def test_a_measured_clearance_calibrates_a_live_model_and_is_recorded(response, clearances):
-    bench, sink = Bench(scene=[*ASKING, f"estimation.calibrated={FIELD}"], response=response), ListSink()
+    bench, sink = Bench(scene=[*ASKING, f"estimation.calibrated={FIELD}"], given={"estimation": response}), ListSink()
     bench.live.open("list", lambda start_ns: sink)
     try:
         bench.run(0.3)
@@ -386,7 +389,7 @@ def test_a_measured_clearance_calibrates_a_live_model_and_is_recorded(response, 
 def test_what_was_learned_survives_and_says_less_the_longer_ago_it_was(calibrated, response):
     def width(seconds):
         again = LiveEstimation(CALIBRATED, response)
-        again.restore(json.loads(json.dumps(calibrated[0].learned, allow_nan=False)), seconds)
+        again.recall(json.loads(json.dumps(calibrated[0].learned, allow_nan=False)), seconds)
         (value, low, high) = again.estimates[FIELD]
         assert value == pytest.approx(calibrated[0].estimates[FIELD][0], rel=0.05)
         return high - low
@@ -406,7 +409,7 @@ def test_a_measured_oil_temperature_keeps_what_was_learned_of_other_fields(respo
 def test_learned_by_something_else_is_refused_and_nothing_is_kept_of_it(response):
     live = LiveEstimation(CALIBRATED, response)
     with pytest.raises((KeyError, TypeError, ValueError)):
-        live.restore({"ranges": [[one.field, one.low, one.high, one.distribution, one.mode] for one in response.fields.ranges]})
+        live.recall({"ranges": [[one.field, one.low, one.high, one.distribution, one.mode] for one in response.fields.ranges]})
     assert not live.is_calibrated and live.estimates == {}
 
 
@@ -415,8 +418,8 @@ def test_a_replay_of_a_measured_cage_stores_what_it_has_learned_with_the_bearing
 
     def run():
         keeper = StateKeeper(state, CALIBRATED, "A-17", once=True)
-        result, sink = replayed(CALIBRATED, tmp_path, response=response, keeper=keeper, measured=0.025)
-        keeper.close()
+        result, sink = replayed(CALIBRATED, tmp_path, given={"estimation": response, "state": keeper}, measured=0.025)
+        keeper.leave()
         return keeper.state, sink
 
     first, sink = run()

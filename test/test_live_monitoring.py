@@ -84,7 +84,7 @@ def test_a_measurement_alone_starts_no_model(bench):
 def test_after_a_reset_the_cage_is_not_judged_until_the_prediction_has_settled(bench):
     bench.measure(0.5, slip=0.01)
     assert bench.live.solver.reset()
-    bench.live.residual.adjust(load_scene("deng2017_table1", [*QUICK, "thresholds.residual.settling=10 s"]).thresholds.residual, 20.0)
+    bench.live.adjust(load_scene("deng2017_table1", [*QUICK, "thresholds.residual.settling=10 s"]).thresholds)
     bench.measure(0.3, slip=0.01)
     assert bench.verdict.startswith("not judged")
 
@@ -115,7 +115,7 @@ def test_a_cage_is_not_held_against_the_prediction_of_a_cheaper_level():
     bench = Measured(simulation=simulation, governor=Fallen(simulation))
     try:
         bench.measure(0.5, slip=0.03)
-        assert bench.verdict.startswith("not judged") and math.isnan(bench.live.residual.residual)
+        assert bench.verdict.startswith("not judged") and math.isnan(bench.live.watchers.get("cage_slip").monitor.residual)
     finally:
         assert bench.live.close()
 

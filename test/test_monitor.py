@@ -9,7 +9,7 @@ import pytest
 from bearing_sim.messages.events import Level
 from bearing_sim.model.oil import oil_at
 from bearing_sim.model.params import pack
-from bearing_sim.model.sample import new_block
+from bearing_sim.model.sample import joined, new_block
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.watchers.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.watchers.monitoring.monitor import Monitor
@@ -83,7 +83,7 @@ def test_a_short_life_is_a_warning_with_hours_in_its_text_and_an_error_where_ask
 def test_remaining_life_is_what_damage_leaves_at_the_present_rate():
     one = monitor("thresholds.remaining_life_memory=1 ms")
     one.take(course(1, modified_rating_life=2000.0, damage=0.75))
-    assert one.values["remaining life [h]"] == pytest.approx(500.0)
+    assert one.values(0.0)["remaining life [h]"] == pytest.approx(500.0)
     assert [event[1] for event in told(one, course(30, modified_rating_life=1000.0, damage=0.75))] == ["bearing.remaining_life"]
 
 
@@ -91,16 +91,16 @@ def test_the_rate_of_damage_is_a_mean_of_rates_not_of_lives():
     """A life that swings between 100 and 300 h uses up a bearing in 150 h."""
     one = monitor()
     told(one, course(6000, modified_rating_life=np.tile([100.0, 300.0], 3000)))
-    assert one.values["remaining life [h]"] == pytest.approx(150.0, rel=0.01)
+    assert one.values(0.0)["remaining life [h]"] == pytest.approx(150.0, rel=0.01)
 
 
 def test_a_bearing_that_rests_lives_for_ever_and_a_used_up_one_is_told():
     one = monitor()
     one.take(course(1, modified_rating_life=math.inf))
-    assert one.values["remaining life [h]"] == math.inf
+    assert one.values(0.0)["remaining life [h]"] == math.inf
     one.take(course(1, modified_rating_life=1e4, damage=1.2))
     assert [(event.kind, event.level) for event in one.events(1.0)] == [("bearing.life_used", Level.ERROR)]
-    assert one.values["remaining life [h]"] == 0.0
+    assert one.values(0.0)["remaining life [h]"] == 0.0
 
 
 def test_pocket_forces_of_either_sign_are_judged_where_a_limit_is_set():
@@ -108,7 +108,7 @@ def test_pocket_forces_of_either_sign_are_judged_where_a_limit_is_set():
     assert told(monitor(), course(40, pocket_force=force)) == []
     one = monitor("thresholds.pocket_force_warning=20 N", "thresholds.pocket_force_error=50 N")
     assert told(one, course(40, pocket_force=force)) == [(2.6, "bearing.pocket_force", Level.WARN)]
-    assert one.values["largest pocket force [N]"] == 30.0
+    assert one.values(0.0)["largest pocket force [N]"] == 30.0
     assert told(one, course(5, pocket_force=math.nan)) == [(0.1, "bearing.pocket_force", Level.WARN)], "not told at this level: clears in its time"
 
 
@@ -176,7 +176,7 @@ def test_a_restart_forgets_troubles_and_damage():
     one = monitor()
     told(one, course(50, cage_slip=0.2, damage=2.0))
     one.restart()
-    assert one.events(5.0) == [] and one.values == {}
+    assert one.events(5.0) == [] and one.values(0.0) == {}
 
 
 def test_thresholds_take_units_and_faults_are_told():
@@ -201,7 +201,7 @@ def test_blocks_judged_together_leave_the_same_events_and_numbers_as_one_by_one(
     while begin < count:
         size = int(noise.integers(1, 40))
         samples = [block[k : k + 1].copy() for k in range(begin, min(begin + size, count))]
-        together.take_all(samples)
+        together.see(joined(samples))
         for sample in samples:
             single.take(sample)
         now = float(samples[-1]["time"][0])
@@ -209,12 +209,11 @@ def test_blocks_judged_together_leave_the_same_events_and_numbers_as_one_by_one(
         assert [event for event in together.events(now) if event.kind != "bearing.lambda"] == [
             event for event in single.events(now) if event.kind != "bearing.lambda"
         ]
-        found, expected = dict(together.values), dict(single.values)
+        found, expected = dict(together.values(0.0)), dict(single.values(0.0))
         found.pop("film over roughness, lambda", None), expected.pop("film over roughness, lambda", None)
         assert found == pytest.approx(expected, nan_ok=True)
         told_ones |= {event.kind for event in together.events(now)}
         begin += size
-    together.take_all([])
     assert {"bearing.slip", "bearing.life"} <= told_ones
 
 

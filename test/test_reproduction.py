@@ -61,12 +61,12 @@ def live_run(
     def estimate(block):
         estimation.know([*topics.ALWAYS_KNOWN])
         if tick in reset_at:
-            estimation.restart()
+            estimation.restart("")
         if cage_slip is not None:
             speed, now = (1.0 - cage_slip) * float(block["ideal_cage_speed"][-1]), float(block["time"][-1])
             estimation.measure(now, speed)
             sink.write(Measurement(now, speed, cage_slip - float(block["cage_slip"][-1])))
-        return estimation.take(block)
+        return estimation.see(block)
 
     simulation, beat, shift = Simulation(scene, Inputs(3000.0, 700.0, 0.0, 393.15)), tick_schedule(rate, publish_rate), 0.5
     with McapSink(path, scene, START, advance=(beat.tick, beat.samples)) as sink:
@@ -173,7 +173,7 @@ def test_bands_are_computed_again_and_compared_with_those_of_the_run(tmp_path, m
     response = made_up_response(scene)
     path = live_run(scene, tmp_path / "run.mcap", 100.0, 50.0, ticks=60, reset_at=(30,), estimation=LiveEstimation(scene, response))
     with McapSink(tmp_path / "again.mcap", scene, START) as sink:
-        found = reproduce(Recording(path), sink, response=response).bands
+        found = reproduce(Recording(path), sink, given={"estimation": response}).bands
     assert {"cage_slip", "rating_life", "running_clearance", "remaining_life"} <= set(found)
     count = bands_in(path)
     assert count > 10 and all((each.compared, each.missing, each.further) == (count, 0, 0) for each in found.values())
@@ -181,7 +181,7 @@ def test_bands_are_computed_again_and_compared_with_those_of_the_run(tmp_path, m
     (bands,) = [each for each in compare(path, tmp_path / "again.mcap", 1e-3)[0] if each.topic == "/bands"]
     assert bands.matched == count and not (bands.only_first or bands.only_second)
     monkeypatch.setattr("made_up_response.FACTOR", 6.0)
-    told = reproduce(Recording(path), sink_of_nothing(), response=made_up_response(scene)).bands
+    told = reproduce(Recording(path), sink_of_nothing(), given={"estimation": made_up_response(scene)}).bands
     assert told["cage_slip"].largest > 0.3 and told["cage_slip"].near < count, "another response shows"
     monkeypatch.setattr("bearing_sim.cli.replay.response_with_progress", lambda asked: response)
     assert "band of cage_slip" in invoke("replay", path, "--from-recording")
@@ -194,7 +194,7 @@ def test_what_measurements_taught_is_learned_again(tmp_path):
     estimation = LiveEstimation(scene, response)
     path = live_run(scene, tmp_path / "run.mcap", 100.0, 50.0, steady=True, ticks=400, estimation=estimation, cage_slip=0.03)
     assert estimation.is_calibrated
-    found = reproduce(Recording(path), sink_of_nothing(), response=response).bands
+    found = reproduce(Recording(path), sink_of_nothing(), given={"estimation": response}).bands
     assert FIELD in found and found[FIELD].compared > 3 and found["cage_slip"].compared == bands_in(path)
     assert all((each.missing, each.further) == (0, 0) and each.largest < 1e-6 for each in found.values())
 

@@ -11,8 +11,7 @@ from bearing_sim.model.sample import new_block
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import ResidualDetection
 from bearing_sim.simulation import Simulation
-from bearing_sim.watchers.monitoring.monitor import Monitor
-from bearing_sim.watchers.monitoring.residual import ResidualMonitor
+from bearing_sim.watchers.monitoring.residual import ResidualMonitor, TemperatureResiduals
 
 SPEED = 4712.0  # rad/s
 RATE = 10.0  # Hz
@@ -191,7 +190,7 @@ def told_of(monitor, block):
     """Return the events of residuals and the time of each when it begins, feeding ten samples at a time."""
     found = {}
     for k in range(0, len(block), 10):
-        monitor.take(block[k : k + 10])
+        monitor.see(block[k : k + 10])
         now = float(block["time"][k : k + 10][-1])
         for event in monitor.events(now):
             if event.kind == "residual.shift":
@@ -200,16 +199,16 @@ def told_of(monitor, block):
 
 
 def test_a_ring_that_becomes_warmer_than_predicted_is_found_and_named_and_one_that_is_always_warmer_is_not():
-    one = Monitor(load_scene("deng2017_table1", HEATED))
+    one = TemperatureResiduals(load_scene("deng2017_table1", HEATED))
     assert told_of(one, temperatures(1800.0, 1.0, 0.0)) == {}, "the network is wrong by a kelvin, always"
-    assert one.values["residual temperature of the inner ring, usual mean [K]"] == pytest.approx(1.0, abs=0.05)
-    assert one.values["residual temperature of the inner ring, verdict"] == "as predicted"
+    assert one.values(1800.0)["residual temperature of the inner ring, usual mean [K]"] == pytest.approx(1.0, abs=0.05)
+    assert one.values(1800.0)["residual temperature of the inner ring, verdict"] == "as predicted"
     told = told_of(one, temperatures(600.0, 1.0, 6.0, start=1800.0))
     assert [*told] == ["residual temperature of the outer ring"]
     at, event = told["residual temperature of the outer ring"]
     assert at < 1800.0 + 300.0 and "the outer ring is warmer than predicted" in event.text and ", usually +0.1" in event.text
-    assert one.values["residual temperature of the outer ring, changed for [s of measurement]"] > 0.0
-    assert one.values["residual temperature of the outer ring, verdict"] == "is warmer than predicted"
+    assert one.values(2400.0)["residual temperature of the outer ring, changed for [s of measurement]"] > 0.0
+    assert one.values(2400.0)["residual temperature of the outer ring, verdict"] == "is warmer than predicted"
 
 
 def test_measured_temperatures_correct_the_network_but_not_what_they_are_compared_with():
@@ -236,21 +235,21 @@ def test_measured_temperatures_correct_the_network_but_not_what_they_are_compare
 def test_a_ring_that_is_not_measured_or_not_predicted_has_no_residual():
     unmeasured = temperatures(60.0, 0.0, 0.0)
     unmeasured["inner_ring_temperature_measured"] = math.nan
-    one = Monitor(load_scene("deng2017_table1", HEATED))
+    one = TemperatureResiduals(load_scene("deng2017_table1", HEATED))
     told_of(one, unmeasured)
-    assert "residual temperature of the outer ring [K]" in one.values
-    assert not any("inner ring" in key for key in one.values)
-    given = Monitor(load_scene("deng2017_table1", ["heat={law: given, inner_ring: 127 degC}"]))
+    assert "residual temperature of the outer ring [K]" in one.values(60.0)
+    assert not any("inner ring" in key for key in one.values(60.0))
+    given = TemperatureResiduals(load_scene("deng2017_table1", ["heat={law: given, inner_ring: 127 degC}"]))
     told_of(given, temperatures(60.0, 5.0, 5.0))
-    assert not any(key.startswith("residual") for key in given.values), "nothing predicts it: measured replaces given"
+    assert not any(key.startswith("residual") for key in given.values(60.0)), "nothing predicts it: measured replaces given"
 
 
 def test_temperature_sensors_that_are_lost_leave_the_verdict_and_a_reset_lets_the_bearing_settle():
-    one = Monitor(load_scene("deng2017_table1", HEATED))
+    one = TemperatureResiduals(load_scene("deng2017_table1", HEATED))
     told_of(one, temperatures(1800.0, 0.0, 0.0))
     lost = temperatures(120.0, 0.0, 0.0, start=1800.0)
     for ring in ("inner", "outer"):
         lost[f"{ring}_ring_temperature_measured"] = math.nan
-    assert told_of(one, lost) == {} and one.values["residual temperature of the inner ring, verdict"] == "no measurement"
+    assert told_of(one, lost) == {} and one.values(1920.0)["residual temperature of the inner ring, verdict"] == "no measurement"
     one.restart()
     assert told_of(one, temperatures(50.0, 9.0, 9.0)) == {}, "after a reset the run's time may begin again; it settles for a minute first"

@@ -60,7 +60,7 @@ def samples(times, damage, speed=1000.0, slip=0.02, kappa=0.6, load=800.0, clear
 
 def stored(path, **options):
     keeper = StateKeeper(path, SCENE, "A1", **options)
-    keeper.close()
+    keeper.leave()
     return keeper.state
 
 
@@ -170,7 +170,7 @@ def test_a_state_comes_back_to_the_last_digit(tmp_path):
     path = tmp_path / "a.json"
     keeper = StateKeeper(path, SCENE, "A1")
     keeper.count_live(samples([0.1, 0.2, 0.3], [1e-9, 2e-9, 3e-9]), (MIDNIGHT,), 0.1)
-    keeper.close()
+    keeper.leave()
     state, news = read_state(path)
     assert state == keeper.state and news == []
     assert path.stat().st_size < 5000
@@ -221,7 +221,7 @@ def test_two_damaged_files_are_refused_with_what_to_do_and_no_file_is_a_new_bear
         StateKeeper(path, SCENE, "A1")
     keeper = StateKeeper(tmp_path / "new.json", SCENE, "A1")
     (begun,) = keeper.news(0.0)
-    keeper.close()
+    keeper.leave()
     assert begun.kind == "state.begun" and begun.level is Level.OK
 
 
@@ -265,16 +265,16 @@ def test_another_level_oil_threshold_or_calibration_is_the_same_bearing(tmp_path
     path = tmp_path / "a.json"
     keeper = StateKeeper(path, SCENE, "A1")
     keeper.state.learned = {"cage_slip": {"mean": 0.01}}
-    keeper.close()
+    keeper.leave()
     same = load_scene("deng2017_table1", ["level=slip", "thresholds.slip_error=0.2", "lubricant.temperature=350K"])
     keeper = StateKeeper(path, same, "")
-    keeper.close()
+    keeper.leave()
     assert keeper.state.learned and keeper.state.serial == "A1"
     keeper = StateKeeper(path, load_scene("deng2017_table1", ["lubricant.mixture_fraction=0.05"]), "A1")
     continued, recalibrated = keeper.news(0.0)
     assert (continued.kind, recalibrated.kind) == ("state.continued", "state.recalibrated") and keeper.state.learned == {}
     assert "calibrated since: lubricant.mixture_fraction 0.05; what" in recalibrated.reason, "only what has changed is named"
-    keeper.close()
+    keeper.leave()
 
 
 def test_a_second_user_of_a_file_is_refused_even_after_it_was_renamed(tmp_path):
@@ -282,8 +282,8 @@ def test_a_second_user_of_a_file_is_refused_even_after_it_was_renamed(tmp_path):
     keeper.save()
     with pytest.raises(StateError, match=r"in use by process \d+"):
         StateKeeper(tmp_path / "a.json", SCENE, "A1")
-    keeper.close()
-    StateKeeper(tmp_path / "a.json", SCENE, "A1").close()
+    keeper.leave()
+    StateKeeper(tmp_path / "a.json", SCENE, "A1").leave()
 
 
 @pytest.mark.parametrize("serial", ["a/b", "..", ".", "x y", "Ä-7", "%2F", "a" * 100])
@@ -318,7 +318,7 @@ def test_a_full_disk_is_an_error_while_counting_goes_on_and_is_over_when_it_can_
     assert (event.level, event.kind) == (Level.ERROR, "state.not_written") and "No space left" in event.text
     full.clear()
     assert keeper.save() and keeper.events(1.0) == []
-    keeper.close()
+    keeper.leave()
     assert read_state(tmp_path / "a.json")[0].totals.damage == 2e-9
 
 
@@ -380,7 +380,7 @@ def test_a_keeper_moves_yesterday_to_the_history_and_keeps_today(tmp_path, monke
     end = time.monotonic() + 20.0
     while keeper._moved is None and time.monotonic() < end:
         time.sleep(0.01)
-    keeper.close()
+    keeper.leave()
     assert list(keeper.state.days) == ["2024-10-04"] and keeper.state.folds == 1
     rows = history.all_days(tmp_path / "a.json", keeper.state)
     assert [row["day"] for row in rows] == ["2024-10-03", "2024-10-04"]
@@ -396,7 +396,7 @@ class Run:
     def __init__(self, path, seconds=0.3, reset=False, **options):
         self.keeper = StateKeeper(path, SCENE, "A1")
         self.begun_with = self.keeper.used
-        self.live = LiveModel(SCENE, FakeSimulation(), time.time_ns(), keeper=self.keeper, **options)
+        self.live = LiveModel(SCENE, FakeSimulation(), time.time_ns(), given={"state": self.keeper}, **options)
         self.damages = []
         self.feed(seconds)
         if reset:
@@ -414,7 +414,7 @@ class Run:
 
     def close(self):
         self.live.close()
-        self.keeper.close()
+        self.keeper.leave()
 
 
 def test_damage_continues_over_restarts_and_resets_and_only_grows(tmp_path):
@@ -433,7 +433,7 @@ def test_damage_continues_over_restarts_and_resets_and_only_grows(tmp_path):
 
 def test_without_a_state_every_run_begins_at_zero(tmp_path):
     live = LiveModel(SCENE, FakeSimulation(), time.time_ns())
-    assert live.keeper is None and "revolutions" not in live.condition(time.time_ns()).values
+    assert live.watchers.memory.life_used is None and "revolutions" not in live.condition(time.time_ns()).values
     live.close()
 
 
@@ -445,11 +445,11 @@ def test_another_bearing_begins_anew_and_the_state_of_the_first_is_kept(tmp_path
         kept.append(run.keeper.retire(into_archive=True))
         return StateKeeper(tmp_path / "a.json", SCENE, "B2")
 
-    run.live.replace_bearing(change)
+    run.live.replace_bearing("state", change)
     first, run.damages = run.damages, []
     run.feed(0.2)
     run.live.close()
-    run.live.keeper.close()
+    run.live.watchers.get("state").leave()
     archived, now = read_state(kept[0])[0], read_state(tmp_path / "a.json")[0]
     assert archived.serial == "A1" and archived.retired_ns and archived.totals.damage >= first[-1]
     assert now.serial == "B2" and 0.0 < now.totals.damage < archived.totals.damage and max(run.damages) <= now.totals.damage
@@ -481,7 +481,7 @@ def test_a_recording_with_a_state_repeats_to_the_last_bit(tmp_path):
     keeper.state.totals.damage = 0.123456789
     keeper.restart()
     last = recorded(run, scene, keeper)
-    keeper.close()
+    keeper.leave()
     assert last["damage"] > 0.123456789
     done = CliRunner().invoke(main, ["replay", "--from-recording", str(run), "-o", str(tmp_path / "again.mcap")])
     assert done.exit_code == 0, done.output
@@ -495,13 +495,13 @@ def test_a_recording_fills_a_gap_once_and_only_once(tmp_path):
     path, run = tmp_path / "a.json", tmp_path / "run.mcap"
     keeper = StateKeeper(path, SCENE, "A1")
     last = recorded(run, SCENE, keeper, seconds=1.0)
-    keeper.close()
+    keeper.leave()
     whole = read_state(path)[0]
     assert whole.totals.damage == last["damage"]
     lost = whole.copy()  # what a kill leaves that had written 0.4 s before
     keeper = StateKeeper(tmp_path / "short.json", SCENE, "A1")
     recorded(tmp_path / "first.mcap", SCENE, keeper, seconds=0.6)
-    keeper.close()
+    keeper.leave()
     lost = read_state(tmp_path / "short.json")[0]
     assert lost.totals.damage < whole.totals.damage
     for added in (0.4, 0.0):
@@ -516,7 +516,7 @@ def test_a_recording_of_another_bearing_is_not_merged(tmp_path):
     stored(tmp_path / "a.json")
     keeper = StateKeeper(tmp_path / "b.json", SCENE, "B2")
     recorded(tmp_path / "run.mcap", SCENE, keeper)
-    keeper.close()
+    keeper.leave()
     done = CliRunner().invoke(main, ["state", "merge", str(tmp_path / "a.json"), str(tmp_path / "run.mcap")])
     assert done.exit_code == 2 and "serial number 'B2' instead of 'A1'" in done.output
     assert read_state(tmp_path / "a.json")[0].totals.damage == 0.0
@@ -547,7 +547,7 @@ def test_a_log_that_is_played_twice_under_sim_time_counts_once_and_shows_the_lif
     keeper = StateKeeper(tmp_path / "a.json", SIM_SCENE, "A1", once=True, clock=wall)
     keeper.state.totals.damage = 0.5
     keeper.restart()
-    model = SimTimeModel(SIM_SCENE, FakeSimulation(), RATE, RATE, wall=wall, keeper=keeper)
+    model = SimTimeModel(SIM_SCENE, FakeSimulation(), RATE, RATE, wall=wall, given={"state": keeper})
     player, used, shown = Player(model, wall), [], []
     for _ in range(2):
         player.play(messages, ticks)
@@ -556,7 +556,7 @@ def test_a_log_that_is_played_twice_under_sim_time_counts_once_and_shows_the_lif
         used.append(keeper.used)
         shown.append([float(each.sample["damage"]) for each in model.published()])
     model.close()
-    keeper.close()
+    keeper.leave()
     assert used[0] > 0.5 and used[1] == pytest.approx(used[0], abs=1e-12)
     assert sorted(shown[0]) == shown[0] and shown[0][-1] == used[0] and shown[1][0] == pytest.approx(used[0], abs=1e-12)
     assert read_state(keeper.path)[0].totals.monitored_seconds == pytest.approx(2.0, abs=0.1)
@@ -570,7 +570,7 @@ def test_the_commands_show_export_and_adopt(tmp_path, monkeypatch):
     path = default_path("A1")
     keeper = StateKeeper(path, SCENE, "A1")
     keeper.count_live(samples(np.arange(1, 11) * 0.1, np.arange(1, 11) * 1e-3), (MIDNIGHT,), 0.1)
-    keeper.close()
+    keeper.leave()
 
     def run(*words, code=0):
         done = CliRunner().invoke(main, ["state", *map(str, words)])

@@ -576,7 +576,7 @@ def test_a_warning_comes_once_and_goes_late(scenes):
     changes = [
         (round(event.time, 1), event.level)
         for k in range(0, len(times), 7)
-        for event in monitor.take(block_of(scene, times[k : k + 7], loads[k : k + 7]))
+        for event in monitor.see(block_of(scene, times[k : k + 7], loads[k : k + 7]))
         if event.subject == "hertz_pressure"
     ]
     assert [level for _, level in changes] == [Level.WARN, Level.OK]
@@ -593,7 +593,7 @@ def test_another_setting_continues_the_warnings_of_its_laws_ends_those_of_others
     monitor = LimitsMonitor(scene)
 
     def holding(now, load):
-        monitor.take(block_of(scene, [now], [load]))
+        monitor.see(block_of(scene, [now], [load]))
         return {event.subject for event in monitor.events(now)} & {"hertz_pressure", "table_correction"}
 
     assert holding(0.0, 40e3) == {"hertz_pressure"}
@@ -617,7 +617,7 @@ def test_samples_are_judged_at_most_ten_times_a_second(scenes, monkeypatch):
 
     monkeypatch.setattr("bearing_sim.watchers.monitoring.limits.Conditions", counted_conditions)
     for k in range(1000):
-        monitor.take(block_of(scene, [k * 1e-3], [1e3]))
+        monitor.see(block_of(scene, [k * 1e-3], [1e3]))
     assert sum(judged) == 10
 
 

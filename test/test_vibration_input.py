@@ -84,13 +84,14 @@ def test_blocks_become_windows_with_the_shaft_speed_of_each_instant_and_readings
     fed.free.set()
     found = []
     until(lambda: found.extend(fed.meter.readings(-0.5 * SPEED)) or found)
-    assert found == [(pytest.approx(-60.0), pytest.approx(0.15))] and "outer ring shows" in fed.meter.remark
+    assert found == [(pytest.approx(-60.0), pytest.approx(0.15))] and "outer ring shows" in fed.meter.last
 
 
 def test_lost_and_late_blocks_begin_the_window_again_and_are_counted(fed):
     fed.feed(blocks(9))
     fed.feed(blocks(4, first=12))
-    assert fed.kinds == ["vibration.gap"] and "block 12 follows block 8" in fed.events[0].text and fed.meter.values["vibration: blocks lost"] == 3
+    assert fed.kinds == ["vibration.gap"] and "block 12 follows block 8" in fed.events[0].text
+    assert fed.meter.values(0.0)["vibration: blocks lost"] == 3
     fed.now += 2.0
     fed.feed([block._replace(sequence=None) for block in blocks(5)])
     assert fed.kinds[1:] == ["vibration.gap"] and "later than the samples" in fed.events[1].text and not fed.windows
@@ -109,7 +110,7 @@ def test_windows_that_come_faster_than_they_are_analysed_are_left_out_and_said(f
     fed.feed(blocks(10))
     until(lambda: fed.windows)
     fed.feed(blocks(40, first=10))
-    assert fed.kinds == ["vibration.behind"] * 3 and fed.meter.values["vibration: windows left out"] == 3
+    assert fed.kinds == ["vibration.behind"] * 3 and fed.meter.values(0.0)["vibration: windows left out"] == 3
 
 
 @pytest.mark.parametrize(
@@ -124,15 +125,15 @@ def test_windows_that_come_faster_than_they_are_analysed_are_left_out_and_said(f
 )
 def test_a_block_that_cannot_be_used_is_refused_with_what_was_expected(fed, block, speed, reason):
     (event,) = fed.meter.take(block, 1.0, speed)
-    assert event.kind == "vibration.refused" and reason in event.text and fed.meter.values["vibration: blocks refused"] == 1
+    assert event.kind == "vibration.refused" and reason in event.text and fed.meter.values(0.0)["vibration: blocks refused"] == 1
 
 
 def test_an_analysis_that_fails_ends_nothing(fed):
     fed.meter._analysed = lambda window: 1 / 0
     fed.feed(blocks(10))
-    until(lambda: not fed.meter.readings(SPEED) and "division by zero" in fed.meter.remark)
+    until(lambda: not fed.meter.readings(SPEED) and "division by zero" in fed.meter.last)
     fed.feed(blocks(10, first=10))
-    until(lambda: not fed.meter.readings(SPEED) and fed.meter.values["vibration: windows"] == 2)
+    until(lambda: not fed.meter.readings(SPEED) and fed.meter.values(0.0)["vibration: windows"] == 2)
 
 
 @pytest.mark.long
@@ -144,10 +145,10 @@ def test_the_process_finds_the_cage_in_a_window_and_says_that_noise_has_no_line(
     synthetic = record(machine, 25_600.0, 2.0, np.random.default_rng(3))
     found = []
     for samples in (synthetic.vibration.samples, np.random.default_rng(4).normal(size=51_200)):
-        before = meter.values["vibration: windows"]
+        before = meter.values(0.0)["vibration: windows"]
         assert meter.take(Block(samples, 25_600.0), 0.0, 314.0) == []
-        until(lambda: found.extend(meter.readings(314.0)) or meter.values["vibration: windows"] > before)
-    assert meter.values["vibration: windows without a claim"] == 1 and "no line of this bearing" in meter.remark, meter.values
+        until(lambda: found.extend(meter.readings(314.0)) or meter.values(0.0)["vibration: windows"] > before)
+    assert meter.values(0.0)["vibration: windows without a claim"] == 1 and "no line of this bearing" in meter.last, meter.values(0.0)
     ((speed, error),) = found
     assert abs(speed / (2.0 * math.pi * synthetic.shaft_frequency * synthetic.ratio) - 1.0) < 0.02 and 0.0 < error < 4.0
     meter.close()

@@ -94,7 +94,7 @@ def replay(logs, scene_name, from_recording, overrides, out, rrd, rate, state_fi
         recording, names_of = None, [log.name for log in logs]
         keeper = None if state_file is None else StateKeeper(state_file, scene, checked_serial(serial), once=True)
         if keeper is not None:
-            stack.callback(keeper.close)
+            stack.callback(keeper.leave)
         if out is not None:
             out.check()  # again, now that scene and logs have been read
             metadata = {"bearing_sim_replay": {"log": " ".join(names_of)}, COMMAND: {"command": command_line()}}
@@ -107,7 +107,9 @@ def replay(logs, scene_name, from_recording, overrides, out, rrd, rate, state_fi
             watchers.append(stack.enter_context(RerunFile(scene, stack.enter_context(rrd.draft()), course.start_ns, seconds)))
         announce_compilation(scene)
         choice = _choice(scene, course)
-        response = response_with_progress(scene) if scene.estimation.is_asked else None
+        given = choice.pop("given", {}) | ({} if keeper is None else {"state": keeper})
+        if scene.estimation.is_asked:
+            given["estimation"] = response_with_progress(scene)
         started = time.perf_counter()
         with suppress(IntegrationError):  # the replay itself will report it
             warm = choice.get("model", Simulation)(scene)
@@ -116,7 +118,7 @@ def replay(logs, scene_name, from_recording, overrides, out, rrd, rate, state_fi
                 warm.advance_profile(np.array([1e-6]), np.array([warm.inputs]))
         start_up = time.perf_counter() - started
         progress = stack.enter_context(progress_bar(f"replaying {', '.join(names_of)}", seconds))
-        result = replay(scene, course, recording, watchers, rate, progress, keeper=keeper, response=response, **choice)
+        result = replay(scene, course, recording, watchers, rate, progress, given=given, **choice)
     warnings = graded(scene, result.warnings, result.worst_samples, ("slip", "life"))
     for event in keeper.news(0.0) + keeper.events(0.0) if keeper is not None else []:
         note(f"{event.level.name.lower().replace('ok', 'note')}: {event.text}")
@@ -172,7 +174,7 @@ def _choice(scene, course) -> dict:
     kelvin = np.append(course.values.get("oil_temperature", ()), [] if "oil_temperature" in course.stamps else scene.lubricant.temperature)
     ends = rounded_temperatures(float(kelvin.min()), float(kelvin.max()))
     table = build_with_progress(scene, ends)[0]
-    return {"model": partial(Simulation, table=table), "laws": laws_of_table(scene, ends)}
+    return {"model": partial(Simulation, table=table), "given": {"validity": laws_of_table(scene, ends)}}
 
 
 _KEPT = (
@@ -298,9 +300,10 @@ def _reproduction(path: Path, out) -> Result:
             origin |= {name: record for name, record in recording.records.items() if name == RECORD}
             sink = stack.enter_context(recording_into(out, McapSink(out.path, recording.scene, recording.start_ns, origin, replace=out.force)))
         announce_compilation(recording.scene)
-        response = response_with_progress(recording.scene) if reproduction.first_bands(recording) is not None else None
+        has_bands = reproduction.first_bands(recording) is not None
+        given = {"estimation": response_with_progress(recording.scene)} if has_bands else {}
         progress = stack.enter_context(progress_bar(f"reproducing {path.name}", recording.duration))
-        result = reproduction.reproduce(recording, sink, progress, response)
+        result = reproduction.reproduce(recording, sink, progress, given)
     tell_use(recording.tally, path)
     was = {name: recording.metadata.get(name, "") for name in ("package_version", "git_hash")}
     now = {"package_version": package_version(), "git_hash": git_hash()}

@@ -176,7 +176,7 @@ def _advance(simulation, plan, sinks, progress, estimation):
     def take(block):
         for sink in sinks:
             sink.write(block)
-        for bands in estimation.take(block) if estimation is not None else ():
+        for bands in estimation.see(block) if estimation is not None else ():
             for sink in sinks:
                 sink.write(bands)
         progress(float(block["time"][-1]))

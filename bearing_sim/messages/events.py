@@ -145,5 +145,8 @@ class Received(NamedTuple):
     data: bytes
 
 
+FOR_KEEPING = Start, ReceivedInputs, Report
+"""Records that are for recordings alone."""
+
 Record = np.ndarray | Event | Measurement | MeasuredClearance | Bands | ReceivedInputs | Start | Report | Received
 """What a sink takes; an array is a block of samples (see `bearing_sim.model.sample`), which nobody may change afterwards."""

@@ -35,7 +35,7 @@ from bearing_sim.runtime.precompilation import compile_for
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import number_at, quantities, ranges_of, shown
-from bearing_sim.watchers.estimation.response import kept_response
+from bearing_sim.watchers.monitoring.watchers import are_missing
 
 _DOMAINS = range(60, 100)  # above the usual choices of users, below where ports collide with ephemeral ports
 _NODE_ENDS_WITHIN = 30.0  # [s]
@@ -330,7 +330,7 @@ def command(out, scene, overrides, allow_outside, mission, duration, estimates, 
     try:
         compile_for(loaded, lambda line: click.echo(line, err=True))
         _await(installing)
-        demo.run(mission, duration, loaded.estimation.is_asked and kept_response(loaded) is None)
+        demo.run(mission, duration, are_missing(loaded))
         click.echo(summary(demo.recording))
         click.echo(f"recording: {demo.recording}")
         _await(installing, all_of_it=True)

@@ -2,7 +2,6 @@
 """The ROS interface of one bearing: its topics, services, diagnostics and recordings, in front of its live model."""
 
 import dataclasses
-import json
 import math
 import shlex
 import subprocess
@@ -48,11 +47,10 @@ from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import messages, with_values
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.view.viewer import stream_url, viewer_command
-from bearing_sim.watchers.estimation.response import ResponseModel, kept_response, response_path
-from bearing_sim.watchers.stored_state.keeper import RECORD, StateKeeper
-from bearing_sim.watchers.stored_state.state_file import checked_serial, default_path
+from bearing_sim.watchers.monitoring.watchers import Watcher, kind_of, resources
 
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
+_STATE = "state"  # the watcher that remembers the bearing
 _SCALAR = "std_msgs/msg/Float64"
 
 
@@ -257,13 +255,13 @@ class BearingInterface:
         self._node, self._logger, self.settings, self._shared = node, node.get_logger(), settings, shared
         self.scene: Scene = load_scene(settings.scene, settings.scene_overrides, settings.allow_outside)
         self._profiles = profiles(node.parameters, entities_of_bearing(self.scene, self._full_name, follows_clock(node)))
-        self._keeper = self._open_state(settings.serial)
+        self._given: dict[str, object] = {}  # to watchers: the state of the bearing, and what takes long to read
+        if (state := self._open_state(settings.serial)) is not None:
+            self._given[_STATE] = state
         self.live: LiveModel | SimTimeModel | None = None
         self._wanted_serial = settings.serial  # in use from ~/replace_bearing on
         self.error = ""  # why the model cannot run; reported until the next configure
         self._simulation: Simulation | None = None
-        self._response: ResponseModel | None = None  # of the bearing to its uncertain fields
-        self._awaited_response: Path | None = None  # where it will be
         self._governor: Governor | None = None
         self._settings: list[Setting] = []  # measured ones, along which the governor falls
         self._courses: tuple[MeasuredCourse, ...] = ()  # that these were measured on
@@ -311,7 +309,7 @@ class BearingInterface:
         try:
             prepare(settings.has_view)
             self._outputs.prepare()
-            self._response = kept_response(self.scene) if self.scene.estimation.is_asked else None
+            self._given |= resources(self.scene)
             simulation = warmed_up(self.scene)
             governs = self._shared.governor and not follows_clock(self._node)  # with sim time no time is skipped
             kept = read_kept_tradeoffs(self.scene)
@@ -332,8 +330,6 @@ class BearingInterface:
             A recording or a view cannot be opened.
         """
         settings, shared = self.settings, self._shared
-        awaits = self.scene.estimation.is_asked and self._response is None and not follows_clock(self._node)
-        self._awaited_response = response_path(self.scene) if awaits else None
         if follows_clock(self._node):
             self._now_ns = self._node.now_ns
             self.live = SimTimeModel(
@@ -342,8 +338,7 @@ class BearingInterface:
                 shared.sample_rate,
                 shared.publish_rate,
                 shared.clock_jump_back,
-                keeper=self._keeper,
-                response=self._response,
+                given=self._given,
                 inputs_expected_within=shared.inputs_expected_within,
                 clock_tolerance=shared.clock_tolerance,
             )
@@ -361,8 +356,7 @@ class BearingInterface:
                 due=self._publish_newest,
                 receiver=self._now_ns,
                 threads=self._node.solver_threads,
-                keeper=self._keeper,
-                response=self._response,
+                given=self._given,
                 inputs_expected_within=shared.inputs_expected_within,
                 stamp_tolerance=shared.stamp_tolerance,
             )
@@ -401,8 +395,8 @@ class BearingInterface:
         self._subscriptions, self._found = {}, {}
         live, self.live = self.live, None
         stopped = live.close() if live is not None else True
-        if live is not None:
-            self._keeper = live.keeper
+        if live is not None and (state := live.watchers.get(_STATE)) is not None:
+            self._given[_STATE] = state
         if not stopped:
             self._simulation = self._governor = None
         return stopped
@@ -410,9 +404,8 @@ class BearingInterface:
     def destroy(self) -> bool:
         """End the run and destroy topics and services.  Returns whether the solver's thread ended."""
         stopped = self.close()
-        if self._keeper is not None:
-            self._keeper.close()
-            self._keeper = None
+        if (state := self._given.pop(_STATE, None)) is not None:
+            state.leave()
         if self._compiling is not None:
             self._compiling.kill()
             self._compiling.wait()
@@ -445,7 +438,7 @@ class BearingInterface:
         for bands in self.live.bands():
             self._outputs.publish_bands(bands, [self.live.stamp(time) for time in bands.times.tolist()])
         if self._report_is_due(self.live.level):
-            self._look_for_response()
+            self._look_for_resources()
             self._look_for_publishers()  # once a second is enough
             self._report(now_ns, self.live.condition(now_ns))
 
@@ -460,14 +453,11 @@ class BearingInterface:
         if self.live is not None:
             self.live.record_diagnostics(condition, now_ns)
 
-    def _look_for_response(self) -> None:
-        """Estimate by a response that has been built since the start; with simulated time a run must not depend on when that was."""
-        if self._awaited_response is None or not self._awaited_response.exists():
-            return
-        self._awaited_response, self._response = None, kept_response(self.scene)
-        if self._response is not None:
-            self.live.estimate_by(self._response)
-            self._log("the response of the bearing to its uncertain fields is there: estimating what the scene asks for")
+    def _look_for_resources(self) -> None:
+        """Let watchers begin whose resources have been made since the start; with simulated time a run must not depend on when that was."""
+        if not follows_clock(self._node) and (found := self.live.watchers.complete()):
+            self._given |= found
+            self._log(f"what was missing at the start is there: {', '.join(found)}")
 
     def _look_for_publishers(self) -> None:
         """Tell the model who publishes its inputs, and which topics the scene does not use have a publisher."""
@@ -524,14 +514,11 @@ class BearingInterface:
         if self.live is not None and self.scene.lubricant.temperature != before.lubricant.temperature:
             self.live.set_oil_temperature(self.scene.lubricant.temperature, self._now_ns())
 
-    def _open_state(self, serial: str) -> StateKeeper | None:
-        """Return the keeper of the state of a bearing, None if nothing is to be remembered; raise OSError if it cannot be used."""
-        serial, path = checked_serial(serial), self.settings.state_file.strip()
-        is_simulated = follows_clock(self._node)
-        if not path and (is_simulated or not serial):
-            return None
-        keeper = StateKeeper(path or default_path(serial), self.scene, serial, once=is_simulated)
-        self._log(f"state of the bearing: {keeper.path}")
+    def _open_state(self, serial: str) -> Watcher | None:
+        """Return what keeps the state of a bearing, None if nothing is to be remembered; raise OSError if it cannot be used."""
+        keeper = kind_of(_STATE).of_bearing(self.scene, serial, self.settings.state_file.strip(), follows_clock(self._node))
+        if keeper is not None:
+            self._log(f"state of the bearing: {keeper.path}")
         return keeper
 
     def publish_at(self, rate: float) -> None:
@@ -621,12 +608,10 @@ class BearingInterface:
         if live is None:  # the message was on its way when the run ended
             return
         try:
-            from bearing_sim.watchers.vibration.reading import block_of
-
-            block = block_of(deserialize_message(cdr, kind))
+            block = deserialize_message(cdr, kind)
         except Exception as error:  # its type depends on the middleware
-            block = f"{len(cdr)} bytes are no block of samples: {' '.join(str(error).split())}"
-        live.offer_vibration(block, self._now_ns())
+            block = f"{len(cdr)} bytes cannot be read: {' '.join(str(error).split())}"
+        live.hear(topics.VIBRATION.name, block, self._now_ns())
 
     @property
     def _listener(self) -> Node | PolledSubscriptions:
@@ -692,7 +677,7 @@ class BearingInterface:
 
     def _start_recording(self, path: Path) -> None:
         def records() -> dict[str, dict[str, str]]:
-            found = {RECORD: self.live.keeper.record} if self.live.keeper is not None else {}
+            found = dict(self.live.watchers.memory.records)
             if self._settings and isinstance(self.live, LiveModel):
                 found[GOVERNOR_RECORD] = governor_record(self._settings, self.live.setting)
             return found
@@ -766,26 +751,23 @@ class BearingInterface:
     def _reset(self, _) -> tuple[bool, str]:
         """Return the model to the start of the scene; without a stored state, damage as well."""
         if self.live.reset():
-            return True, "state and damage are reset" if self.live.keeper is None else "the model is reset; the totals of the bearing continue"
+            is_new = self.live.watchers.memory.life_used is None
+            return True, "state and damage are reset" if is_new else "the model is reset; the totals of the bearing continue"
         return False, "not done within two seconds; the reset follows after the running tick"
 
     def _accept_change(self, _) -> tuple[bool, str]:
         """Take the machine as it is since a change that the calibration has found for the new normal."""
-        if self.live.accept_change():
-            return True, "the calibration continues from the changed machine; the change is reported no longer"
-        return False, "there is no change to accept: no calibration.change is reported"
+        return self.live.watchers.serve("accept_change") or (False, "there is no change to accept: no calibration.change is reported")
 
     def _get_stored_state(self, _) -> tuple[bool, str]:
         """Answer with the stored state of the bearing as JSON: totals, calibration, temperatures."""
-        keeper = self.live.keeper
-        if keeper is None:
-            return False, "nothing is remembered: set serial or state_file, and configure the node"
-        return True, json.dumps(keeper.summary())
+        nothing = False, "nothing is remembered: set serial or state_file, and configure the node"
+        return self.live.watchers.serve("get_stored_state") or nothing
 
     def _replace_bearing(self, _) -> tuple[bool, str]:
         """End the stored state of the bearing, which is kept, and begin that of the bearing whose serial number was set before."""
-        before, serial = self.live.keeper, checked_serial(self._wanted_serial)
-        number = before.state.serial if before is not None else ""
+        before, serial = self.live.watchers.get(_STATE), kind_of(_STATE).checked(self._wanted_serial)
+        number = before.serial if before is not None else ""
         if not serial or serial == number:
             return False, f"set serial to the number of the new bearing first; it is {serial or 'empty'!r}, and the bearing in service is {number!r}"
         path = self.settings.state_file.strip()
@@ -796,7 +778,7 @@ class BearingInterface:
             self.live.detach("record")
         kept = []
 
-        def change() -> StateKeeper:
+        def change() -> Watcher:
             other = None if path else self._open_state(serial)
             try:
                 if before is not None:
@@ -808,14 +790,14 @@ class BearingInterface:
             return other or self._open_state(serial)
 
         try:
-            self.live.replace_bearing(change)
+            self.live.replace_bearing(_STATE, change)
             self.settings = dataclasses.replace(self.settings, serial=serial)
         finally:
             if recording:
                 self._start_recording(self._recording_path)
-        life = 100.0 * self.live.keeper.used
+        state = self.live.watchers.get(_STATE)
         ended = f"; the state of {number!r} is kept in {kept[0]}" if kept else ""
-        return True, f"serial number {serial}: {life:.6g} % of life used, in {self.live.keeper.path}{ended}"
+        return True, f"serial number {serial}: {100.0 * state.used:.6g} % of life used, in {state.path}{ended}"
 
     def _pause(self, request) -> tuple[bool, str]:
         """Hold simulated time, or continue."""

@@ -5,13 +5,14 @@ Replays of recordings and runs in simulated time share this module; it knows nei
 """
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from bearing_sim.inputs.profile import Arrival, Segment
-from bearing_sim.messages.events import Event, Level
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation, start_sample
+from bearing_sim.messages.events import Event, Level, ReceivedInputs, Record, Start
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, begin_at_temperatures, start_sample
+from bearing_sim.watchers.monitoring.watchers import Run, Watchers
 
 _COURSE = 2000  # instants advanced at once, at a level that supports it
 _FAILURES_IN_A_ROW = 10  # then the run is given up
@@ -29,6 +30,46 @@ class Begun(NamedTuple):
 
     time: float  # [s] since the start of the profile
     block: np.ndarray  # its sample there, shape (1,); a recording begins with it so that the run can be reproduced
+
+
+class Follower(Protocol):
+    """A run along a profile: one in simulated time, or a replay."""
+
+    watchers: Watchers
+
+    def write(self, record: Record, now: float) -> None:
+        """Write a record to the sinks at run time ``now`` [s]."""
+
+    def judge(self, block: np.ndarray) -> None:
+        """Let the watchers see samples that have been written."""
+
+
+def pass_on(item: Arrival | Begun | Output, run: Follower) -> None:
+    """Pass what has happened along a profile on to sinks and watchers."""
+    match item:
+        case Begun(time, block):
+            run.watchers.correct(block, np.zeros(len(block)))
+            run.write(Start(block), time)
+        case Output(block, weights):
+            run.watchers.correct(block, weights)
+            run.write(block, float(block["time"][-1]))
+            run.judge(block)
+        case Arrival():
+            run.write(ReceivedInputs(*item), item.time)
+
+
+def put_at_start(simulation: Simulation, inputs: Inputs, run: Run, is_there: bool = False) -> None:
+    """Put a simulation at the start of a run, as warm as the bearing is remembered; on the thread that advances it.
+
+    Parameters
+    ----------
+    is_there : whether the simulation is at the start that the scene says.
+    """
+    known = run.watchers.memory.temperatures(run.begins_at()) if simulation.thermal is not None else None
+    if known is not None:
+        begin_at_temperatures(simulation, inputs, *map(np.array, known))
+    elif not is_there:
+        simulation.reset(inputs)
 
 
 class ProfileRun:

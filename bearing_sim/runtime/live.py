@@ -8,8 +8,9 @@ The node is a thin front end; another one (a socket, a test) would use the same 
 import dataclasses
 import math
 import time
-from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,13 +19,13 @@ from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.messages import topics
 from bearing_sim.messages.bands import BANDS, Bands
 from bearing_sim.messages.diagnostics import SETTING_ERRORS, further_condition, sink_subject
-from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, ReceivedInputs, Report
+from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, ReceivedInputs, Record, Report
 from bearing_sim.model.plausibility import plausibility
 from bearing_sim.model.sample import RING_TEMPERATURES, joined
+from bearing_sim.runtime.advance_segment import put_at_start
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health, Phase, level_of, numbers, remarks
 from bearing_sim.runtime.pacing import LONGEST_TICK, Decimator, OutputCount, Pacer, WallClock, tick_schedule
-from bearing_sim.runtime.remembering import note, recall, recall_estimates, warm_start
 from bearing_sim.runtime.sink_registry import Sink, SinkRegistry
 from bearing_sim.runtime.solver import Solver, WallTimeSolver
 from bearing_sim.runtime.solver_threads import SolverThreads
@@ -34,18 +35,7 @@ from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import IntegrationError, Simulation
-from bearing_sim.watchers.estimation.two_states import laws_of_table
-from bearing_sim.watchers.monitoring.limits import LimitsMonitor
-from bearing_sim.watchers.monitoring.monitor import Monitor
-from bearing_sim.watchers.monitoring.residual import ResidualMonitor
-from bearing_sim.watchers.monitoring.watchers import Watchers
-from bearing_sim.watchers.stored_state.keeper import StateKeeper
-
-if TYPE_CHECKING:
-    from bearing_sim.watchers.estimation.live import LiveEstimation
-    from bearing_sim.watchers.estimation.response import ResponseModel
-    from bearing_sim.watchers.vibration.meter import CageSpeedMeter
-    from bearing_sim.watchers.vibration.reading import Block
+from bearing_sim.watchers.monitoring.watchers import NOTHING, Run, Watcher, Watchers
 
 _REPLACED_WITHIN = 10.0  # [s] for the reset of a model that is held
 _CLOCKS = 3  # times 0 by clocks before the present one under which a recording may have its stamps
@@ -112,7 +102,7 @@ def _at_lower_level(scene: Scene, level: str) -> Scene:
     return dataclasses.replace(lower, table=dataclasses.replace(lower.table, correction="none"))
 
 
-class Model:
+class Model(Run):
     """One bearing under way; base of `LiveModel` and `bearing_sim.runtime.sim_time.SimTimeModel`.
 
     All methods belong to one thread (the node's); the simulation runs on the solver's.
@@ -121,40 +111,36 @@ class Model:
     ----------
     scene : what is simulated; its limits judge the messages, its thresholds the bearing.
     gate : judges the messages.
-    solver : the thread that advances the simulation.
     start_ns : run time 0 [ns since the epoch].
-    keeper : of the bearing's state; None where nothing is remembered.
-    response : of the scene, for what its block ``estimation`` asks for; without one nothing is estimated, which is reported.
+    given : what watchers are given that a scene cannot name, by their names (see `bearing_sim.watchers.monitoring.watchers.Watchers`): what is
+        asked for and not there is reported.
     inputs_expected_within : time from the start within which a good message of speed and of load is expected [s], and of any channel that
         somebody publishes.
 
     Attributes
     ----------
+    solver : Solver
+        The thread that advances the simulation, which a subclass makes.
     level : Level
         The worst level that held when `collect` last reviewed the health.
     """
+
+    is_reviewed = True
+    solver: Solver
 
     def __init__(
         self,
         scene: Scene,
         gate: InputGate,
-        solver: Solver,
         start_ns: int,
-        keeper: StateKeeper | None = None,
-        response: "ResponseModel | None" = None,
+        given: Mapping[str, object] = NOTHING,
         inputs_expected_within: float = 10.0,
     ):
-        self.keeper = keeper
         self._inputs_expected_within = inputs_expected_within
         self._sources: dict[str, Sources] = {}
-        self._estimation = _estimation(scene, response) if response is not None and scene.estimation.is_asked else None
         self._bands: list[Bands] = []
-        self._slip_band = math.nan  # upper end of the newest band of slip
-        self._counted: np.void | None = None  # the newest sample that is in the bearing's state
-        self.scene, self.gate, self.solver, self.start_ns = scene, gate, solver, start_ns
-        self.health, self.monitor, self.limits = Health(), Monitor(scene), LimitsMonitor(scene, laws_of_table(scene))
-        self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
-        self.sinks, self.watchers = SinkRegistry(), Watchers(scene)
+        self.scene, self.gate, self.start_ns = scene, gate, start_ns
+        self.health, self.sinks, self.watchers = Health(), SinkRegistry(), Watchers(scene, self, given)
         self.level = Level.OK
         self._conflicts = {channel: PublisherConflict(channel) for channel in CHANNELS}
         self._unused: set[str] = set()
@@ -162,7 +148,17 @@ class Model:
         for finding in plausibility(scene):
             field, _, reason = finding.partition(": ")
             self.health.note(Event(0.0, Level.WARN, "scene.implausible", field, reason))
-        self._recall()
+        self.watchers.begin()
+
+    @property
+    def heard(self) -> list[str]:
+        """Input channels with good messages."""
+        return [channel for channel, count in self.gate.accepted.items() if count]
+
+    @property
+    def shaft_speed(self) -> float:
+        """The newest measured shaft speed [rad/s]; NaN before the first."""
+        return self.gate.held.shaft_speed if self.gate.accepted["shaft_speed"] else math.nan
 
     def run_time(self, now_ns: int) -> float:
         """Return the run time [s] of an instant of the clock."""
@@ -219,20 +215,15 @@ class Model:
     def adjust(self, thresholds: Thresholds) -> None:
         """Use other thresholds from now on; what was learned about the measured cage is kept."""
         self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
-        self.monitor.adjust(thresholds)
-        self.limits.adjust(thresholds)
-        self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
-        if self._estimation is not None:
-            self._estimation.adjust(thresholds)
-        if self.keeper is not None:
-            self.keeper.adjust(self.scene)
+        self.watchers.adjust(thresholds)
 
-    def replace_bearing(self, change: Callable[[], StateKeeper]) -> None:
+    def replace_bearing(self, name: str, change: Callable[[], Watcher]) -> None:
         """Continue with another bearing of the same scene, in ideal rolling at the present inputs.
 
         Parameters
         ----------
-        change : ends the state of the present bearing, which by then contains all its samples, and returns the keeper of the other one's.
+        name : of the watcher that remembers bearings.
+        change : ends that of the present bearing, which by then has seen all its samples, and returns that of the other one.
 
         Raises
         ------
@@ -243,39 +234,13 @@ class Model:
         try:
             if not self.solver.hold():
                 raise OSError("the model is busy and did not stop within two seconds; call the service again")
-            self._take(self.solver.take(), 0.0 if self._counted is None else float(self._counted["time"]))
-            self.keeper = change()
-            self._counted = None
-            self.solver.continue_from(self.keeper.used)
+            self._take(self.solver.take(), 0.0 if self.solver.newest is None else float(self.solver.newest["time"]))
+            self.watchers.replace(name, change())
+            self.solver.continue_from(self.watchers.memory.life_used)
             self.solver.reset(_REPLACED_WITHIN)
-            self._recall()
+            self.watchers.begin()
         finally:
             self.solver.pause(was_paused)
-
-    def _recall(self) -> None:
-        """Let the monitors continue from what the bearing's state remembers."""
-        if self.keeper is None:
-            return
-        self.keeper.restart()
-        recall(self.keeper, self.residual, self.monitor, self._estimation, self.start_ns)
-
-    def _keep_state(self) -> None:
-        """Write the bearing's state from time to time."""
-        keeper, newest = self.keeper, self._counted
-        keeper.release(self._published_until)
-        if keeper.is_due and newest is not None:
-            self._note_condition()
-            keeper.hold(float(newest["time"]))
-
-    def _note_condition(self) -> None:
-        """Put temperatures and what the monitors have learned into the bearing's state."""
-        if self._counted is not None:
-            note(self.keeper, self.residual, self.monitor, self._estimation, self._counted, self.stamp(float(self._counted["time"])))
-
-    @property
-    def _published_until(self) -> float:
-        """Time of the newest sample that is surely published [s]."""
-        return math.inf
 
     def open(self, name: str, open_sink: Callable[[int], Sink], reopen: bool = False) -> None:
         """Add a sink that gets samples and events from now on.
@@ -312,37 +277,24 @@ class Model:
         residuals, self._residuals = self._residuals, []
         return residuals
 
-    def estimate_by(self, response: "ResponseModel") -> None:
-        """Estimate from now on what the scene asks for, by its response, which has been built while the run goes on."""
-        self._estimation = _estimation(self.scene, response)
-        if self.keeper is not None:
-            recall_estimates(self.keeper, self._estimation, self.start_ns)
-
-    def accept_change(self) -> bool:
-        """Take the machine as it is since a change for the new normal; return whether there was a change to accept."""
-        return self._estimation is not None and self._estimation.accept_change()
-
     def bands(self) -> list[Bands]:
         """Return the bands since the last call, which are to be published."""
         bands, self._bands = self._bands, []
         return bands
 
-    def _watch(self, blocks: Sequence[np.ndarray], now: float) -> None:
-        """Let the optional watchers see samples, at run time ``now`` [s]."""
-        if blocks and self.scene.watchers:
-            for record in self.watchers.see(joined(blocks)):
-                self.sinks.write(now, record)
+    def write(self, record: Record, now: float) -> None:
+        """Write a record to the sinks at run time ``now`` [s]; bands and residual slips are to be published, too."""
+        self.sinks.write(now, record)
+        if isinstance(record, Bands):
+            self._bands.append(record)
+            if record.topic == BANDS:
+                self.newest_bands = record
+        elif isinstance(record, Measurement) and not math.isnan(record.residual):
+            self._note_residual(record)
 
-    def _estimate(self, block: np.ndarray, now: float) -> None:
-        """Estimate at samples in order, shape (n,), at run time ``now`` [s]."""
-        if self._estimation is None:
-            return
-        self._estimation.know([channel for channel, count in self.gate.accepted.items() if count])
-        for bands in self._estimation.take(block):
-            self.sinks.write(now, bands)
-            self._bands.append(bands)
-            if bands.topic == BANDS:
-                self._slip_band = float(bands.numbers[-1, bands.names.index("cage_slip"), 2])
+    def _note_residual(self, compared: Measurement) -> None:
+        """Note a measurement with a residual slip that is to be published."""
+        self._residuals.append((self.stamp(compared.time), compared.residual))
 
     def reset(self, timeout: float = 2.0) -> bool:
         """Return state and damage to the start (see `bearing_sim.runtime.solver.Solver.reset`)."""
@@ -357,12 +309,8 @@ class Model:
         self.tick(now_ns)
         now = self.run_time(now_ns)
         self._take(self.solver.take(), now)
-        for event in self.sinks.news(now):
+        for event in (*self.sinks.news(now), *self.watchers.news(now)):
             self._note(event)
-        if self.keeper is not None:
-            self._keep_state()
-            for event in self.keeper.news(now):
-                self._note(event)
         events = self._events(now)
         self.level = level_of(events)
         news = self.health.news(events)
@@ -379,16 +327,10 @@ class Model:
         values |= self._flow_numbers(now)
         for conflict in self._conflicts.values():
             values |= conflict.values
-        values |= self.monitor.values | self.residual.values(now) | self.sinks.values | self._values() | self.watchers.values(now)
-        values |= self.keeper.values if self.keeper is not None else {}
-        values |= self._estimation.values(now) if self._estimation is not None else {}
-        said = remarks(self.gate, self.solver, self._running_setting or self._running_level) | self.sinks.remarks
-        if self._estimation is not None:
-            said["estimate"] = self._estimation.remark
-        if self.keeper is not None:
-            said["state"] = str(self.keeper.path)
+        values |= self.watchers.values(now) | self.sinks.values | self._values()
+        said = remarks(self.gate, self.solver, self._running_setting or self._running_level) | self.sinks.remarks | self.watchers.remarks
         unused = self._idle_subjects()
-        return Condition(self._events(now), values, said | self._remarks() | unused, unused=frozenset(unused))
+        return Condition(self._events(now), values, said | unused, unused=frozenset(unused))
 
     def _idle_subjects(self) -> dict[str, str]:
         """Return the subjects of diagnostics that this run does without, and why."""
@@ -397,17 +339,11 @@ class Model:
         unused = {channel: self.gate.state(channel) for channel in idle}
         if "view" not in map(sink_subject, self.sinks.by_name):
             unused["view"] = "no view"
-        if self._estimation is None:
-            unused["estimate"] = "the scene does not ask for it"
-        if self.keeper is None:
-            unused["state"] = "nothing is remembered"
-        if not self.scene.watchers:
-            unused["watchers"] = "the scene names none"
         if topics.MEASURED in unused and not self.scene.uses_ring_temperatures:
             unused["residual"] = "nothing is measured that could be compared"
         if self.scene.thresholds.pocket_force_warning is None and self.scene.thresholds.pocket_force_error is None:
             unused["pocket_force"] = "not judged: it has no threshold"
-        return unused | {"vibration": "not listened to: the scene does not ask for it, or the run has simulated time"}
+        return unused | self.watchers.unused
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
         """Write a diagnostics report to the recorders."""
@@ -423,9 +359,6 @@ class Model:
         """
         stopped = self.solver.stop(timeout)
         self._take(self.solver.take(), 0.0)
-        if self.keeper is not None:
-            self._note_condition()
-            self.keeper.save()
         self.watchers.close()
         self.sinks.close(0.0)
         return stopped
@@ -485,22 +418,12 @@ class Model:
         """Return the diagnostics values of the kind of run."""
         return {}
 
-    def _remarks(self) -> dict[str, str]:
-        """Return what the kind of run says about subjects without events, by name."""
-        return {}
-
     def _events(self, now: float) -> list[Event]:
         """Return the events that hold at ``now`` [s], the worst first."""
         conflicts = [event for conflict in self._conflicts.values() if (event := conflict.event(now)) is not None]
         conflicts += [unused_event(now, channel) for channel in sorted(self._unused)]
-        judged = [*self.monitor.events(now), *self.limits.events(now), *self.watchers.events(now)]
-        if self._estimation is not None:
-            judged += self._estimation.events(now)
-        if self._estimation is None or not self._estimation.is_calibrated:  # else what the calibrated model does not explain is judged
-            judged += self.residual.events(now)
-        kept = self.keeper.events(now) if self.keeper is not None else []
-        kept += [_no_response(now)] if self._estimation is None and self.scene.estimation.is_asked else []
-        events = [*self.sinks.events(now), *kept, *judged, *self._further_events(now), *conflicts]
+        judged = [*self.watchers.absent(now), *self.watchers.events(now)]
+        events = [*self.sinks.events(now), *judged, *self._further_events(now), *conflicts]
         coverage = self.gate.coverage
         if coverage.is_overloaded:
             events.append(Event(now, Level.WARN, "input.unknown", "", "inputs were refused because they were too large", coverage.verdict))
@@ -516,34 +439,8 @@ class Model:
             return
         self._note(event._replace(time=now))
         if event.kind == "run.reset":
-            self.gate.coverage = Coverage()
-            self.monitor.restart()
-            self.limits.restart()
+            self.gate.coverage, self.reset_at = Coverage(), event.time
             self.watchers.restart(event.reason)
-            self.residual.interrupt(event.time)
-            if self._estimation is not None:
-                self._estimation.restart()
-            if self.keeper is not None:
-                self.keeper.restart()
-
-
-# Imported where a scene asks for them, because they take as long as all the rest.
-def _estimation(scene: Scene, response: "ResponseModel") -> "LiveEstimation":
-    from bearing_sim.watchers.estimation.live import LiveEstimation
-
-    return LiveEstimation(scene, response)
-
-
-def _meter(scene: Scene) -> "CageSpeedMeter":
-    from bearing_sim.watchers.vibration.meter import CageSpeedMeter
-
-    return CageSpeedMeter(scene)
-
-
-def _no_response(now: float) -> Event:
-    """Return the event of a scene that asks for estimates, and for which nothing is kept that they could come from."""
-    reason = "the scene asks for bands or a calibration, and no response of the bearing to its uncertain fields is kept here; nothing is estimated"
-    return Event(now, Level.WARN, "estimate.absent", "", reason, "build it with bearing-sim table SCENE --bands, with the same --set")
 
 
 class LiveModel(Model):
@@ -562,8 +459,7 @@ class LiveModel(Model):
     due : called on the solver's thread when an output is to be published; must return at once.
     receiver : reads the receiver's clock [ns since the epoch] (see `bearing_sim.runtime.pacing.WallClock`).
     threads : shared with the solvers of other bearings; a thread of its own where absent.
-    keeper : of the bearing's state, which all time of the run counts for; None where nothing is remembered.
-    response, inputs_expected_within : see `Model`.
+    given, inputs_expected_within : see `Model`.
     stamp_tolerance : how far stamps may be from the receiver's clock before that is reported [s]; messages act as they arrive all the same.
 
     Attributes
@@ -571,6 +467,8 @@ class LiveModel(Model):
     schedule : TickSchedule
         Ticks that samples are made of now.
     """
+
+    acts_on_arrival = True
 
     def __init__(
         self,
@@ -585,27 +483,50 @@ class LiveModel(Model):
         due: Callable[[], None] | None = None,
         receiver: Callable[[], int] | None = None,
         threads: SolverThreads | None = None,
-        keeper: StateKeeper | None = None,
-        response: "ResponseModel | None" = None,
+        given: Mapping[str, object] = NOTHING,
         inputs_expected_within: float = 10.0,
         stamp_tolerance: float = 2.0,
     ):
         self._governor, self._fallen = governor, None
         self._sample_rate, self.schedule = sample_rate, tick_schedule(sample_rate, publish_rate)
-        pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / tick_schedule(sample_rate, math.inf).tick)
-        begin, used = (None, None) if keeper is None else (warm_start(keeper, lambda: self.stamp(clock() - began)), keeper.used)
-        began = clock()
-        solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, governor, self._advanced, threads, begin, used)
+        self._clock, self._began = clock, clock()
         held = simulation.inputs._replace(**dict.fromkeys(RING_TEMPERATURES, math.nan))  # measured in this run or not at all
         gate = InputGate(scene.accepted_inputs, held, heat_law=scene.heat.law, stamp_tolerance=stamp_tolerance)
-        super().__init__(scene, gate, solver, start_ns, keeper, response, inputs_expected_within)
+        super().__init__(scene, gate, start_ns, given, inputs_expected_within)
+        pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / tick_schedule(sample_rate, math.inf).tick)
+        ways = governor, self._advanced, threads, partial(put_at_start, run=self), self.watchers.memory.life_used
+        self.solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, *ways)
         self._starts_ns = [start_ns]  # by the clock now, and before it was set
         self._sample_decimator, self._publish_decimator, self._due = Decimator(sample_rate), Decimator(publish_rate), due
         self._wall_clock = WallClock(start_ns, clock, receiver)
         self._published_time = -math.inf
         self._anchors, self._output_count = 0, OutputCount()
-        self._meter = _meter(scene) if scene.vibration.is_asked else None
+        self._compared_at = -math.inf  # time of the sample that was compared last
         self.solver.start()
+
+    @property
+    def starts_ns(self) -> tuple[int, ...]:
+        """Run time 0 by the clock now, and by the clock before it was set [ns since the epoch]."""
+        return tuple(self._starts_ns)
+
+    @property
+    def interval(self) -> float:
+        """Time between two samples where none is skipped [s]."""
+        return self.schedule.tick / self.schedule.samples
+
+    @property
+    def newest(self) -> np.void | None:
+        """The newest sample while the run goes on."""
+        return self.solver.newest if self.solver.phase is Phase.RUNNING else None
+
+    @property
+    def published_until(self) -> float:
+        """Time of the newest sample that is published [s]."""
+        return self._published_time
+
+    def begins_at(self) -> int:
+        """Return the instant of the clock now [ns since the epoch]."""
+        return self.stamp(self._clock() - self._began)
 
     def tick(self, now_ns: int) -> None:
         """Take a reading of the receiver's clock; if the clock was set, its stamps count from another start so that run time continues."""
@@ -629,27 +550,23 @@ class LiveModel(Model):
         for returned in self.gate.take_returned():
             self._note(returned)
         self._conflicts[channel].take(values[:1] if channel in topics.MEASURED_CHANNELS else values)
-        if channel == topics.MEASURED:
-            self._compare(now, topics.Origin(stamp_ns, frame_id))
-        elif channel == topics.MEASURED_CLEARANCE:
-            self._take_clearance(now, topics.Origin(stamp_ns, frame_id))
+        if channel in topics.MEASURED_CHANNELS:
+            reading, origin = self.gate.latest(channel), topics.Origin(stamp_ns, frame_id)
+            if channel == topics.MEASURED_CLEARANCE:
+                self.write(MeasuredClearance(now, *reading, origin), now)
+            for record in self.watchers.hear(channel, now, *reading):
+                self.write(record._replace(origin=origin) if isinstance(record, Measurement) else record, now)
         # Speed starts the model: the scene has sensible values of load and temperature, but a wrong speed would be a false jolt.
         elif self.gate.accepted["shaft_speed"]:
             self.solver.post(self.gate.held)
         return None
 
-    def offer_vibration(self, block: "Block | str", now_ns: int) -> None:
-        """Take a block of vibration, or why a message cannot be read as one; nothing is done where the scene does not ask for it."""
-        if self._meter is None:
-            return
+    def hear(self, channel: str, message: object, now_ns: int) -> None:
+        """Let the watchers hear a message that is no input and no measurement, such as a block of vibration; a text says why it cannot be read."""
         self.tick(now_ns)
         now = self.run_time(now_ns)
-        speed = self.gate.held.shaft_speed if self.gate.accepted["shaft_speed"] else math.nan
-        newest = self.solver.newest
-        possible = max(filter(math.isfinite, (self._slip_band, math.nan if newest is None else float(newest["cage_slip"]))), default=0.0)
-        events = [self._meter.refuse(block, now)] if isinstance(block, str) else self._meter.take(block, now, speed, possible)
-        for event in events:
-            self._note(event)
+        for record in self.watchers.hear(channel, now, message, math.nan):
+            self.write(record, now)
 
     def set_oil_temperature(self, temperature: float, now_ns: int) -> None:
         """Set the oil temperature [K] (see `Model.set_oil_temperature`)."""
@@ -663,9 +580,8 @@ class LiveModel(Model):
         """Pass results of the solver on and review the health (see `Model.collect`)."""
         if self.gate.expire(self.run_time(now_ns)) and self.gate.accepted["shaft_speed"]:
             self.solver.post(self.gate.held)
-        if self._meter is not None:
-            for reading in self._meter.readings(self.gate.held.shaft_speed):
-                self.offer(topics.MEASURED, reading, None, now_ns)
+        for channel, values in self.watchers.measured():
+            self.offer(channel, values, None, now_ns)
         self._output_count.take(self.run_time(now_ns), self._publish_decimator.picked, self._publish_decimator.left_out)
         return super().collect(now_ns)
 
@@ -700,8 +616,7 @@ class LiveModel(Model):
         fallen = None if self._governor is None or self._governor.is_at_wanted else self._governor.scene
         if fallen is not self._fallen:
             self._fallen = fallen
-            scene = self.scene if fallen is None else fallen
-            self.limits.follow(scene, laws_of_table(scene))
+            self.watchers.follow(self.scene if fallen is None else fallen)
 
     def _setting_values(self) -> dict[str, object]:
         newest = self.solver.newest
@@ -715,51 +630,34 @@ class LiveModel(Model):
         return self._running_setting
 
     def _take(self, items: Iterable, now: float) -> None:
-        blocks, judged = [], 0
+        blocks, seen = [], 0
         for item in items:
             if isinstance(item, Event):
-                self.monitor.take_all(blocks[judged:])
-                self._watch(blocks[judged:], now)
-                judged = len(blocks)
+                self._show(blocks[seen:], now)
+                seen = len(blocks)
                 self._note_solver_event(item, now)
             else:
                 blocks.append(item)
-        self.monitor.take_all(blocks[judged:])
         self._follow_setting()
-        if blocks[judged:]:
-            self.limits.take(blocks[-1])
-        self._watch(blocks[judged:], now)
-        if blocks and self._estimation is not None:
-            self._estimate(joined(blocks), now)
-        if blocks and self.keeper is not None:
-            self.keeper.count_live(joined(blocks), tuple(self._starts_ns), self.schedule.tick / self.schedule.samples)
-            self._counted = blocks[-1][-1]
+        self._show(blocks[seen:], now)
         kept = [block for block in blocks if self._sample_decimator.is_due(float(block["time"][-1]))]  # the first is the state at the start
         if kept and self.sinks.by_name:  # all at once: many samples together hold the interpreter's lock far shorter
             self.sinks.write(now, kept[0] if len(kept) == 1 else joined(kept))
 
-    @property
-    def _published_until(self) -> float:
-        return self._published_time
+    def _show(self, blocks: Sequence[np.ndarray], now: float) -> None:
+        """Let the watchers see blocks at run time ``now`` [s], all at once, which costs far less than each."""
+        if not blocks:
+            return
+        block = joined(blocks)
+        self.watchers.correct(block, np.full(len(block), self.interval))
+        for record in self.watchers.see(block):
+            self.write(record, now)
 
     def _values(self) -> dict[str, object]:
-        left_out = {"outputs_left_out": self._publish_decimator.left_out, "outputs_left_out in the last five seconds": self._output_count.recent}
-        return left_out if self._meter is None else left_out | self._meter.values
-
-    def _remarks(self) -> dict[str, str]:
-        return {} if self._meter is None else {"vibration": "its blocks are analysed"}
+        return {"outputs_left_out": self._publish_decimator.left_out, "outputs_left_out in the last five seconds": self._output_count.recent}
 
     def _idle_subjects(self) -> dict[str, str]:
-        unused = super()._idle_subjects() | {"clock": "the run follows the clock of the machine"}
-        if self._meter is not None:
-            del unused["vibration"]
-        return unused
-
-    def close(self, timeout: float = 2.0) -> bool:
-        """End the run (see `Model.close`)."""
-        if self._meter is not None:
-            self._meter.close()
-        return super().close(timeout)
+        return super()._idle_subjects() | {"clock": "the run follows the clock of the machine"}
 
     def _further_events(self, now: float) -> list[Event]:
         flow = self._explained(self.gate.check(now), now, now)
@@ -780,33 +678,13 @@ class LiveModel(Model):
         if self._publish_decimator.is_due(now) and self._due is not None:
             self._due()
 
-    def _compare(self, now: float, origin: topics.Origin) -> None:
-        """Compare the measured cage speed with the newest sample, which is at most a tick old."""
-        sample, residual = self.solver.newest, math.nan
-        if sample is not None and self.solver.phase is Phase.RUNNING:
-            ideal = float(sample["ideal_cage_speed"])
-            measured = 1.0 - self.gate.measured / ideal if ideal else math.nan
-            own = self._is_at_own_level
-            predicted = float(sample["cage_slip"]) if own else math.nan
-            before = self.residual.time
-            self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
-            if self._estimation is not None and own:
-                self._estimation.measure(now, self.gate.measured, self.gate.standard_error)
-            residual = measured - predicted
-            if self.residual.time != before and not math.isnan(self.residual.time):
-                self._residuals = [(self.stamp(self.residual.time), self.residual.residual)]  # only the newest is published
-        self.watchers.hear(topics.MEASURED, now, self.gate.measured, self.gate.standard_error)
-        self.sinks.write(now, Measurement(now, self.gate.measured, residual, self.gate.standard_error, origin))
-
-    def _take_clearance(self, now: float, origin: topics.Origin) -> None:
-        """Let a measured clearance calibrate, while there is a sample that it belongs to."""
-        reading = self.gate.latest(topics.MEASURED_CLEARANCE)
-        if self._estimation is not None and self.solver.newest is not None and self.solver.phase is Phase.RUNNING and self._is_at_own_level:
-            self._estimation.measure_clearance(now, *reading)
-        self.watchers.hear(topics.MEASURED_CLEARANCE, now, *reading)
-        self.sinks.write(now, MeasuredClearance(now, *reading, origin))
+    def _note_residual(self, compared: Measurement) -> None:
+        """Note the newest residual alone, at the time of the sample that it was found with; none near rest."""
+        time, speed = float(self.solver.newest["time"]), abs(float(self.solver.newest["shaft_speed"]))
+        if time > self._compared_at and speed >= self.scene.thresholds.slip_from_speed:
+            self._compared_at, self._residuals = time, [(self.stamp(time), compared.residual)]
 
     @property
-    def _is_at_own_level(self) -> bool:
+    def is_predicted(self) -> bool:
         """Whether the scene's level is computed: levels predict slips that are points apart, so what is usual at one says nothing about another."""
         return self._governor is None or self._governor.level == self._governor.wanted

@@ -206,11 +206,6 @@ class OutputCount:
         """Outputs left out in the last five seconds."""
         return sum(left for left, _ in self._seconds)
 
-    @property
-    def recently_due(self) -> int:
-        """Outputs that were due in the last five seconds."""
-        return sum(due for _, due in self._seconds)
-
 
 class WallClock:
     """Detects when the receiver's clock is set, by comparing it with the monotonic clock.

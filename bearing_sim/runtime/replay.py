@@ -1,10 +1,11 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Replay: the model driven by the inputs of a log, from stamp to stamp, as fast as possible."""
 
+import heapq
 import math
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import NamedTuple
@@ -12,30 +13,23 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.inputs.profile import InputProfile
-from bearing_sim.messages import topics
 from bearing_sim.messages.bands import BANDS, Bands
 from bearing_sim.messages.diagnostics import condition, further_condition
-from bearing_sim.messages.events import Event, MeasuredClearance, Measurement, ReceivedInputs, Record, Report, Start
+from bearing_sim.messages.events import FOR_KEEPING, Event, MeasuredClearance, Record, Report
+from bearing_sim.messages.topics import MEASURED, MEASURED_CLEARANCE
 from bearing_sim.model.sample import joined
 from bearing_sim.model.turning import SLIP_FROM_SPEED, Use, slip_statistics, slipping_seconds, turns, use_of
-from bearing_sim.model.validity import Exceedance, Law
-from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
+from bearing_sim.model.validity import Exceedance, in_order
+from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun, pass_on, put_at_start
 from bearing_sim.runtime.health import Changes
-from bearing_sim.runtime.remembering import note, recall, warm_start
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import Inputs, Simulation
-from bearing_sim.watchers.estimation.response import ResponseModel
-from bearing_sim.watchers.monitoring.limits import LimitsMonitor
-from bearing_sim.watchers.monitoring.monitor import Monitor
-from bearing_sim.watchers.monitoring.residual import Comparison, ResidualMonitor
-from bearing_sim.watchers.monitoring.watchers import Watchers
-from bearing_sim.watchers.stored_state.keeper import StateKeeper
+from bearing_sim.watchers.monitoring.watchers import NOTHING, Run, Watchers
 
 _REPORT_EVERY = 1.0  # [s] of simulated time between diagnostics
 _PROGRESS_EVERY = 50  # items
 _JUDGED = 400  # outputs judged at once if none of them can raise or clear an alarm
 _ENDLESS = 1e7  # [h]; longer lives are those of a shaft that hardly turns
-_ESTIMATED = 100  # outputs that bands are computed for at once
 _TOGETHER = 100  # outputs of a level that takes courses, written and judged at once: singly they take ten times as long as their computation
 _WATCHED_BLOCK = 100  # samples: views take one long block far faster than single samples
 # Assumptions on what a line through the outputs still shows: a point of slip is what people read, a fifth of a run's slip what they see.
@@ -189,9 +183,7 @@ def replay(
     rate: float | None = None,
     progress: Callable[[float], None] = lambda seconds: None,
     model: Callable[[Scene, Inputs], Simulation] = Simulation,
-    keeper: StateKeeper | None = None,
-    response: ResponseModel | None = None,
-    laws: Sequence[Law] = (),
+    given: Mapping[str, object] = NOTHING,
 ) -> Replay:
     """Run the model over an input profile and write inputs, outputs and events.
 
@@ -204,69 +196,36 @@ def replay(
     rate : outputs per simulated second [Hz]; by default one at each stamp of speed or load.
     progress : called repeatedly with the time reached [s].
     model : makes the simulation.
-    keeper : of the state of the bearing whose log it is; times that the state contains are not counted again.  None counts nothing.
-    response : of the scene, for what its block ``estimation`` asks for; None estimates nothing.
-    laws : that replace those of the same name (see `bearing_sim.watchers.monitoring.limits.LimitsMonitor`).
+    given : what watchers are given that a scene cannot name, by their names (see `bearing_sim.watchers.monitoring.watchers.Watchers`), such as the
+        stored state of the bearing whose log it is.
 
     Returns
     -------
     The result.  A stretch that cannot be integrated is skipped, reported by an event and counted, and the next one is tried from the last
     good state; after ten in a row the run is given up.
     """
-    return _Run(scene, profile, recording, tuple(views), rate, progress, keeper, response, laws).run(model)
+    return _Run(scene, profile, recording, tuple(views), rate, progress, given).run(model)
 
 
-class _Run:
-    """One replay under way."""
+class _Run(Run):
+    """One replay under way: a run whose clock is the log."""
 
     def __init__(
-        self,
-        scene: Scene,
-        profile: InputProfile,
-        recording,
-        views: tuple,
-        rate: float | None,
-        progress: Callable,
-        keeper: StateKeeper | None,
-        response: ResponseModel | None,
-        laws: Sequence[Law],
+        self, scene: Scene, profile: InputProfile, recording, views: tuple, rate: float | None, progress: Callable, given: Mapping[str, object]
     ):
-        self._keeper = keeper
-        self._estimation = None
-        if response is not None and scene.estimation.is_asked:
-            from bearing_sim.watchers.estimation.live import LiveEstimation
-
-            self._estimation = LiveEstimation(scene, response)
-            self._estimation.know([channel for channel, stamps in profile.stamps.items() if len(stamps)])
-        self._newest: np.void | None = None  # that the keeper has counted
         self._scene, self._profile, self._views, self._progress, self._rate = scene, profile, views, progress, rate
+        self.start_ns, self.heard = profile.start_ns, [channel for channel, stamps in profile.stamps.items() if len(stamps)]
         self._recordings = (recording,) if recording is not None else ()
         self._result = Replay(profile.log_seconds, slip_from_speed=scene.thresholds.slip_from_speed)
-        self._pending_events = list(profile.events)
-        self._pending_clearances = deque(profile.measured_clearance)
+        self._pending_events = deque(profile.events)
+        measured = [(MEASURED, *each) for each in profile.measured], [(MEASURED_CLEARANCE, *each) for each in profile.measured_clearance]
+        self._pending_measurements = deque(heapq.merge(*measured, key=lambda each: each[1]))
         self._changes = Changes()
         self._watched: list[np.ndarray] = []
         self._untaken: list[Output] = []
         self._next_report = 0.0
-        self._monitor, self._limits, self._watchers = Monitor(scene), LimitsMonitor(scene, laws), Watchers(scene)
-        self._unjudged: list[np.ndarray] = []
-        self._unestimated: list[np.ndarray] = []
-        self._comparison = Comparison(ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed))
-        if keeper is not None:
-            keeper.restart()
-            recall(keeper, self._comparison.residual, self._monitor, self._estimation, profile.start_ns)
-        for time_, speed, error in profile.measured:
-            self._comparison.measure(time_, speed, error)
-            if self._may_teach(time_):
-                self._estimation.measure(time_, speed, error)
-        for time_, clearance, error in profile.measured_clearance:
-            if self._may_teach(time_):
-                self._estimation.measure_clearance(time_, clearance, error)
-
-    def _may_teach(self, moment: float) -> bool:
-        """Whether a measurement at a time [s] calibrates: not where the bearing's state contains what it taught."""
-        contained = self._keeper is not None and self._keeper.contained(self._profile.start_ns + round(1e9 * moment))
-        return self._estimation is not None and not contained
+        self.watchers = Watchers(scene, self, given)
+        self.watchers.begin()
 
     def run(self, model: Callable[[Scene, Inputs], Simulation]) -> Replay:
         began, began_cpu = time.perf_counter(), time.process_time()
@@ -276,176 +235,112 @@ class _Run:
         together = 1
         for k, item in enumerate(run.advance_segment(segment)):
             moment = float(item.block["time"][-1]) if isinstance(item, Output) else item.time
-            self._write_events_until(moment)
+            self._follow_log(moment)
             if isinstance(item, Output):
                 self._untaken.append(item)
                 if len(self._untaken) >= together or len(item.block) > 1:
                     self._take_outputs()
+            elif isinstance(item, Event):
+                self._take_outputs()  # they come first
+                self.write(item, moment)
             else:
-                if isinstance(item, Event):
-                    self._take_outputs()  # they come first
-                    self._write_event(item)
-                elif isinstance(item, Begun):
-                    if self._keeper is not None:
-                        self._keeper.count(item.block, self._profile.start_ns, np.zeros(len(item.block)))
-                    for recording in self._recordings:
-                        recording.write(Start(item.block))
+                pass_on(item, self)
+                if isinstance(item, Begun):
                     # Not where outputs take long, so that a recording that is cut short has them; nor where a measurement acts on the next output.
                     is_fast = getattr(run.simulation, "takes_profiles", False) and not self._scene.estimation.calibrated
                     together = _TOGETHER if is_fast else 1
-                else:
-                    for recording in self._recordings:
-                        recording.write(ReceivedInputs(*item))
             if k % _PROGRESS_EVERY == 0:
                 self._progress(moment)
         if not run.given_up:
             self._progress(self._profile.end * 1e-9)
         self._take_outputs()
-        self._judge_limits()
-        self._estimate()
-        self._write_events_until(math.inf)
+        self._flush(self._profile.end * 1e-9)
+        self._follow_log(math.inf)
         if self._profile.unknown_seconds:
-            self._write_event(self._profile.unknown_event)
-        self._watchers.close()
+            self.write(self._profile.unknown_event, self._profile.end * 1e-9)
+        self.watchers.close()
         self._write_to_views()
-        if self._newest is not None:
-            self._note_condition()
         if run.simulation is not None:
             result.steps, result.rejected_steps, result.non_finite_steps = run.simulation.counters[:3]
         result.sim_seconds, result.gap_seconds = run.simulated_ns * 1e-9, run.in_gaps_ns * 1e-9
         result.failed_ticks, result.given_up = run.failures, run.given_up
-        result.warnings, result.worst_samples = self._limits.exceedances, self._limits.worst_samples
+        result.bands = _while_turning(result)
+        result.warnings, result.worst_samples = in_order(self.watchers.exceedances), self.watchers.worst_samples
         result.wall_seconds, result.cpu_seconds = time.perf_counter() - began, time.process_time() - began_cpu
         return result
 
     def _begin(self, model: Callable[[Scene, Inputs], Simulation], inputs: Inputs) -> Simulation:
         simulation = model(self._scene, inputs)
-        if self._keeper is not None:
-            warm_start(self._keeper, lambda: self._profile.start_ns)(simulation, inputs)
+        put_at_start(simulation, inputs, self, is_there=True)
         return simulation
-
-    def _count(self, output: Output) -> None:
-        """Count outputs for the bearing's state, and have it written from time to time."""
-        keeper, start_ns = self._keeper, self._profile.start_ns
-        keeper.count(output.block, start_ns, output.weights)
-        self._newest = output.block[-1]
-        if keeper.is_due:
-            self._note_condition()
-            keeper.hold(0.0)
-            keeper.release(math.inf)
-
-    def _note_condition(self) -> None:
-        """Put temperatures and what the monitors have learned into the bearing's state."""
-        newest = self._newest
-        time_ns = self._profile.start_ns + round(1e9 * float(newest["time"]))
-        note(self._keeper, self._comparison.residual, self._monitor, self._estimation, newest, time_ns)
 
     def _take_outputs(self) -> None:
         """Write and judge the outputs since the last call."""
         outputs, self._untaken = self._untaken, []
-        if outputs:
-            self._take(Output(joined([each.block for each in outputs]), np.concatenate([each.weights for each in outputs])))
-
-    def _take(self, output: Output) -> None:
-        """Write outputs and judge them."""
-        block, result = output.block, self._result
+        if not outputs:
+            return
+        block, weights, result = joined([each.block for each in outputs]), np.concatenate([each.weights for each in outputs]), self._result
         result.samples += len(block)
-        result.weight += output.weights.tolist()
+        result.weight += weights.tolist()
         for kept, name in ((result.time, "time"), (result.slip, "cage_slip"), (result.speed, "shaft_speed"), (result.life, "rating_life")):
             kept += block[name].tolist()
         result.load += np.hypot(block["load_y"], block["load_z"]).tolist()
         result.damage = float(block["damage"][-1])  # of this run alone
-        if self._keeper is not None:
-            self._count(output)
-        for recording in self._recordings:
-            recording.write(block)
-        if self._views:
-            self._watched.append(block)
-            if sum(map(len, self._watched)) >= _WATCHED_BLOCK:
-                self._write_to_views()
-        if self._estimation is not None:
-            self._unestimated.append(block)
-            if self._scene.estimation.calibrated or sum(map(len, self._unestimated)) >= _ESTIMATED:  # measurements act from output to output
-                self._estimate()
+        pass_on(Output(block, weights), self)
+
+    def judge(self, block: np.ndarray) -> None:
+        """Judge outputs in parts, each of which ends where the bearing's condition is to be written."""
         for begin in range(0, len(block), _JUDGED):
             part = block[begin : begin + _JUDGED]
-            self._unjudged.append(part)
-            if sum(map(len, self._unjudged)) >= _JUDGED:
-                self._judge_limits()
-            self._judge_until_reports(part)
-
-    def _estimate(self) -> None:
-        """Write the bands of the outputs since the last call: those of many at once cost a fraction of single ones."""
-        blocks, self._unestimated = self._unestimated, []
-        if blocks:
-            whole = joined(blocks)
-            for bands in self._estimation.take(whole):
-                self._write_bands(bands, whole)
-
-    def _judge_limits(self) -> None:
-        """Write which limits of validity the outputs since the last call began or ceased to exceed: many at once cost little more than one."""
-        blocks, self._unjudged = self._unjudged, []
-        if blocks:
-            for event in self._limits.take(joined(blocks)):
-                self._write_event(event)
-
-    def _judge_until_reports(self, block: np.ndarray) -> None:
-        """Judge outputs in parts, each of which ends where the bearing's condition is to be written."""
-        while len(block):
-            due = int(np.searchsorted(block["time"], self._next_report)) if self._recordings else len(block)
-            self._judge(block[: due + 1])
-            block = block[due + 1 :]
+            while len(part):
+                due = int(np.searchsorted(part["time"], self._next_report)) if self._recordings else len(part)
+                self._judge(part[: due + 1])
+                part = part[due + 1 :]
 
     def _judge(self, block: np.ndarray) -> None:
         """Judge outputs one by one, or all at once if none of them can raise or clear an alarm."""
-        if len(block) > 1 and not self._changes.holding and not self._scene.watchers and self._monitor.is_calm(block):
-            self._monitor.take_calm(block[:-1])
-            for compared in self._comparison.predict(block[:-1]):
-                self._write_measured(compared)
-            block = block[-1:]
-        for k in range(len(block)):
-            self._monitor.take(block[k : k + 1])
-            for record in self._watchers.see(block[k : k + 1]):
-                self._write(record)
-            for compared in self._comparison.predict(block[k : k + 1]):
-                self._write_measured(compared)
-            self._report(block[k], float(block["time"][k]))
+        is_calm = len(block) > 1 and not self._changes.holding and self.watchers.are_calm(block)
+        for part in (block,) if is_calm else (block[k : k + 1] for k in range(len(block))):
+            moment = float(part["time"][-1])
+            for record in self.watchers.see(part):
+                self.write(record, moment)
+            self._report(part[-1], moment)
 
-    def _write_bands(self, bands: Bands, block: np.ndarray) -> None:
-        if bands.topic == BANDS:
-            numbers, speeds = bands.numbers.copy(), block["shaft_speed"][np.searchsorted(block["time"], bands.times)]
-            numbers[~turns(speeds, self._result.slip_from_speed), bands.names.index("cage_slip")] = math.nan
-            self._result.bands.append(bands._replace(numbers=numbers))
-        self._write(bands)
-
-    def _write_measured(self, compared: Measurement) -> None:
-        self._watchers.hear(topics.MEASURED, compared.time, compared.cage_speed, compared.standard_error)
-        self._write(compared)
+    def _flush(self, moment: float) -> None:
+        for record in self.watchers.flush():
+            self.write(record, moment)
 
     def _report(self, sample, moment: float) -> None:
         """Write a change of the bearing's condition at once, and the condition once a second."""
-        residual = self._comparison.residual
-        judged = residual.events(moment)
-        if self._estimation is not None:  # what the calibrated model does not explain, instead of what the scene's own values do not
-            judged = self._estimation.events(moment) if self._estimation.is_calibrated else [*judged, *self._estimation.events(moment)]
-        changes = self._changes.take(moment, (*self._monitor.events(moment), *self._watchers.events(moment), *judged))
+        changes = self._changes.take(moment, self.watchers.events(moment, told=False))
         if changes or moment >= self._next_report:
-            self._judge_limits()  # their events come first
-            self._estimate()
+            self._flush(moment)  # their events come first
         for event in changes:
-            self._write_event(event)
+            self.write(event, moment)
         if moment >= self._next_report:
             # A hundredth early, so that reports stay at whole seconds although stamps jitter.
             self._next_report = (math.floor(moment / _REPORT_EVERY + 0.01) + 0.99) * _REPORT_EVERY
             if not self._recordings:
                 return
-            holding = [*self._changes.holding.values(), *self._limits.events(moment)]
-            worst_first = sorted(holding, key=lambda event: -event.level)
-            values = condition(sample) | further_condition(self._scene, sample) | self._monitor.values | residual.values(moment)
-            values |= self._estimation.values(moment) if self._estimation is not None else {}
-            values |= self._watchers.values(moment)
-            for recording in self._recordings:
-                recording.write(Report(moment, worst_first, values))
+            worst_first = sorted(self.watchers.events(moment), key=lambda event: -event.level)
+            values = condition(sample) | further_condition(self._scene, sample) | self.watchers.values(moment)
+            self.write(Report(moment, worst_first, values), moment)
+
+    def write(self, record: Record, now: float) -> None:
+        """Write a record; views get samples in long blocks, and no inputs and reports."""
+        if isinstance(record, Event):
+            self._result.events[record.kind] += 1
+        elif isinstance(record, Bands) and record.topic == BANDS:
+            self._result.bands.append(record)
+        for recording in self._recordings:
+            recording.write(record)
+        if isinstance(record, np.ndarray) and self._views:
+            self._watched.append(record)
+            if sum(map(len, self._watched)) >= _WATCHED_BLOCK:
+                self._write_to_views()
+        elif not isinstance(record, (np.ndarray, *FOR_KEEPING)):
+            for view in self._views:
+                view.write(record)
 
     def _write_to_views(self) -> None:
         if self._watched:
@@ -454,21 +349,25 @@ class _Run:
             for view in self._views:
                 view.write(block)
 
-    def _write_event(self, event: Event) -> None:
-        self._result.events[event.kind] += 1
-        self._write(event)
-
-    def _write(self, record: Record) -> None:
-        for sink in (*self._recordings, *self._views):
-            sink.write(record)
-
-    def _write_events_until(self, moment: float) -> None:
-        """Write the events and the measured clearances of the log up to a time [s]."""
-        while self._pending_clearances and self._pending_clearances[0][0] <= moment:
-            reading = MeasuredClearance(*self._pending_clearances[0])
-            self._watchers.hear(topics.MEASURED_CLEARANCE, *reading[:3])
-            self._write(reading)
-            self._pending_clearances.popleft()
-        while self._pending_events and self._pending_events[0].time <= moment:
+    def _follow_log(self, moment: float) -> None:
+        """Write the events of the log and let the watchers hear its measurements up to a time [s]."""
+        measurements, events = self._pending_measurements, self._pending_events
+        while measurements and measurements[0][1] <= moment:
+            channel, *reading = measurements.popleft()
+            if channel == MEASURED_CLEARANCE:
+                self.write(MeasuredClearance(*reading), moment)
+            for record in self.watchers.hear(channel, *reading):
+                self.write(record, moment)
+        while events and events[0].time <= moment:
             self._take_outputs()  # they come first
-            self._write_event(self._pending_events.pop(0))
+            self.write(events.popleft(), moment)
+
+
+def _while_turning(result: Replay) -> list[Bands]:
+    """Return the bands of a run without those of the slip while the shaft does not turn."""
+    times, turning, found = np.array(result.time), turns(np.array(result.speed), result.slip_from_speed), []
+    for bands in result.bands:
+        numbers = bands.numbers.copy()
+        numbers[~turning[np.searchsorted(times, bands.times)], bands.names.index("cage_slip")] = math.nan
+        found.append(bands._replace(numbers=numbers))
+    return found

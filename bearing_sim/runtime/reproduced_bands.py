@@ -11,12 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearing_sim.messages.bands import ESTIMATES, Bands
-from bearing_sim.messages.topics import INPUTS, MEASURED, MEASURED_CHANNELS
+from bearing_sim.messages.topics import INPUTS, MEASURED_CHANNELS
 from bearing_sim.model.turning import turns
 from bearing_sim.recording.reader import Received, Recording, measured_numbers
-from bearing_sim.watchers.estimation.live import LiveEstimation
-from bearing_sim.watchers.estimation.response import ResponseModel
-from bearing_sim.watchers.stored_state.state import StoredState
+from bearing_sim.watchers.monitoring.watchers import Run
 
 _NEAR = 0.1  # of the width of a band
 
@@ -53,25 +51,18 @@ class ReproducedBands:
 
     Parameters
     ----------
-    recording : of the run.
-    response : of its scene.
-    first : time of its first bands [s]: what comes before was not estimated.
+    run : that is computed again; its watchers estimate.
+    first : time of the first bands of the recording [s]: what comes before was not estimated.
     together : samples that a call of the run returned, which were estimated together.
-    state : with which the bearing began; None without a stored state.
 
     Attributes
     ----------
     differences : by quantity or calibrated field.
     """
 
-    def __init__(self, recording: Recording, response: ResponseModel, first: float, together: int, state: StoredState | None):
-        self._start_ns, self._first, self._together = recording.start_ns, first, together
-        self._estimation = LiveEstimation(recording.scene, response)
-        if state is not None:
-            since = max(recording.start_ns - state.until_ns, 0) * 1e-9
-            self._estimation.restore(state.learned.get("estimation", {}), since)
-        self._known: set[str] = set()
-        self._slowest = recording.scene.thresholds.slip_from_speed
+    def __init__(self, run: Run, first: float, together: int):
+        self._run, self._first, self._together = run, first, together
+        self._slowest = run.scene.thresholds.slip_from_speed
         self._waiting: tuple[dict, dict] = {}, {}  # bands of recording and reproduction by topic and time [ns], until the other one comes
         self.differences: dict[str, BandDifference] = {}
 
@@ -79,11 +70,9 @@ class ReproducedBands:
         """Take a message of an input or a measurement."""
         name = item.topic[1:]
         if name in MEASURED_CHANNELS:
-            take = self._estimation.measure if name == MEASURED else self._estimation.measure_clearance
-            take((item.log_ns - self._start_ns) * 1e-9, *measured_numbers(item))
-        elif name in INPUTS and name not in self._known:
-            self._known.add(name)
-            self._estimation.know(sorted(self._known))
+            self._run.watchers.hear(name, (item.log_ns - self._run.start_ns) * 1e-9, *measured_numbers(item))
+        elif name in INPUTS:
+            self._run.heard.add(name)
 
     def note_recorded(self, bands: Bands) -> None:
         """Take bands of the recording."""
@@ -103,8 +92,8 @@ class ReproducedBands:
         for part in np.split(block, cuts.astype(int)):
             if len(part):
                 if float(part["time"][0]) in restarts:
-                    self._estimation.restart()
-                found += self._estimation.take(part)
+                    self._run.watchers.restart("the recorded run was reset")
+                found += self._run.watchers.see(part)
         turning = dict(zip(block["time"].tolist(), turns(block["shaft_speed"], self._slowest).tolist()))
         for bands in found:
             self._enter(1, bands, [bands.topic == ESTIMATES or turning[time] for time in bands.times.tolist()])

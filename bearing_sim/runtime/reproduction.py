@@ -14,7 +14,7 @@ import bisect
 import dataclasses
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,11 +30,8 @@ from bearing_sim.scene.fidelity import NUMBERS
 from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, begin_at_temperatures, inputs_of, start_sample, thermal_nodes
-from bearing_sim.watchers.estimation.response import ResponseModel
-from bearing_sim.watchers.stored_state.counting import LifeCounter
-from bearing_sim.watchers.stored_state.keeper import RECORD
-from bearing_sim.watchers.stored_state.state import StoredState
-from bearing_sim.watchers.stored_state.state_file import parsed
+from bearing_sim.watchers.monitoring.watchers import NOTHING, Run, Watchers
+from bearing_sim.watchers.monitoring.watchers import recorded as recorded_watchers
 
 _SKIPPED = 0.25  # fraction of a spacing by which angle and stamps may disagree before time counts as skipped
 _ROUND_OFF = 1e-6  # of an angle, relative
@@ -72,7 +69,7 @@ class Reproduction:
 
 
 def reproduce(
-    recording: Recording, sink, progress: Callable[[float], None] = lambda seconds: None, response: ResponseModel | None = None
+    recording: Recording, sink, progress: Callable[[float], None] = lambda seconds: None, given: Mapping[str, object] = NOTHING
 ) -> Reproduction:
     """Compute a recorded run again.
 
@@ -81,15 +78,15 @@ def reproduce(
     recording : of a run, with all observables.
     sink : a `bearing_sim.recording.writer.McapSink` or similar; gets samples at the recorded times, and the received inputs unchanged.
     progress : called repeatedly with the time reached [s].
-    response : of the scene, by which the bands of the recording are computed again and compared; None does without.
+    given : what watchers are given that a scene cannot name, by their names: those watch again, and their bands are compared with the recorded ones.
 
     Raises
     ------
     ValueError
         The recording does not contain the inputs of every sample.
     """
-    run, first = _Run(recording, sink), first_bands(recording) if response is not None else None
-    bands = ReproducedBands(recording, response, first, run.together, _stored_state(recording)) if first is not None else None
+    run, first = _Run(recording, sink, given), first_bands(recording) if given else None
+    bands = ReproducedBands(run, first, run.together) if first is not None else None
     began = time.perf_counter()
     for item in recording.with_received():
         if isinstance(item, Received):
@@ -121,19 +118,23 @@ def _write(block: np.ndarray, run: "_Run", sink, bands: ReproducedBands | None) 
     run.restarts.clear()
 
 
-class _Run:
-    """One reproduction under way."""
+class _Run(Run):
+    """One reproduction under way: a run whose clock is the recorded samples."""
 
-    def __init__(self, recording: Recording, sink):
+    is_reviewed = True
+
+    def __init__(self, recording: Recording, sink, given: Mapping[str, object]):
         self.result = Reproduction()
-        self._scene, self._sink = recording.scene, sink
+        self.scene, self._sink, self.start_ns, self.heard = recording.scene, sink, recording.start_ns, set()
+        self.watchers = Watchers(self.scene, self, {**given, **recorded_watchers(self.scene, recording.records)}, only_given=True)
+        self.watchers.begin()
+        self._is_remembered = self.watchers.memory.life_used is not None  # damage then continues over resets
         self._interval = recording.duration / max(recording.samples - 1, 1)
         self._duration = float(recording.metadata.get("advance_seconds") or 0.0)  # of one call of the recorded run
         self.together = int(recording.metadata.get("advance_samples") or 1)  # samples that it returned
         self._next_together = self.together
         self.restarts: set[float] = set()  # times of the samples with which the run began anew [s], since somebody has cleared them
         self._simulation: Simulation | None = None
-        self._start_ns, self._counter = recording.start_ns, _counter(recording)
         self._is_counted = False  # whether the simulation's damage is that of the run, to which the life used before is to be added
         self._settings, self._setting, self._reset_at = _Settings(recording), "", -math.inf
         self._last: np.void | None = None
@@ -227,15 +228,15 @@ class _Run:
             except IntegrationError as error:
                 return self._give_up(sample, error, np.array([sample]))
             self.result.sim_seconds += lead
-        if begins and not first and self._counter is not None:  # totals continue over a reset
-            self._counter.restart(float(sample["damage"]) - float(block["damage"][-1]))
+        if begins and not first:  # totals continue over a reset
+            self.life_at_reset = float(sample["damage"]) - float(block["damage"][-1])
         return self._counted(block, np.array([sample]), max(lead, 0.0))
 
     def _counted(self, block: np.ndarray, recorded: np.ndarray, seconds: float) -> np.ndarray:
         """Return samples with the life used by the bearing, as the recorded run had it; each stands for so many seconds."""
-        if self._counter is not None and self._is_counted:
-            times_ns = self._start_ns + np.rint(recorded["time"] * 1e9).astype(np.int64)
-            self._counter.take(block, times_ns, np.full(len(block), seconds))
+        if self._is_counted:
+            block["time"] = recorded["time"]
+            self.watchers.correct(block, np.full(len(block), seconds))
         return block
 
     def _is_reset(self, sample: np.void) -> bool:
@@ -247,7 +248,7 @@ class _Run:
         last = self._last
         if sample["damage"] < last["damage"]:
             return True
-        if self._counter is None:
+        if not self._is_remembered:
             return False
         elapsed, speeds = float(sample["time"]) - float(last["time"]), (float(last["shaft_speed"]), float(sample["shaft_speed"]), 0.0)
         change, slack = float(sample["shaft_angle"]) - float(last["shaft_angle"]), _ROUND_OFF * (1.0 + abs(float(last["shaft_angle"])))
@@ -256,7 +257,7 @@ class _Run:
     def _begin(self, sample: np.void, inputs: Inputs) -> float:
         """Start at the run's own start if that is at most two intervals or so before the sample; return the time to the sample [s]."""
         self.finish()
-        self._simulation, self._setting = Simulation(self._scene, inputs), ""
+        self._simulation, self._setting = Simulation(self.scene, inputs), ""
         if self._simulation.thermal is not None:  # a run may start from temperatures that its scene does not name
             nodes, rings = thermal_nodes(sample), np.array([float(sample[f"{name}_uncorrected"]) for name in RING_TEMPERATURES])
             begin_at_temperatures(self._simulation, inputs, nodes, rings)
@@ -303,8 +304,8 @@ class _Run:
         if level == self._simulation.scene.level:
             return
         self.result.level_changes += 1
-        own = self._scene.integration if level == self._scene.level else dataclasses.replace(self._scene.integration, fixed_step=None)
-        self._continue_with(dataclasses.replace(self._scene, level=level, integration=own))
+        own = self.scene.integration if level == self.scene.level else dataclasses.replace(self.scene.integration, fixed_step=None)
+        self._continue_with(dataclasses.replace(self.scene, level=level, integration=own))
 
 
 class _Settings:
@@ -345,25 +346,6 @@ class _Settings:
     def scene(self, name: str) -> Scene:
         """Return the scene at a setting."""
         return with_setting(self._scene, self._known[name]) if name else self._scene
-
-
-def _stored_state(recording: Recording) -> StoredState | None:
-    """Return the state with which the bearing of a recorded run began; None without one."""
-    record = recording.records.get(RECORD)
-    if record is None:
-        return None
-    try:
-        return parsed(record["state"].encode())
-    except (KeyError, ValueError, OSError) as error:
-        raise ValueError(f"the stored state in the recording cannot be used: {error}; replay its inputs with --scene instead") from None
-
-
-def _counter(recording: Recording) -> LifeCounter | None:
-    """Return what adds the life used before a recorded run, and leaves out times that were not counted again; None without a stored state."""
-    state = _stored_state(recording)
-    if state is None:
-        return None
-    return LifeCounter(state.totals.damage, state.covered if recording.records[RECORD].get("counts") == "once" else None)
 
 
 def _inputs(sample: np.void) -> Inputs:

@@ -11,26 +11,23 @@ held until the clock has passed its old reading, or until a reset (see `bearing_
 import math
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from enum import Enum
+from functools import partial
 
 import numpy as np
 
 from bearing_sim.inputs.gate import REQUIRED, ClockJumpFilter, InputGate, Message, Verdict
-from bearing_sim.inputs.profile import Arrival, OnlineInputProfile, gap_event
+from bearing_sim.inputs.profile import OnlineInputProfile, gap_event
 from bearing_sim.messages import topics
-from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement, ReceivedInputs
-from bearing_sim.messages.events import Start as StartRecord
-from bearing_sim.runtime.advance_segment import Begun, Output
+from bearing_sim.messages.events import Event, Level, MeasuredClearance
+from bearing_sim.runtime.advance_segment import pass_on, put_at_start
 from bearing_sim.runtime.live import Model, Published
-from bearing_sim.runtime.remembering import warm_start
 from bearing_sim.runtime.sink_registry import Sink
 from bearing_sim.runtime.solver import SimTimeSolver, Start
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
-from bearing_sim.watchers.estimation.response import ResponseModel
-from bearing_sim.watchers.monitoring.residual import Comparison
-from bearing_sim.watchers.stored_state.keeper import StateKeeper
+from bearing_sim.watchers.monitoring.watchers import NOTHING
 
 CAUGHT_UP = "all known is computed and passed on"
 """Diagnostics key: whether the model has come as far as clock and messages allow, and all its results are collected."""
@@ -129,8 +126,7 @@ class SimTimeModel(Model):
     publish_rate : how many of them are published for each simulated second [Hz].
     jump_back : ``"reset"`` or ``"error"``.
     wall : wall clock [s], monotonic; outputs do not depend on it.
-    keeper : of the bearing's state, which times that it does not contain yet count for; None where nothing is remembered.
-    response, inputs_expected_within : see `bearing_sim.runtime.live.Model`; within this wall time.
+    given, inputs_expected_within : see `bearing_sim.runtime.live.Model`; within this wall time.
     clock_tolerance : see `SimClock`.
 
     Attributes
@@ -147,8 +143,7 @@ class SimTimeModel(Model):
         publish_rate: float = 50.0,
         jump_back: str = "reset",
         wall: Callable[[], float] = time.monotonic,
-        keeper: StateKeeper | None = None,
-        response: ResponseModel | None = None,
+        given: Mapping[str, object] = NOTHING,
         inputs_expected_within: float = 10.0,
         clock_tolerance: float = 0.1,
     ):
@@ -167,11 +162,13 @@ class SimTimeModel(Model):
         self._late = self._gaps = 0
         self._openers: dict[str, Callable[[int], Sink]] = {}
         self._published: list[Published] = []
-        begin = warm_start(keeper, lambda: self.solver.start_ns or 0) if keeper is not None else None
-        solver = SimTimeSolver(simulation, self._new_profile(scene), clock=wall, begin=begin)
-        super().__init__(scene, self._new_gate(scene), solver, 0, keeper, response, inputs_expected_within)
-        self._comparison = Comparison(self.residual)
+        self.solver = SimTimeSolver(simulation, self._new_profile(scene), clock=wall, begin=partial(put_at_start, run=self))
+        super().__init__(scene, self._new_gate(scene), 0, given, inputs_expected_within)
         self.solver.start()
+
+    def begins_at(self) -> int:
+        """Return the start of the profile [ns since the epoch]."""
+        return self.solver.start_ns or 0
 
     def tick(self, now_ns: int) -> None:
         """Take a reading of /clock [ns since the epoch]; 0 means that there is none."""
@@ -392,30 +389,15 @@ class SimTimeModel(Model):
         for item in items:
             if isinstance(item, Start):
                 self._start(item.start_ns)
-            elif isinstance(item, Begun):
-                if self.keeper is not None:
-                    self.keeper.count(item.block, self.start_ns, np.zeros(len(item.block)))
-                self.sinks.write(item.time, StartRecord(item.block))
-            elif isinstance(item, Output):
-                self._take_output(item.block, item.weights)
-            elif isinstance(item, Arrival):
-                self.sinks.write(item.time, ReceivedInputs(*item))
-            else:
+            elif isinstance(item, Event):
                 self._note_solver_event(item, item.time)
-        self._pass_on(self._comparison.due())
+            else:
+                pass_on(item, self)
 
     def _start(self, start_ns: int) -> None:
         """Start a profile at run time 0."""
-        self.start_ns, self._started = start_ns, True
-        if self.keeper is not None:
-            self.keeper.restart()
-        self.monitor.restart()
-        self.limits.restart()
+        self.start_ns, self._started, self.reset_at = start_ns, True, -math.inf
         self.watchers.restart("the run starts")
-        if self._estimation is not None:
-            self._estimation.restart()
-        self.residual.interrupt(-math.inf)
-        self._comparison.restart()
         for name, open_sink in self._openers.items():
             try:
                 self.sinks.detach(name)
@@ -428,37 +410,20 @@ class SimTimeModel(Model):
 
     def _measure(self, channel: str, time: float, value: float, standard_error: float) -> None:
         """Take a measurement of one of `bearing_sim.messages.topics.MEASURED_CHANNELS` and its standard error [SI] of a run time [s]."""
-        self.watchers.hear(channel, time, value, standard_error)
-        if channel == topics.MEASURED:
-            self._comparison.measure(time, value, standard_error)
-        else:
-            self.sinks.write(time, MeasuredClearance(time, value, standard_error))
-        if self._estimation is not None and not (self.keeper is not None and self.keeper.contained(self.stamp(time))):
-            take = self._estimation.measure if channel == topics.MEASURED else self._estimation.measure_clearance
-            take(time, value, standard_error)
+        if channel == topics.MEASURED_CLEARANCE:
+            self.write(MeasuredClearance(time, value, standard_error), time)
+        for record in self.watchers.hear(channel, time, value, standard_error):
+            self.write(record, time)
 
-    def _take_output(self, block: np.ndarray, weights: np.ndarray) -> None:
-        """Count, judge, record and publish outputs; each stands for some time [s]."""
-        if self.keeper is not None:
-            self.keeper.count(block, self.start_ns, weights)
-            self._counted = block[-1]
-        self.monitor.take(block)
-        self.limits.take(block)
-        self._watch([block], float(block["time"][-1]))
-        self.sinks.write(float(block["time"][-1]), block)
-        self._estimate(block, float(block["time"][-1]))
-        self._pass_on(self._comparison.predict(block))
+    def judge(self, block: np.ndarray) -> None:
+        """Let the watchers see outputs, and publish those that are due."""
+        for record in self.watchers.see(block):
+            self.write(record, float(block["time"][-1]))
         fraction = min(self._publish_rate / self._rate, 1.0)
         for sample in block:
             number = round(float(sample["time"]) * self._rate)
             if math.floor(number * fraction + 1e-9) > math.floor((number - 1) * fraction + 1e-9):
                 self._published.append(Published(self.stamp(float(sample["time"])), sample))
-
-    def _pass_on(self, compared: Iterable[Measurement]) -> None:
-        for measurement in compared:
-            self.sinks.write(measurement.time, measurement)
-            if not math.isnan(measurement.residual):
-                self._residuals.append((self.stamp(measurement.time), measurement.residual))
 
     def _review_time(self, now: float) -> float:
         return self._wall() - self._wall_start

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Protocol
 
 from bearing_sim.messages.diagnostics import sink_subject
-from bearing_sim.messages.events import Event, Level, ReceivedInputs, Record, Report, Start
+from bearing_sim.messages.events import FOR_KEEPING, Event, Level, Record
 
 
 class Sink(Protocol):
@@ -16,9 +16,6 @@ class Sink(Protocol):
 
     def write(self, record: Record) -> None: ...
     def close(self) -> None: ...
-
-
-_FOR_KEEPING = (Start, ReceivedInputs, Report)
 
 
 class SinkRegistry:
@@ -70,7 +67,7 @@ class SinkRegistry:
 
     def write(self, now: float, record: Record) -> None:
         """Write a record to all sinks that take it, at ``now`` [s]."""
-        for name, sink in list((self.recorders if isinstance(record, _FOR_KEEPING) else self.by_name).items()):
+        for name, sink in list((self.recorders if isinstance(record, FOR_KEEPING) else self.by_name).items()):
             try:
                 sink.write(record)
             except (OSError, ValueError) as error:

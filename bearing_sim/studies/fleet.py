@@ -245,10 +245,10 @@ def _replay_bearing(bearing: Bearing, longest_gap: float | None, temperatures: t
     scene, log = bearing.scene, read_log(bearing.log, bearing.reading)
     held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
     profile = judge(log, scene.accepted_inputs, held, longest_gap, scene.heat.law)
-    model, laws = Simulation, ()
+    model, given = Simulation, {} if response is None else {"estimation": response}
     if temperatures is not None:
-        model, laws = partial(Simulation, table=_operating_points(scene, temperatures)), laws_of_table(scene, temperatures)
-    result = replay(scene, profile, model=model, response=response, laws=laws)
+        model, given["validity"] = partial(Simulation, table=_operating_points(scene, temperatures)), laws_of_table(scene, temperatures)
+    result = replay(scene, profile, model=model, given=given)
     status, reason = (FAILED, result.given_up) if result.given_up else (OK, "")
     if not (profile.tally.is_whole or reason):
         status, reason = PARTLY, "; ".join([profile.tally.text, *([profile.unknown_event.text] if profile.unknown_seconds else [])])

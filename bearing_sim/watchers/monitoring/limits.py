@@ -14,8 +14,10 @@ import numpy as np
 from bearing_sim.messages.events import Event, Level, validity_event
 from bearing_sim.model.params import pack
 from bearing_sim.model.validity import Conditions, Exceedance, Law, in_order, sample_laws, scene_exceedances, worst
-from bearing_sim.scene.scene import Hold, Scene, Thresholds
+from bearing_sim.scene.scene import Hold, Scene
+from bearing_sim.watchers.estimation.two_states import laws_of_table
 from bearing_sim.watchers.monitoring.monitor import Alarm
+from bearing_sim.watchers.monitoring.watchers import Watcher
 
 _EVERY = 0.1  # [s] least time between two samples that are judged: one costs about 0.2 ms
 # A warning is raised at once, because an overload of an instant is enough to dent a raceway, and cleared late, so that it does not flicker.
@@ -56,7 +58,7 @@ class _Range:
         return [Event(now, Level.OK, self.law.kind, self.law.name, "back within its range")]
 
 
-class LimitsMonitor:
+class LimitsMonitor(Watcher):
     """Judges the samples of a run by the ranges of all laws of its scene.
 
     Limits that the scene exceeds by itself hold from the first sample to the end.
@@ -64,7 +66,7 @@ class LimitsMonitor:
     Parameters
     ----------
     scene : of the run.
-    laws : that replace those of the same name, as in `bearing_sim.model.validity.sample_laws`.
+    laws : that replace those of the same name, as in `bearing_sim.model.validity.sample_laws`; by default those of the scene's table.
 
     Attributes
     ----------
@@ -74,26 +76,26 @@ class LimitsMonitor:
         The sample of each of them, by the law's name; of those that the scene exceeds by itself the one of the fastest shaft.
     """
 
-    def __init__(self, scene: Scene, laws: Iterable[Law] = ()):
+    together = 400
+    tells_changes = True
+
+    def __init__(self, scene: Scene, laws: Iterable[Law] | None = None):
+        super().__init__(scene)
         self._use(scene, laws)
         self.restart()
 
-    def _use(self, scene: Scene, laws: Iterable[Law]) -> None:
-        self._scene, self._params, self._laws = scene, pack(scene), tuple(laws)
+    def _use(self, scene: Scene, laws: Iterable[Law] | None = None) -> None:
+        self.scene, self._params, self._laws = scene, pack(scene), tuple(laws_of_table(scene) if laws is None else laws)
         self._of_scene = scene_exceedances(scene)
 
-    def restart(self) -> None:
+    def restart(self, why: str = "") -> None:
         """Forget the run so far."""
-        self._ranges = [_Range(*each) for each in sample_laws(self._scene, self._laws)]
+        self._ranges = [_Range(*each) for each in sample_laws(self.scene, self._laws)]
         self._next = -math.inf
         self.worst: dict[str, Exceedance] = {}
         self.worst_samples: dict[str, np.void] = {}
 
-    def adjust(self, thresholds: Thresholds) -> None:
-        """Judge from ``thresholds.slip_from_speed`` on from now on."""
-        self._scene = replace(self._scene, thresholds=thresholds)
-
-    def follow(self, scene: Scene, laws: Iterable[Law] = ()) -> None:
+    def follow(self, scene: Scene) -> None:
         """Judge by another setting of the same bearing from now on, such as another level.
 
         Warnings continue where both settings have the law with the same range; those of other laws of the setting before end without an event.
@@ -102,17 +104,16 @@ class LimitsMonitor:
         Parameters
         ----------
         scene : that computes the samples from now on.
-        laws : as of the class, for this scene.
         """
         before = {each.law.name: each for each in self._ranges}
-        self._use(replace(scene, thresholds=self._scene.thresholds), laws)
-        self._ranges = [_Range(*each).continuing(before.get(each[0].name)) for each in sample_laws(self._scene, self._laws)]
+        self._use(replace(scene, thresholds=self.scene.thresholds))
+        self._ranges = [_Range(*each).continuing(before.get(each[0].name)) for each in sample_laws(self.scene, self._laws)]
         if self._next > -math.inf:
             for each in self._of_scene:
                 self._note_worst(each)
 
-    def take(self, block: np.ndarray) -> list[Event]:
-        """Judge samples, only one of those within 0.1 s, and return the warnings that begin or end.
+    def see(self, block: np.ndarray) -> list[Event]:
+        """Judge samples, only one of those within 0.1 s, and return the warnings that begin or end, unless somebody reviews which hold.
 
         Parameters
         ----------
@@ -123,10 +124,10 @@ class LimitsMonitor:
             self.worst = {each.law.name: each for each in self._of_scene}
             changes = [validity_event(float(block["time"][0]), each) for each in self._of_scene]
         if block["time"][-1] < self._next:
-            return changes
+            return [] if self.run.is_reviewed else changes
         block = block[self._due(block["time"].tolist())]
         self._note_fastest(block)
-        at, times = Conditions(self._scene, block, self._params), block["time"].tolist()
+        at, times = Conditions(self.scene, block, self._params), block["time"].tolist()
         for each in self._ranges:
             values = each.law.value(at)
             found = worst(each.law, each.low, each.high, values)
@@ -135,7 +136,7 @@ class LimitsMonitor:
             if found or each.is_pending:
                 for time, value in zip(times, values.tolist()):
                     changes += each.judge(time, value)
-        return sorted(changes, key=lambda event: event.time)
+        return [] if self.run.is_reviewed else sorted(changes, key=lambda event: event.time)
 
     def _note_fastest(self, block: np.ndarray) -> None:
         if not self._of_scene:

@@ -1,21 +1,22 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Compare the samples of a run with the scene's thresholds: slip, life, remaining life, lambda, pocket force, clearance, ring temperatures.
+"""Compare the samples of a run with the scene's thresholds: slip, life, remaining life, lambda, pocket force, clearance.
 
 Samples in, events out.  All times are those of the samples.
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from bearing_sim.messages.events import Event, Level
-from bearing_sim.model.sample import joined
+from bearing_sim.messages.events import Event, Level, Record
 from bearing_sim.model.turning import turns
 from bearing_sim.scene.scene import Hold, Scene, Thresholds
 from bearing_sim.watchers.monitoring.film_ratio import ThinnestFilm
-from bearing_sim.watchers.monitoring.residual import TemperatureResiduals
+from bearing_sim.watchers.monitoring.watchers import Watcher
 
 _HOUR = 3600.0  # [s]
+_TOGETHER = 0.01  # [s] over which samples are judged by their worst values
 _FILM_EVERY = 0.1  # [s] least time between two films: they cost more than all other checks, and follow the slow oil temperature
 
 
@@ -128,7 +129,7 @@ class Watch:
         return f"{self._factor * value:.4g} {self._unit}".rstrip()
 
 
-class Monitor:
+class Monitor(Watcher):
     """Compares the samples of a run with thresholds.
 
     Parameters
@@ -137,15 +138,16 @@ class Monitor:
     """
 
     def __init__(self, scene: Scene):
-        self._films, self._temperatures = ThinnestFilm(scene), TemperatureResiduals(scene)
+        super().__init__(scene)
+        self._films = ThinnestFilm(scene)
         self._symbol = scene.life.symbols[0 if scene.life.is_basic else 1]
         self.adjust(scene.thresholds)
         self._forget()
 
     def adjust(self, thresholds: Thresholds) -> None:
         """Use other thresholds from now on; hold times start again."""
+        super().adjust(thresholds)
         self._thresholds = t = thresholds
-        self._temperatures.adjust(thresholds)
         self._watches = {
             "slip": Watch("bearing.slip", "cage slip", "%", 100.0, t.slip_warning, t.slip_error, t.slip_hold),
             "life": Watch(
@@ -173,22 +175,17 @@ class Monitor:
             "clearance": Watch("bearing.clearance", "running clearance", "um", 1e6, t.clearance_warning, t.clearance_error, t.clearance_hold, True),
         }
 
-    def restart(self) -> None:
+    def restart(self, why: str = "") -> None:
         """Forget the run so far, after state and damage have returned to the start."""
         self.adjust(self._thresholds)
-        self._temperatures.interrupt()
         self._forget()
-
-    @property
-    def temperatures(self) -> TemperatureResiduals:
-        """The comparison of measured and predicted temperatures."""
-        return self._temperatures
 
     def _forget(self) -> None:
         self._time, self._rate, self._damage = math.nan, math.nan, 0.0
         self._film = self._film_at = math.nan
         self._film_of: np.ndarray | None = None  # the sample whose film has not been computed yet
         self._latest: dict[str, float] = {}
+        self._calm: np.ndarray | None = None  # the block that is known to be calm
 
     def take(self, block: np.ndarray) -> None:
         """Judge a block of samples by its worst values, at its last instant; the film by its last sample.
@@ -214,20 +211,23 @@ class Monitor:
             latest["lambda"] = self._least_film() / self._films.roughness
         for name, value in latest.items():
             self._watches[name].judge(now, value)
-        self._temperatures.take(block)
 
-    def take_all(self, blocks: list[np.ndarray]) -> None:
-        """Judge blocks as successive calls of `take` would, in one go if only the last can raise or clear an alarm."""
-        if len(blocks) > 1:
-            whole = joined(blocks)
-            if self.is_calm(whole):
-                self.take_calm(whole[: -len(blocks[-1])])
-                blocks = blocks[-1:]
-        for block in blocks:
-            self.take(block)
+    def see(self, block: np.ndarray) -> Sequence[Record]:
+        """Judge samples: those of each hundredth of a second together, or all in one go if none of them can raise or clear an alarm."""
+        if len(block) > 1 and (block is self._calm or self.is_calm(block)):
+            self.take_calm(block[:-1])
+            block = block[-1:]
+        for part in np.split(block, np.flatnonzero(np.diff(np.floor(block["time"] / _TOGETHER + 1e-6))) + 1) if len(block) > 1 else [block]:
+            self.take(part)
+        return ()
 
     def is_calm(self, block: np.ndarray) -> bool:
         """Return whether no sample of a block can raise or clear an alarm; `take_calm` then replaces `take` sample by sample."""
+        is_calm = self._has_no_alarm(block)
+        self._calm = block if is_calm else None
+        return is_calm
+
+    def _has_no_alarm(self, block: np.ndarray) -> bool:
         lives, limits = block["modified_rating_life"], self._thresholds
         fastest = max(1.0 / (_HOUR * float(lives.min())), 0.0 if math.isnan(self._rate) else self._rate)
         damage = float(block["damage"][-1])
@@ -248,22 +248,19 @@ class Monitor:
         """Take samples for which `is_calm` is true."""
         for time, life, damage in zip(block["time"].tolist(), block["modified_rating_life"].tolist(), block["damage"].tolist()):
             self._remaining_life(time, life, damage)
-        self._temperatures.take(block)
 
     def events(self, now: float) -> list[Event]:
         """Return the events that hold, stamped ``now`` [s]."""
         events = [event for watch in self._watches.values() if (event := watch.event(now)) is not None]
-        events += self._temperatures.events(now)
         if self._damage >= 1.0:
             events.append(Event(now, Level.ERROR, "bearing.life_used", "damage", "the rating life is used up"))
         return events
 
-    @property
-    def values(self) -> dict[str, object]:
-        """Diagnostics values that only the monitor computes, with the unit in each key; empty before the first sample."""
+    def values(self, now: float) -> dict[str, object]:
+        """Return diagnostics values that only the monitor computes, with the unit in each key; empty before the first sample."""
         names = {"remaining": "remaining life [h]", "lambda": "film over roughness, lambda", "pocket": "largest pocket force [N]"}
         values = {shown: self._latest[name] for name, shown in names.items() if name in self._latest}
-        return values | ({"film [m]": self._least_film()} if self._latest else {}) | self._temperatures.values(self._time)
+        return values | ({"film [m]": self._least_film()} if self._latest else {})
 
     def _least_film(self) -> float:
         """Return the film of the newest sample that is due [m]; computed when somebody asks, because it takes longer than all other values."""

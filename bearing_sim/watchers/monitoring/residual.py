@@ -15,9 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.messages.events import Event, Level, Measurement
-from bearing_sim.messages.topics import RING_TEMPERATURES
+from bearing_sim.messages.events import Event, Level, Measurement, Record
+from bearing_sim.messages.topics import MEASURED, RING_TEMPERATURES
 from bearing_sim.scene.scene import ResidualDetection, Scene, TemperatureResidualDetection, Thresholds
+from bearing_sim.watchers.monitoring.watchers import Watcher
 
 _HOUR = 3600.0  # [s]
 _SPEED_CHANGE = 0.02  # relative change beyond which the shaft counts as being at another speed
@@ -476,7 +477,7 @@ class ResidualMonitor:
         self._batch_start, self._batch_count, self._batch_total = math.nan, 0, 0.0
 
 
-class TemperatureResiduals:
+class TemperatureResiduals(Watcher):
     """Compares the measured temperatures of the rings with those of the thermal network alone, sample by sample: a sample holds both.
 
     The network that measured temperatures correct follows them within seconds; what it would be without them tells what has changed.
@@ -487,6 +488,7 @@ class TemperatureResiduals:
     """
 
     def __init__(self, scene: Scene):
+        super().__init__(scene)
         detection = scene.thresholds.temperature_residual
         rings = RING_TEMPERATURES if scene.heat.law == "network" else ()
         self._monitors = {name: ResidualMonitor(detection, 0.0, temperature_of(name.partition("_")[0])) for name in rings}
@@ -494,12 +496,13 @@ class TemperatureResiduals:
 
     def adjust(self, thresholds: Thresholds) -> None:
         """Use other thresholds from now on (see `ResidualMonitor.adjust`)."""
+        super().adjust(thresholds)
         detection = thresholds.temperature_residual
         self._interval = detection.batch / _SAMPLES
         for monitor in self._monitors.values():
             monitor.adjust(detection, 0.0)
 
-    def interrupt(self) -> None:
+    def restart(self, why: str = "") -> None:
         """Wait until the network has settled after a reset; what is usual is kept."""
         self._next = -math.inf
         for monitor in self._monitors.values():
@@ -510,15 +513,17 @@ class TemperatureResiduals:
         """What was learned about each ring that has been measured (see `ResidualMonitor.learned`)."""
         return {name: learned for name, monitor in self._monitors.items() if (learned := monitor.learned)}
 
-    def restore(self, learned: Mapping[str, Mapping]) -> None:
+    def recall(self, learned: Mapping[str, Mapping], seconds: float = 0.0) -> None:
         """Continue from what was learned in an earlier run (see `ResidualMonitor.restore`)."""
         for name, monitor in self._monitors.items():
             monitor.restore(learned.get(name, {}))
 
-    def take(self, block: np.ndarray) -> None:
+    def is_calm(self, block: np.ndarray) -> bool:
+        """Return True: a change of temperatures is seen at the end of the block."""
+        return True
+
+    def see(self, block: np.ndarray) -> Sequence[Record]:
         """Take samples in order, shape (n,) (see `bearing_sim.model.sample`)."""
-        if not self._monitors:
-            return
         times, place = block["time"], 0
         while (place := place + int(np.searchsorted(times[place:], self._next))) < len(block):
             sample = block[place]
@@ -527,6 +532,7 @@ class TemperatureResiduals:
             for name, monitor in self._monitors.items():
                 if not math.isnan(measured := float(sample[f"{name}_measured"])):
                     monitor.take(now, speed, measured, float(sample[f"{name}_uncorrected"]))
+        return ()
 
     def events(self, now: float) -> list[Event]:
         """Return the events of changes that hold, stamped ``now`` [s]."""
@@ -580,45 +586,88 @@ class Course:
         return tuple(old + fraction * (new - old) for old, new in zip(before, after))
 
 
-class Comparison:
-    """Feeds a `ResidualMonitor` each measurement with the prediction at its own stamp, whichever arrives first.
+class SlipResidual(Watcher):
+    """Compares each measured cage speed with the prediction at its own stamp, whichever arrives first.
 
-    Predictions are linear between outputs.  A measurement waits for the next output after it; one that is older than all outputs kept
-    is compared with NaN.
+    Predictions are linear between samples.  A measurement waits for the next sample after it; one that is older than all samples kept is compared
+    with NaN.  Where messages act as they arrive, it is compared with the newest sample, which is at most a tick old.
 
-    Parameters
+    Attributes
     ----------
-    residual : the monitor to feed.
+    monitor : ResidualMonitor
+        That judges.
     """
 
-    def __init__(self, residual: ResidualMonitor):
-        self.residual, self._course = residual, Course(_COMPARED)
-        self.restart()
+    def __init__(self, scene: Scene):
+        super().__init__(scene)
+        self.monitor = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
+        self._course, self._waiting = Course(_COMPARED), []
 
-    def restart(self) -> None:
-        """Forget outputs and measurements; ``residual`` keeps what it has learned."""
-        self._course.restart()
-        self._waiting: list[tuple[float, float, float]] = []
+    def adjust(self, thresholds: Thresholds) -> None:
+        """Use other thresholds from now on; what was learned about the measured cage is kept."""
+        self.monitor.adjust(thresholds.residual, thresholds.slip_from_speed)
 
-    def measure(self, time: float, cage_speed: float, standard_error: float = math.nan) -> None:
-        """Take a measurement [s, rad/s] and its standard error [rad/s], NaN where it is not known."""
-        insort(self._waiting, (time, cage_speed, standard_error))
+    def restart(self, why: str) -> None:
+        """Wait until the prediction has settled; with a run that counts its time from 0 again, forget samples and measurements."""
+        self.monitor.interrupt(self.run.reset_at)
+        if self.run.reset_at == -math.inf:
+            self._waiting = []
+            self._course.restart()
 
-    def predict(self, block: np.ndarray) -> list[Measurement]:
-        """Take outputs in order of time (see `bearing_sim.model.sample`) and return the comparisons that they complete."""
+    @property
+    def learned(self) -> dict[str, object]:
+        """See `ResidualMonitor.learned`."""
+        return self.monitor.learned
+
+    def recall(self, learned: Mapping[str, object], seconds: float = 0.0) -> None:
+        """Continue from what was learned in an earlier run (see `ResidualMonitor.restore`)."""
+        self.monitor.restore(learned)
+
+    def hear(self, channel: str, time: float, value: float, standard_error: float) -> list[Measurement]:
+        """Take a measurement; return the comparisons that it completes."""
+        if channel != MEASURED:
+            return []
+        if not self.run.acts_on_arrival:
+            insort(self._waiting, (time, value, standard_error))
+            return self._due()
+        sample = self.run.newest
+        if sample is None:
+            return [Measurement(time, value, math.nan, standard_error)]
+        sampled, *there = (float(sample[name]) for name in ("time", *_COMPARED))
+        if not self.run.is_predicted:
+            there[-1] = math.nan
+        return [self._compared(time, value, standard_error, sampled, *there)]
+
+    def is_calm(self, block: np.ndarray) -> bool:
+        """Return True: a change is seen at the end of the block."""
+        return True
+
+    def see(self, block: np.ndarray) -> list[Measurement]:
+        """Take samples in order of time (see `bearing_sim.model.sample`) and return the comparisons that they complete."""
+        if self.run.acts_on_arrival:
+            return []
         self._course.take(block)
-        return self.due()
+        return self._due()
 
-    def due(self) -> list[Measurement]:
-        """Return the comparisons that measurements since the last call complete."""
+    def events(self, now: float) -> list[Event]:
+        """See `ResidualMonitor.events`."""
+        return self.monitor.events(now)
+
+    def values(self, now: float) -> dict[str, object]:
+        """See `ResidualMonitor.values`."""
+        return self.monitor.values(now)
+
+    def _due(self) -> list[Measurement]:
         if not self._waiting:
             return []
         ready = bisect_right(self._waiting, (self._course.newest, math.inf))
         taken, self._waiting = self._waiting[:ready], self._waiting[ready:]
-        return [self._compare(*each) for each in taken]
+        return [self._compared(*each, each[0], *self._course.at(each[0])) for each in taken]
 
-    def _compare(self, time: float, cage_speed: float, standard_error: float) -> Measurement:
-        shaft_speed, ideal, predicted = self._course.at(time)
+    def _compared(
+        self, time: float, cage_speed: float, standard_error: float, sampled: float, shaft_speed: float, ideal: float, predicted: float
+    ) -> Measurement:
+        """Return a measurement compared with a prediction at an instant ``sampled`` [s]."""
         measured = 1.0 - cage_speed / ideal if ideal else math.nan
-        self.residual.take(time, shaft_speed, measured, predicted)
+        self.monitor.take(sampled, shaft_speed, measured, predicted)
         return Measurement(time, cage_speed, measured - predicted, standard_error)

@@ -5,24 +5,26 @@ A slow disk stalls nothing but that thread.  A state is written only once its sa
 what a restart continues from.
 """
 
+import json
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES, joined
-from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.scene import Scene, Thresholds
+from bearing_sim.watchers.monitoring.watchers import BUILT_IN, Memory, Watcher
 from bearing_sim.watchers.stored_state.counting import LifeCounter
 from bearing_sim.watchers.stored_state.covered import Covered
 from bearing_sim.watchers.stored_state.history import history_paths, move_days
 from bearing_sim.watchers.stored_state.state import StoredState, Thermal, calibration_of, day_of, new_state, time_text
-from bearing_sim.watchers.stored_state.state_file import News, StateError, StateFile, serialised
+from bearing_sim.watchers.stored_state.state_file import News, StateError, StateFile, checked_serial, default_path, parsed, serialised
 from bearing_sim.watchers.stored_state.totals import criteria
 
-RECORD = "bearing_sim_state"
+RECORD = BUILT_IN["state"].record
 """Name of a recording's metadata record with the state that it began with: state, as in a state file, and counts."""
 
 WRITE_EVERY = 2.0
@@ -36,7 +38,55 @@ _CLOSE_WITHIN = 5.0  # [s] for the last write
 _MOVE_AGAIN = 3600.0  # [s] after a move of days to the history that failed
 
 
-class StateKeeper:
+class _StateMemory(Memory):
+    """What remembers a bearing by its state."""
+
+    state: StoredState
+
+    def remind(self, name: str, watcher: Watcher) -> None:
+        """Let a watcher continue from what it has learned; from nothing if another version of it had learned it.
+
+        How long that is ago is known where the run knows its clock.
+        """
+        try:
+            watcher.recall(self.state.learned.get(name, {}), max(self.run.start_ns - self.state.until_ns, 0) * 1e-9)
+        except (KeyError, TypeError, ValueError):
+            watcher.recall({}, 0.0)
+
+
+class RecordedState(_StateMemory):
+    """The state with which the bearing of a recorded run began: adds the life used before where the run is computed again.
+
+    Parameters
+    ----------
+    scene : of the run.
+    state : at its start.
+    once : whether the run did not count times that the state contains.
+    """
+
+    def __init__(self, scene: Scene, state: StoredState, once: bool):
+        super().__init__(scene)
+        self.state, self._covered = state, state.covered if once else None
+        self._counter, self._life_at_reset = LifeCounter(state.totals.damage, self._covered), self.run.life_at_reset
+
+    @property
+    def life_used(self) -> float:
+        """At the start of the run."""
+        return self.state.totals.damage
+
+    def correct(self, block: np.ndarray, seconds: np.ndarray) -> None:
+        """Write the life used into samples; behind a reset it continues from what the recorded run had used there."""
+        if self.run.life_at_reset is not self._life_at_reset:
+            self._life_at_reset = self.run.life_at_reset
+            self._counter.restart(self._life_at_reset)
+        self._counter.take(block, _times_ns(block, self.run.start_ns), seconds)
+
+    def contained(self, time_ns: int) -> bool:
+        """Return whether the state contained an instant [ns since the epoch]."""
+        return self._covered is not None and time_ns in self._covered
+
+
+class StateKeeper(_StateMemory):
     """The state of one bearing in use.
 
     All methods belong to one thread; the files are written by another.
@@ -61,6 +111,9 @@ class StateKeeper:
         The state is another bearing's, in use, or not good.
     """
 
+    goes_by_wall = True
+    checked = staticmethod(checked_serial)
+
     def __init__(
         self,
         path: str | Path,
@@ -71,6 +124,7 @@ class StateKeeper:
         clock: Callable[[], float] = time.monotonic,
         now_ns: Callable[[], int] = time.time_ns,
     ):
+        super().__init__(scene)
         self._file, self._once, self._clock, self._now_ns = StateFile(path), once, clock, now_ns
         self.path = self._file.path
         try:
@@ -98,7 +152,22 @@ class StateKeeper:
         self._written_at = self._due_from = clock()
         self._move_from = -np.inf
         self._said_csv = False
+        self._newest: np.void | None = None  # that is counted
         self.restart()
+
+    @classmethod
+    def of_bearing(cls, scene: Scene, serial: str, path: str, is_simulated: bool) -> "StateKeeper | None":
+        """Return the state of a bearing that is to be remembered; None where nothing is: without a serial number or file, in simulated time a file.
+
+        Raises
+        ------
+        OSError
+            It cannot be used.
+        """
+        serial = checked_serial(serial)
+        if not path and (is_simulated or not serial):
+            return None
+        return cls(path or default_path(serial), scene, serial, once=is_simulated)
 
     def _require_same(self, scene: Scene, serial: str) -> None:
         if found := self.state.differences(scene, serial):
@@ -143,6 +212,39 @@ class StateKeeper:
         return self._state
 
     @property
+    def serial(self) -> str:
+        """Serial number of the bearing."""
+        return self.state.serial
+
+    @property
+    def remark(self) -> str:
+        """The path of its file."""
+        return str(self.path)
+
+    def begin(self) -> None:
+        """Begin a run, and let the other watchers continue from what they have learned about the bearing."""
+        self.restart()
+        self._newest = None
+        super().begin()
+
+    @classmethod
+    def recorded(cls, scene: Scene, record: Mapping[str, str]) -> "RecordedState":
+        """Return the state with which the bearing of a recorded run began."""
+        try:
+            return RecordedState(scene, parsed(record["state"].encode()), record.get("counts") == "once")
+        except (KeyError, ValueError, OSError) as error:
+            raise ValueError(f"the stored state in the recording cannot be used: {error}; replay its inputs with --scene instead") from None
+
+    def serve(self, service: str) -> tuple[bool, str] | None:
+        """Answer with the state as JSON: totals, calibration, temperatures."""
+        return (True, json.dumps(self.summary())) if service == "get_stored_state" else None
+
+    @property
+    def life_used(self) -> float:
+        """See `used`."""
+        return self.used
+
+    @property
     def used(self) -> float:
         """Fraction of the life used so far."""
         return self.state.totals.damage
@@ -152,6 +254,16 @@ class StateKeeper:
         """The metadata record of a recording that begins now."""
         return {"state": serialised(self.state).decode(), "counts": "once" if self._once else "always"}
 
+    @property
+    def records(self) -> dict[str, dict[str, str]]:
+        """The record by its name."""
+        return {RECORD: self.record}
+
+    def temperatures(self, now_ns: int) -> tuple[list[float], list[float]] | None:
+        """Return those that the bearing is remembered with."""
+        thermal = self.thermal(now_ns)
+        return None if thermal is None else (thermal.nodes, thermal.rings)
+
     def thermal(self, now_ns: int) -> Thermal | None:
         """Return the temperatures to begin with at an instant [ns since the epoch]; None where there are none of the last ten minutes."""
         thermal = self.state.thermal
@@ -159,7 +271,7 @@ class StateKeeper:
             return None
         return thermal
 
-    def restart(self) -> None:
+    def restart(self, why: str = "") -> None:
         """Begin another run, or continue after a reset: its damage begins at 0 again."""
         self._before = self.state.covered.copy() if self._once else Covered()
         self._counter = LifeCounter(self.used, self._before if self._once else None)
@@ -168,6 +280,17 @@ class StateKeeper:
     def contained(self, time_ns: int) -> bool:
         """Return whether the state contained an instant [ns since the epoch] before this run, so that nothing of it counts again."""
         return time_ns in self._before
+
+    def correct(self, block: np.ndarray, seconds: np.ndarray) -> None:
+        """Count samples, and write the life used into those of which the run itself does not know it."""
+        if self.run.acts_on_arrival:
+            self.count_live(block, self.run.starts_ns, self.run.interval)
+        else:
+            self.count(block, self.run.start_ns, seconds)
+        if seconds.any():
+            self._newest = block[-1]
+        if not self.run.is_reviewed:
+            self._write_if_due()
 
     def count(self, block: np.ndarray, start_ns: int, seconds: np.ndarray) -> None:
         """Count samples of a log: write the life used into them, without times that the state contains already.
@@ -218,10 +341,28 @@ class StateKeeper:
         if self._unsaved_since is None:
             self._unsaved_since = self._clock()
 
-    def adjust(self, scene: Scene) -> None:
+    def adjust(self, thresholds: Thresholds) -> None:
         """Class samples by other thresholds from now on."""
+        super().adjust(thresholds)
         self._take_pending()
-        self._by = criteria(scene)
+        self._by = criteria(self.scene)
+
+    def _write_if_due(self) -> None:
+        """Have the state written from time to time."""
+        self.release(self.run.published_until)
+        if self.is_due and self._newest is not None:
+            self.note_condition()
+            self.hold(float(self._newest["time"]))
+
+    def note_condition(self) -> None:
+        """Take the temperatures of the newest sample, and what the other watchers of the run have learned."""
+        if self._newest is None:
+            return
+        time_ns, watchers = self.run.stamp(float(self._newest["time"])), self.run.watchers
+        self.note_thermal(self._newest, time_ns)
+        known = {name: watcher.learned for name in BUILT_IN if (watcher := watchers.get(name)) is not None and watcher.learned is not None}
+        self.state.learned = self.state.learned | known  # a run without one of them keeps what another run has learned
+        self.state.note_estimates(time_ns, {field: bounds for watcher in watchers for field, bounds in watcher.estimates.items()})
 
     def note_thermal(self, sample: np.void, time_ns: int) -> None:
         """Take the temperatures of a sample, if it has those of a thermal network."""
@@ -262,12 +403,13 @@ class StateKeeper:
 
     def news(self, now: float) -> list[Event]:
         """Return what has happened to the state since the last call, stamped ``now`` [s]."""
+        if self.run.is_reviewed:
+            self._write_if_due()
         news, self._news = self._news, []
         return [Event(now, each.level, each.kind, "", each.text) for each in news]
 
-    @property
-    def values(self) -> dict[str, object]:
-        """Diagnostics values, the unit in each key."""
+    def values(self, now: float) -> dict[str, object]:
+        """Return diagnostics values, the unit in each key."""
         totals = self.state.totals
         return {
             "serial number": self.state.serial or "none",
@@ -320,7 +462,13 @@ class StateKeeper:
         self._stop()
         self._file.close()
 
-    def close(self) -> bool:
+    def close(self) -> None:
+        """End with a run; the state stays in use until `leave`."""
+        self.note_condition()
+        if self.run.is_reviewed:
+            self.save()
+
+    def leave(self) -> bool:
         """Write the state and let others use its file; return whether it was written."""
         written = self.save()
         if self._stop():

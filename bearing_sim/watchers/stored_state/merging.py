@@ -51,7 +51,7 @@ def merge(path: Path, recording: Recording) -> Filled:
     except BaseException:
         keeper.abandon()
         raise
-    if not keeper.close():
+    if not keeper.leave():
         raise StateError(f"the state file {keeper.path} cannot be written; nothing was added")
     return filled
 

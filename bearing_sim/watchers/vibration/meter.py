@@ -17,10 +17,12 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.topics import MEASURED
 from bearing_sim.recording.priority import with_low_priority
 from bearing_sim.scene.scene import Scene
+from bearing_sim.watchers.monitoring.watchers import Watcher
 from bearing_sim.watchers.vibration.analysis import Geometry
-from bearing_sim.watchers.vibration.reading import Block
+from bearing_sim.watchers.vibration.reading import Block, block_of
 from bearing_sim.watchers.vibration.worker import Outcome, Window
 
 TOPIC = "vibration"
@@ -34,7 +36,7 @@ _ENDS_WITHIN = 2.0  # [s]
 _MOST_SLIP = 0.95  # that is looked for, whatever the model says
 
 
-class CageSpeedMeter:
+class CageSpeedMeter(Watcher):
     """Finds the cage speed in blocks of vibration.
 
     All methods belong to one thread; windows are analysed elsewhere.
@@ -43,9 +45,17 @@ class CageSpeedMeter:
     ----------
     scene : its block ``vibration`` says how; its bearing has the geometry.
     analysed : ``analysed(window)`` returns the outcome, on a thread of the meter; by default in a process of low priority.
+
+    Attributes
+    ----------
+    last : what the last window showed.
     """
 
+    remark = "its blocks are analysed"
+
     def __init__(self, scene: Scene, analysed: Callable[[Window], Outcome] | None = None):
+        super().__init__(scene)
+        self._news: list[Event] = []
         self._settings, roller = scene.vibration, scene.bearing.roller
         size, slip = roller.diameter / scene.bearing.pitch_diameter, scene.vibration.largest_slip
         self._geometry = Geometry(roller.count, size, name=scene.bearing.name, largest_slip=slip)
@@ -54,7 +64,7 @@ class CageSpeedMeter:
         self._waiting: queue.Queue[Window | None] = queue.Queue(1)
         self._outcomes: queue.Queue[Outcome | str] = queue.Queue()
         self._counts = {"blocks": 0, "blocks refused": 0, "blocks lost": 0, "windows": 0, "windows left out": 0, "windows without a claim": 0}
-        self._last = "no window is complete yet"
+        self.last = "no window is complete yet"
         self._sequence: int | None = None
         self._thread: threading.Thread | None = None
         self._begin()
@@ -64,6 +74,31 @@ class CageSpeedMeter:
         self._speeds: list[float] = []
         self._count, self._rate, self._slip = 0, math.nan, 0.0
         self._first = self._newest = math.nan  # arrivals of the first and the newest block [s]
+
+    def hear(self, channel: str, time: float, value, standard_error: float) -> None:
+        """Take a message with a block, or why it cannot be read as one."""
+        if channel != TOPIC:
+            return
+        try:
+            if isinstance(value, str):
+                raise ValueError(value)
+            block = block_of(value)
+        except Exception as error:  # its type depends on the middleware
+            self._news.append(self.refuse(f"the message is no block of samples: {' '.join(str(error).split())}", time))
+            return
+        run = self.run
+        slips = [float(run.newest_bands.numbers[-1, run.newest_bands.names.index("cage_slip"), 2])] if run.newest_bands is not None else []
+        slips += [float(run.newest["cage_slip"])] if run.newest is not None else []
+        self._news += self.take(block, time, run.shaft_speed, max(filter(math.isfinite, slips), default=0.0))
+
+    def news(self, now: float) -> list[Event]:
+        """Return what was wrong with blocks since the last call."""
+        news, self._news = self._news, []
+        return news
+
+    def measured(self) -> list[tuple[str, tuple[float, float]]]:
+        """Return the cage speeds found since the last call, with their standard errors."""
+        return [(MEASURED, reading) for reading in self.readings(self.run.shaft_speed)]
 
     def take(self, block: Block, now: float, shaft_speed: float, slip: float = 0.0) -> list[Event]:
         """Take a block that arrives at run time ``now`` [s]; return what is wrong with it or with those before.
@@ -177,25 +212,19 @@ class CageSpeedMeter:
                 return found
             self._counts["windows"] += 1
             if isinstance(outcome, str):
-                self._last = outcome
+                self.last = outcome
             elif not outcome.is_claim:
                 self._counts["windows without a claim"] += 1
-                self._last = outcome.reason
+                self.last = outcome.reason
             else:
-                self._last = f"{outcome.shows.replace('_', ' ')} shows: cage over shaft {outcome.ratio:.6f} +- {outcome.ratio_error:.6f}"
+                self.last = f"{outcome.shows.replace('_', ' ')} shows: cage over shaft {outcome.ratio:.6f} +- {outcome.ratio_error:.6f}"
                 scale = shaft_speed / outcome.shaft_speed
                 speed = math.copysign(outcome.cage_speed, outcome.shaft_speed) * scale
                 found.append((speed, outcome.cage_speed_error * abs(scale)))
 
-    @property
-    def values(self) -> Mapping[str, object]:
-        """Values of diagnostics."""
-        return {f"vibration: {name}": count for name, count in self._counts.items()} | {"vibration: last window": self._last}
-
-    @property
-    def remark(self) -> str:
-        """What is said while there is nothing to report."""
-        return self._last
+    def values(self, now: float) -> Mapping[str, object]:
+        """Return values of diagnostics."""
+        return {f"vibration: {name}": count for name, count in self._counts.items()} | {"vibration: last window": self.last}
 
     def close(self) -> None:
         """End the analysis; a window at work is given up."""
