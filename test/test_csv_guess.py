@@ -5,7 +5,7 @@ import json
 
 import pytest
 from click.testing import CliRunner
-from measured_data import measured_file
+from support import measured_file
 
 from bearing_sim.cli.main import main
 from bearing_sim.inputs.csv_guess import guess

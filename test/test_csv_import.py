@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
-from measured_data import measured_file
+from support import measured_file
 
 from bearing_sim.cli.main import main
 from bearing_sim.files.tally import PartlyUsedWarning

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import preloaded
 import pytest
-from measured_data import FOLDER, measured_file
+from support import FOLDER, measured_file
 
 ROOT = Path(__file__).resolve().parents[1]
 DOC = ROOT / "doc"

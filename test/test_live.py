@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from fake_simulation import FakeSimulation
-from list_sink import ListSink
+from support import ListSink
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.runtime.health import Health, Phase

@@ -8,11 +8,11 @@ import math
 import numpy as np
 import pytest
 from fake_simulation import FakeSimulation
-from list_sink import ListSink
 from made_up_response import ASKING, FACTOR, FIELD, asking_scene, made_up_response
 from recordings import steady_log
 from rerun_files import column, views_in
 from sim_time_bench import course, write
+from support import ListSink
 from synthetic_run import synthetic_block
 from test_live import Bench
 

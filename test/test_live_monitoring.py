@@ -7,7 +7,7 @@ import time
 
 import pytest
 from fake_simulation import FakeSimulation
-from list_sink import ListSink
+from support import ListSink
 from test_live import Bench
 
 from bearing_sim.messages.events import Level

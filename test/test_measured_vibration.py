@@ -8,7 +8,7 @@ raceway rings Z times in a turn of the cage, and the shaft's own line stands in 
 import numpy as np
 import pytest
 import scipy.signal
-from measured_data import measured_file
+from support import measured_file
 
 from bearing_sim import settle
 from bearing_sim.scene.loader import scene_from_mapping

@@ -7,8 +7,8 @@ import time
 
 import pytest
 from fake_simulation import FakeSimulation
-from list_sink import ListSink
 from sim_time_bench import START_NS, FalseWall
+from support import ListSink
 
 from bearing_sim.inputs.gate import Sources
 from bearing_sim.messages.diagnostics import report

@@ -17,7 +17,7 @@ from mcap.reader import make_reader  # noqa: E402
 from ros_bench import GOOD, Client, NodeProcess, fresh_domain  # noqa: E402
 from rosbags.highlevel import AnyReader  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
-from waiting import wait_for  # noqa: E402
+from support import wait_for  # noqa: E402
 
 from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.messages.events import Event  # noqa: E402

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 from rerun.chunk import RrdReader
+from support import wait_for
 from synthetic_run import synthetic_block
-from waiting import wait_for
 
 from bearing_sim.recording import priority
 from bearing_sim.ros.warm_up import start_compiling

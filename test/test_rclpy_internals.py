@@ -16,7 +16,7 @@ from rclpy.lifecycle import LifecycleNode  # noqa: E402
 from rclpy.serialization import deserialize_message, serialize_message  # noqa: E402
 from ros_bench import fresh_domain  # noqa: E402
 from std_msgs.msg import Float64  # noqa: E402
-from waiting import wait_for  # noqa: E402
+from support import wait_for  # noqa: E402
 
 from bearing_sim.ros import rclpy_internals  # noqa: E402
 

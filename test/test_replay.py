@@ -15,11 +15,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from fake_simulation import FakeSimulation
-from list_sink import ListSink
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
-from measured_data import measured_file
 from recordings import steady_log, write_log
+from support import ListSink, measured_file
 
 from bearing_sim.cli.main import main
 from bearing_sim.inputs.log import read_input_log

@@ -12,8 +12,8 @@ import psutil
 import pytest
 import rerun as rr
 from rerun.chunk import RrdReader
+from support import wait_for
 from synthetic_run import synthetic_block
-from waiting import wait_for
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.scene.loader import load_scene

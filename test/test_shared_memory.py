@@ -11,7 +11,7 @@ pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_
 
 from rclpy.utilities import get_rmw_implementation_identifier  # noqa: E402
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
-from waiting import wait_for  # noqa: E402
+from support import wait_for  # noqa: E402
 
 from bearing_sim.ros.shared_memory import SHARED_MEMORY, remove_unfinished_ports  # noqa: E402
 

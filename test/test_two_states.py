@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from list_sink import ListSink
 from recordings import write_log
+from support import ListSink
 from test_governor import TICK, FakeLevel
 from test_live import Bench
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import scipy.io
 from click.testing import CliRunner
-from measured_data import measured_file
+from support import measured_file
 from synthetic_vibration import Machine, record
 from validation.__main__ import main as validation
 from validation.check import FAILS, HOLDS, IN_PART, NOT_RUN, Check, Comparison, compared, run

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from list_sink import ListSink
 from recordings import write_log
 from scipy.integrate import solve_bvp
+from support import ListSink
 
 from bearing_sim import Simulation, load_scene
 from bearing_sim.cli.main import main

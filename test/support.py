@@ -1,10 +1,35 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A sink that keeps what it is given."""
+"""What many tests need: a sink that keeps what it is given, waiting for others, measured files."""
+
+import time
+from pathlib import Path
 
 import numpy as np
+import pytest
 
+import bearing_sim
 from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.events import Event, MeasuredClearance, Measurement, ReceivedInputs, Report, Start
+
+FOLDER = Path(bearing_sim.__file__).resolve().parents[2] / "shared" / "data"
+"""Measured files that are not redistributable, and so not in the repository."""
+
+
+def measured_file(name: str) -> Path:
+    """Return the path of a measured file; a test without it is skipped and says so."""
+    path = FOLDER / name
+    if not path.exists():
+        pytest.skip(f"the measured data {name} are not redistributable and not here; expected in ../shared/data beside the repository")
+    return path
+
+
+def wait_for(condition, seconds=60.0):
+    """Return what a condition gives as soon as that is true; fail after so many seconds of wall time, which a busy machine may need."""
+    limit = time.monotonic() + seconds
+    while not (found := condition()) and time.monotonic() < limit:
+        time.sleep(0.02)
+    assert found, "waited in vain"
+    return found
 
 
 class ListSink:
