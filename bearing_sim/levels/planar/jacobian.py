@@ -66,7 +66,7 @@ _RADIAL, _ORBITAL, _SPINNING = 0, LOCAL, 2 * LOCAL  # where the rows of r'', phi
 _AT_THETA, _AT_OMEGA = AT_CAGE + 2, AT_CAGE + CAGE + 2  # columns of the cage's angle and speed
 
 
-@kernel
+@fused
 def _d_roller(columns, d_orbit, y, cosine, sine, radius, orbital_speed):
     """Return the derivatives by r, phi, r', phi' from those by a and v (see the docstring of the module), and what the rolling speed adds by phi'."""
     d_apart_r, d_apart_t, d_speed_r, d_speed_t = columns
@@ -77,7 +77,7 @@ def _d_roller(columns, d_orbit, y, cosine, sine, radius, orbital_speed):
     return d_apart_r + orbital_speed * d_speed_t, d_angle, d_speed_r, radius * d_speed_t + d_orbit
 
 
-@kernel
+@fused
 def _roller_columns(put, block, jacobian, first, scale, columns, d_spin):
     """Store or add (``put``) ``scale`` times the columns by r, phi, r', phi', and that by the spin."""
     put(jacobian, block, first + R, scale * columns[0])
@@ -87,7 +87,7 @@ def _roller_columns(put, block, jacobian, first, scale, columns, d_spin):
     put(jacobian, block, first + SPIN, scale * d_spin)
 
 
-@kernel
+@fused
 def _ring_columns(block, jacobian, first, scale, columns, cosine, sine):
     """Write the columns by the ring's position and velocity, from those by a and v: a ring that moves is a roller that moves the other way."""
     store(jacobian, block, first + AT_RING + RING_Y, scale * (columns[1] * sine - columns[0] * cosine))
@@ -96,7 +96,7 @@ def _ring_columns(block, jacobian, first, scale, columns, cosine, sine):
     store(jacobian, block, first + AT_RING + RING + RING_Z, -scale * (columns[2] * sine + columns[3] * cosine))
 
 
-@kernel
+@fused
 def _turned(columns_r, columns_t, c, s):
     """Return c times the first columns less s times the second."""
     return (
@@ -107,7 +107,7 @@ def _turned(columns_r, columns_t, c, s):
     )
 
 
-@kernel
+@fused
 def _inner_rows(block, y, params, rows, force, radial_columns, along_columns, spin_columns, d_orbit, d_spin, jacobian):
     """Write the rows of a block of rollers and of the ring, as far as the inner contact makes them.
 
@@ -179,7 +179,7 @@ def _inner_jacobian(y, inner_radius, resists, params, rows, contacts, jacobian):
         _inner_rows(block, y, params, rows, (radial, along), by_r, by_t, driving, by_orbit, by_spin, jacobian)
 
 
-@kernel
+@fused
 def _outer_columns(block, d_load, d_sliding, d_rolling, roller_radius, rows, normal):
     """Return the derivatives by r, phi, r', phi' of a force along the orbit, from those by load, by sliding and by half the rolling speed.
 
@@ -251,7 +251,7 @@ class _Wall(NamedTuple):
     theta: float
 
 
-@kernel
+@fused
 def _wall_column(put_own, put, block, column, of_cage, change, turned, wall, jacobian):
     """Put the change of the force by one variable, and of its torque on the cage, into all rows; ``of_cage`` is the column in those of the cage."""
     put_own(jacobian, block, _RADIAL + column, wall.radial * change)
@@ -262,7 +262,7 @@ def _wall_column(put_own, put, block, column, of_cage, change, turned, wall, jac
     put(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + of_cage, wall.theta * turned)
 
 
-@kernel
+@fused
 def _wall_columns(put_own, put, block, column, step, before, moved, rate, arm, wall, jacobian):
     """Put the changes by a position and by its speed, ``step`` columns further on, into all rows, as far as directions stay.
 
@@ -279,7 +279,7 @@ def _wall_columns(put_own, put, block, column, step, before, moved, rate, arm, w
     _wall_column(put_own, put, block, column, column - before, by_rate, by_rate * wall.arm, wall, jacobian)
 
 
-@kernel
+@fused
 def _wall_jacobian(put, block, force, springs, arm, push, bends, slid, moved, rates, arms, params, rows, jacobian):
     """Add what two opposite walls of the pockets do to the rows of a block of rollers, and write those of the cage.
 
