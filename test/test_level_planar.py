@@ -73,8 +73,8 @@ def test_block_arrow_solution_is_that_of_the_dense_matrix():
     matrix = np.eye(state.size) - shift * dense_jacobian(run, state)
     right = np.random.default_rng(2).normal(size=state.size)
     x = right.copy()
-    assert planar.factor(shift, run._work)
-    planar.solve(run._work, x)
+    assert planar.KERNELS.factor(shift, run._work)
+    planar.KERNELS.solve(run._work, x)
     expected = np.linalg.solve(matrix, right)
     np.testing.assert_allclose(x, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
 
@@ -211,7 +211,7 @@ def test_heavy_loads_at_speed_take_hardly_more_iterations_than_light_ones():
 
 
 def corrected(run, roller, **states):
-    """Return state and correction after `planar.restrain` of a correction of one roller, and where its states stand: r, phi, r', phi', w."""
+    """Return state and correction after `planar.KERNELS.restrain` of a correction of one roller, and where its states stand: r, phi, r', phi', w."""
     model, work, y = run._model(run.inputs, 1.0), run._work, run._state.copy()
     equations(0.0, y, model, work, np.zeros_like(y), False)
     own = ROLLERS + roller + run._params.rollers.count * np.arange(BLOCK)
@@ -220,7 +220,7 @@ def corrected(run, roller, **states):
         change[own[RollerRow._fields.index(name)]] = value
     before = y.copy()
     y += change
-    planar.restrain(y, change, model, work)
+    planar.KERNELS.restrain(y, change, model, work)
     assert np.allclose(y - before, change, rtol=0.0, atol=1e-9), "state and correction change together"
     return y, change, own
 

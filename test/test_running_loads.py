@@ -116,8 +116,8 @@ def test_positions_count_a_quarter_in_a_correction_play_the_less_the_faster_the_
         change = np.zeros_like(run._state)
         change[i] = 1e-6
         weight = ring if i in {states.RING_Y, states.RING_Z} else 0.25 if i in quarter else 10.0 / (1.0 + pocket_speed / 0.8) if i in play else 1.0
-        error = model_of_level.error_norm(0.0, run._state, change, model)
-        assert model_of_level.correction_norm(0.0, run._state, change, model) == pytest.approx(error * weight, rel=1e-12)
+        error = model_of_level.KERNELS.error_norm(0.0, run._state, change, model)
+        assert model_of_level.KERNELS.correction_norm(0.0, run._state, change, model) == pytest.approx(error * weight, rel=1e-12)
 
 
 def test_running_means_of_level_slip_are_those_of_a_plain_sum_over_its_steps():

@@ -206,7 +206,7 @@ def test_the_plain_numpy_model_tells_what_films_and_asperities_do(part):
 
 def dense_jacobian(run, state):
     model, work, rate = run._model(run.inputs, 1.0), run._work, np.zeros_like(state)
-    spatial.rhs_and_jacobian(0.0, state, model, work, rate)
+    spatial.KERNELS.rhs_and_jacobian(0.0, state, model, work, rate)
     return dense_arrow(LAYOUT, work, run._params.rollers.count)
 
 
@@ -225,8 +225,8 @@ def test_block_arrow_solution_is_that_of_the_dense_matrix():
     matrix = np.eye(state.size) - shift * dense_jacobian(run, state)
     right = np.random.default_rng(2).normal(size=state.size)
     x = right.copy()
-    assert spatial.factor(shift, run._work)
-    spatial.solve(run._work, x)
+    assert spatial.KERNELS.factor(shift, run._work)
+    spatial.KERNELS.solve(run._work, x)
     expected = np.linalg.solve(matrix, right)
     np.testing.assert_allclose(x, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
 

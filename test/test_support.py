@@ -107,7 +107,7 @@ def test_implicit_step_solves_with_the_jacobian_of_a_complex_step(level, variant
     model, rate, shift = run._model(run.inputs, 1.0), np.zeros_like(run._state), 2e-5
     state = rough_state(level, run, 1)
     matrix = np.eye(state.size) - shift * complex_step_jacobian(reference.rate, state)
-    assert MODELS[level].rhs_and_jacobian(0.0, state, model, run._work, rate)
+    assert MODELS[level].KERNELS.rhs_and_jacobian(0.0, state, model, run._work, rate)
     own = run._work.global_block.copy()
     assert MODELS[level].factor(shift, run._work)
     assert (run._work.global_block == own).all()  # a factorisation with another step begins with the same derivatives
@@ -211,11 +211,11 @@ STIFF = [
 def full_jacobian(run):
     """Return d rate/d state by the solution of (I - s J) x = b for all unit vectors b."""
     state, rate, shift = run._state, np.zeros_like(run._state), 1e-3
-    assert planar.rhs_and_jacobian(run.time, state, run._model(run.inputs, 1.0), run._work, rate)
-    assert planar.factor(shift, run._work)
+    assert planar.KERNELS.rhs_and_jacobian(run.time, state, run._model(run.inputs, 1.0), run._work, rate)
+    assert planar.KERNELS.factor(shift, run._work)
     inverse = np.eye(state.size)
     for row in inverse:
-        planar.solve(run._work, row)
+        planar.KERNELS.solve(run._work, row)
     return (np.eye(state.size) - np.linalg.inv(inverse.T)) / shift
 
 

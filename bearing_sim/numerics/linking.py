@@ -13,10 +13,12 @@ and the processor; paths do not matter, so that all installations of the same co
 This uses interfaces of numba that it does not promise to keep: ``test/test_linking.py`` names them, and fails where they have changed.
 """
 
+import gc
 import hashlib
 import pickle
 import sys
 from collections.abc import Callable
+from contextlib import contextmanager
 from inspect import signature
 from pathlib import Path
 
@@ -91,12 +93,28 @@ def _code_alone(library):
     return library.alone() if isinstance(library, _Translation) else library._get_module_for_linking()
 
 
+@contextmanager
+def _without_garbage_collection():
+    """Leave garbage for later: the compiler keeps hundreds of thousands of objects, and Python would search all of them again and again."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
 class _Compiler(_FunctionCompiler):
     """Compiles a function to be called from Python, as numba does, or translates it to be called from compiled code."""
 
     dispatcher: "LinkingDispatcher"
 
     def _compile_core(self, args, return_type):
+        with _without_garbage_collection():
+            return self._compile_program(args, return_type)
+
+    def _compile_program(self, args, return_type):
         function = _with_references(self.dispatcher) if any(isinstance(each, types.BaseNamedTuple) for each in args) else self.py_func
         library = _Program(self.targetdescr.target_context.codegen(), self.py_func.__qualname__)
         library.enable_object_caching()

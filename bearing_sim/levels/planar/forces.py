@@ -31,14 +31,7 @@ from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, total_load
 from bearing_sim.levels.common.model import films_at, inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import carry_normal_forces, drag, linear_churning, place_in_pockets, place_outwards, place_rollers
 from bearing_sim.levels.common.support import carry, follow_frame, frame_of
-from bearing_sim.levels.planar.jacobian import (
-    flange_jacobian,
-    guide_jacobian,
-    land_contact_jacobian,
-    react_on_ring,
-    resistance_jacobian,
-    roller_jacobian,
-)
+from bearing_sim.levels.planar.jacobian import land_contact_jacobian, react_on_ring, roller_jacobian
 from bearing_sim.levels.planar.state import (
     BORDER,
     CAGE_Y,
@@ -266,20 +259,13 @@ def equations(t, y, model, work, rate, with_jacobian):
     drag(params.raceways, model.lubrication, films, contacts)
     _pocket_forces(y, films.pocket_friction, params, rows)
     _accelerate(y, churning, model, rows, contacts, rate)
-    pockets_guide = not params.cage.guidance.lands
-    if pockets_guide:
+    if not params.cage.guidance.lands:
         guide_forces(y, params, rows)
         guide_accelerations(params, rows, rate)
     if params.flanges.on:
         flange_accelerations(shaft_speed, films.flange_friction, model, rows, contacts, rate)
     if with_jacobian:
-        roller_jacobian(y, inner_radius, churning, params, rows, contacts, work.jacobian)
-        if model.lubrication.rolling_resistance.on:
-            resistance_jacobian(y, inner_radius, params, rows, contacts, work.jacobian)
-        if pockets_guide:
-            guide_jacobian(y, params, rows, work.jacobian)
-        if params.flanges.on:
-            flange_jacobian(y, params, rows, work.jacobian)
+        roller_jacobian(y, inner_radius, churning, model.lubrication.rolling_resistance.on, params, rows, contacts, work.jacobian)
     if work.support.shape[0] > 0:
         carry(LAYOUT, RUNS, ROLLER, t, y, model, work, rate, with_jacobian)
         for block in range(rows.shape[0]):

@@ -13,8 +13,9 @@ du = omega_i R_i - v_p - w R_w
     Q_ar = -(k n_r + d h_r v_p),  Q_at = -(k n_t + d h_t v_p),  Q_vr = -d n_r,              Q_vt = -d n_t,
     T_ar = T_Q Q_ar + T_s h_r v_n, T_at = T_Q Q_at + T_s h_t v_n, T_vr = T_Q Q_vr + T_s n_t, T_vt = T_Q Q_vt - T_s n_r
 
-are the derivatives by a and v.  The force in the roller's frame is F = Q n + T p, so that dF = dQ n + dT p + (h.da) (-F_t, F_r).  By the roller's
-own variables (c the ring's centre in the roller's frame):
+are the derivatives by a and v.  What resists rolling and what flanges do act along p as well, with other factors on the spin.  The force in the
+roller's frame is F = Q n + T p, so that dF = dQ n + dT p + (h.da) (-F_t, F_r).  By the roller's own variables (c the ring's centre in the roller's
+frame):
 
     d/dr = d/da_r + phi' d/dv_t,   d/dphi = c_r d/da_t - c_t d/da_r + c_r' d/dv_t - c_t' d/dv_r,   d/dr' = d/dv_r,   d/dphi' = r d/dv_t,
 
@@ -25,14 +26,17 @@ a roller that moves the other way.
 
     Q_r = k,  Q_phi = -k R_e' - d R_e'' phi',  Q_r' = d,  Q_phi' = -d R_e';   T likewise, with T_s and T_u.
 
-**Pocket.** The force f on the wall depends on s and s' (`bearing_sim.levels.common.rollers.place_in_pockets`), its direction on psi.
+**Pocket.** The force f on the wall depends on s and s' (`bearing_sim.levels.common.rollers.place_in_pockets`), its direction on psi.  A
+pocket that guides is another pair of walls, turned by a right angle: its offset is the first one's arm about the cage's centre, and the first one's
+offset is its arm.  The rate of an offset changes by a speed as the offset does by the position.
 """
+
+from typing import NamedTuple
 
 from bearing_sim.levels.common.flanges import FLANGE
 from bearing_sim.levels.planar.state import (
     AT_CAGE,
     AT_RING,
-    BLOCK,
     BORDER,
     CAGE,
     CAGE_COLUMNS,
@@ -62,43 +66,37 @@ _RADIAL, _ORBITAL, _SPINNING = 0, LOCAL, 2 * LOCAL  # where the rows of r'', phi
 _AT_THETA, _AT_OMEGA = AT_CAGE + 2, AT_CAGE + CAGE + 2  # columns of the cage's angle and speed
 
 
-@kernel
-def _in_frame(force, traction, turn, n_r, n_t, radial, along):
-    """Return dF = dQ n + dT p + turn (-F_t, F_r), the change of a contact's force in the roller's frame."""
-    return force * n_r - traction * n_t - turn * along, force * n_t + traction * n_r + turn * radial
-
-
-@kernel
-def _d_roller(columns, y, cosine, sine, radius, orbital_speed):
-    """Return the derivatives by r, phi, r', phi' from those by a and v (see the docstring of the module)."""
+@fused
+def _d_roller(columns, d_orbit, y, cosine, sine, radius, orbital_speed):
+    """Return the derivatives by r, phi, r', phi' from those by a and v (see the docstring of the module), and what the rolling speed adds by phi'."""
     d_apart_r, d_apart_t, d_speed_r, d_speed_t = columns
     ring_r, ring_t = y[RING_Y] * cosine + y[RING_Z] * sine, y[RING_Z] * cosine - y[RING_Y] * sine
     ring_speed_r = y[BORDER + RING_Y] * cosine + y[BORDER + RING_Z] * sine
     ring_speed_t = y[BORDER + RING_Z] * cosine - y[BORDER + RING_Y] * sine
     d_angle = d_apart_t * ring_r - d_apart_r * ring_t + d_speed_t * ring_speed_r - d_speed_r * ring_speed_t
-    return d_apart_r + orbital_speed * d_speed_t, d_angle, d_speed_r, radius * d_speed_t
+    return d_apart_r + orbital_speed * d_speed_t, d_angle, d_speed_r, radius * d_speed_t + d_orbit
 
 
-@kernel
+@fused
 def _roller_columns(put, block, jacobian, first, scale, columns, d_spin):
     """Store or add (``put``) ``scale`` times the columns by r, phi, r', phi', and that by the spin."""
     put(jacobian, block, first + R, scale * columns[0])
     put(jacobian, block, first + PHI, scale * columns[1])
     put(jacobian, block, first + R_SPEED, scale * columns[2])
     put(jacobian, block, first + PHI_SPEED, scale * columns[3])
-    put(jacobian, block, first + SPIN, d_spin)
+    put(jacobian, block, first + SPIN, scale * d_spin)
 
 
-@kernel
-def _ring_columns(put, block, jacobian, first, scale, columns, cosine, sine):
-    """Store or add the columns by the ring's position and velocity, from those by a and v: a ring that moves is a roller that moves the other way."""
-    put(jacobian, block, first + AT_RING + RING_Y, scale * (columns[1] * sine - columns[0] * cosine))
-    put(jacobian, block, first + AT_RING + RING_Z, -scale * (columns[0] * sine + columns[1] * cosine))
-    put(jacobian, block, first + AT_RING + RING + RING_Y, scale * (columns[3] * sine - columns[2] * cosine))
-    put(jacobian, block, first + AT_RING + RING + RING_Z, -scale * (columns[2] * sine + columns[3] * cosine))
+@fused
+def _ring_columns(block, jacobian, first, scale, columns, cosine, sine):
+    """Write the columns by the ring's position and velocity, from those by a and v: a ring that moves is a roller that moves the other way."""
+    store(jacobian, block, first + AT_RING + RING_Y, scale * (columns[1] * sine - columns[0] * cosine))
+    store(jacobian, block, first + AT_RING + RING_Z, -scale * (columns[0] * sine + columns[1] * cosine))
+    store(jacobian, block, first + AT_RING + RING + RING_Y, scale * (columns[3] * sine - columns[2] * cosine))
+    store(jacobian, block, first + AT_RING + RING + RING_Z, -scale * (columns[2] * sine + columns[3] * cosine))
 
 
-@kernel
+@fused
 def _turned(columns_r, columns_t, c, s):
     """Return c times the first columns less s times the second."""
     return (
@@ -109,75 +107,94 @@ def _turned(columns_r, columns_t, c, s):
     )
 
 
-@kernel
-def _inner_rows(put, block, y, params, rows, force, radial_columns, along_columns, spin_columns, d_orbit, d_spin, per_inertia, jacobian):
-    """Store or add the rows of a block of rollers and of the ring, as far as the inner contact makes them.
+@fused
+def _inner_rows(block, y, params, rows, force, radial_columns, along_columns, spin_columns, d_orbit, d_spin, jacobian):
+    """Write the rows of a block of rollers and of the ring, as far as the inner contact makes them.
 
     Parameters
     ----------
     force : outwards and along the orbit, on the roller [N].
     radial_columns, along_columns, spin_columns : derivatives by a and v of that force, and of the force that drives the spin.
     d_orbit, d_spin : what the rolling and sliding speeds add by phi' and w: outwards, along, and to the spin's force.
-    per_inertia : of the spin's force.
     """
     cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
     radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
-    per_mass = 1.0 / params.rollers.mass
+    per_mass, per_inertia = 1.0 / params.rollers.mass, params.rollers.radius / params.rollers.inertia
     per_lever = per_mass / radius
-    radial_r, radial_phi, radial_r_speed, radial_phi_speed = _d_roller(radial_columns, y, cosine, sine, radius, orbital_speed)
-    along_r, along_phi, along_r_speed, along_phi_speed = _d_roller(along_columns, y, cosine, sine, radius, orbital_speed)
-    spin_r, spin_phi, spin_r_speed, spin_phi_speed = _d_roller(spin_columns, y, cosine, sine, radius, orbital_speed)
-    radial_phi_speed, along_phi_speed, spin_phi_speed = radial_phi_speed + d_orbit[0], along_phi_speed + d_orbit[1], spin_phi_speed + d_orbit[2]
-    radial_spin, along_spin = d_spin[0], d_spin[1]
-    _roller_columns(put, block, jacobian, _RADIAL, per_mass, (radial_r, radial_phi, radial_r_speed, radial_phi_speed), per_mass * radial_spin)
-    _roller_columns(put, block, jacobian, _ORBITAL, per_lever, (along_r, along_phi, along_r_speed, along_phi_speed), per_lever * along_spin)
-    _roller_columns(put, block, jacobian, _SPINNING, per_inertia, (spin_r, spin_phi, spin_r_speed, spin_phi_speed), per_inertia * d_spin[2])
-    _ring_columns(put, block, jacobian, _RADIAL, per_mass, radial_columns, cosine, sine)
-    _ring_columns(put, block, jacobian, _ORBITAL, per_lever, along_columns, cosine, sine)
-    _ring_columns(put, block, jacobian, _SPINNING, per_inertia, spin_columns, cosine, sine)
+    radial = _d_roller(radial_columns, d_orbit[0], y, cosine, sine, radius, orbital_speed)
+    along = _d_roller(along_columns, d_orbit[1], y, cosine, sine, radius, orbital_speed)
+    spinning = _d_roller(spin_columns, d_orbit[2], y, cosine, sine, radius, orbital_speed)
+    _roller_columns(store, block, jacobian, _RADIAL, per_mass, radial, d_spin[0])
+    _roller_columns(store, block, jacobian, _ORBITAL, per_lever, along, d_spin[1])
+    _roller_columns(store, block, jacobian, _SPINNING, per_inertia, spinning, d_spin[2])
+    _ring_columns(block, jacobian, _RADIAL, per_mass, radial_columns, cosine, sine)
+    _ring_columns(block, jacobian, _ORBITAL, per_lever, along_columns, cosine, sine)
+    _ring_columns(block, jacobian, _SPINNING, per_inertia, spin_columns, cosine, sine)
     scale = load(rows, block, ROLLER.present) * (-1.0 / params.ring.mass)
     c, s = scale * cosine, scale * sine
     # the force's direction turns with the roller's azimuth
-    of_radial = radial_r, radial_phi - force[1], radial_r_speed, radial_phi_speed
-    of_along = along_r, along_phi + force[0], along_r_speed, along_phi_speed
+    radial, along = (radial[0], radial[1] - force[1], radial[2], radial[3]), (along[0], along[1] + force[0], along[2], along[3])
     ring_y, ring_z = RING_ROWS, RING_ROWS + RING_COLUMNS
-    _roller_columns(put, block, jacobian, ring_y, 1.0, _turned(of_radial, of_along, c, s), radial_spin * c - along_spin * s)
-    _roller_columns(put, block, jacobian, ring_z, 1.0, _turned(of_radial, of_along, s, -c), radial_spin * s + along_spin * c)
-    _ring_columns(put, block, jacobian, ring_y, 1.0, _turned(radial_columns, along_columns, c, s), cosine, sine)
-    _ring_columns(put, block, jacobian, ring_z, 1.0, _turned(radial_columns, along_columns, s, -c), cosine, sine)
+    _roller_columns(store, block, jacobian, ring_y, 1.0, _turned(radial, along, c, s), d_spin[0] * c - d_spin[1] * s)
+    _roller_columns(store, block, jacobian, ring_z, 1.0, _turned(radial, along, s, -c), d_spin[0] * s + d_spin[1] * c)
+    _ring_columns(block, jacobian, ring_y, 1.0, _turned(radial_columns, along_columns, c, s), cosine, sine)
+    _ring_columns(block, jacobian, ring_z, 1.0, _turned(radial_columns, along_columns, s, -c), cosine, sine)
 
 
 @fused
-def _inner_jacobian(y, inner_radius, params, rows, contacts, jacobian):
-    """Write all rows of ring and rollers as far as the inner contact makes them."""
+def _inner_jacobian(y, inner_radius, resists, params, rows, contacts, jacobian):
+    """Write all rows of ring and rollers as far as inner contact and inner flanges make them."""
+    roller_radius, push = params.rollers.radius, 1.0 - 2.0 * params.raceways.diameter_ratio
     for block in range(rows.shape[0]):
         n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
         v_n, v_t = load(rows, block, ROLLER.speed_normal), load(rows, block, ROLLER.speed_tangent)
-        q_i, t_i = load(contacts, block, CONTACT.load), load(contacts, block, CONTACT.force)
+        pressed, across = load(contacts, block, CONTACT.load), load(contacts, block, CONTACT.force)
         stiffness, damping = load(contacts, block, CONTACT.stiffness), load(contacts, block, CONTACT.damping)
+        # what acts along p on the roller's centre, and what drives its spin: their derivatives by load, by the speed along p, by phi' and by w
         d_load, d_sliding = load(contacts, block, CONTACT.d_load), load(contacts, block, CONTACT.d_sliding)
-        d_rolling = load(contacts, block, CONTACT.d_rolling)
-        radial, along = q_i * n_r - t_i * n_t, q_i * n_t + t_i * n_r
+        d_rolling, carried = 0.5 * load(contacts, block, CONTACT.d_rolling), roller_radius - inner_radius
+        d_orbit, d_spin = d_rolling * carried, (d_rolling - d_sliding) * roller_radius
+        spin_load, spin_sliding, spin_orbit, spin_spin = d_load, d_sliding, d_orbit, d_spin
+        if resists:
+            resisted, rolling = load(contacts, block, CONTACT.resistance_d_load), 0.5 * load(contacts, block, CONTACT.resistance_d_rolling)
+            across += push * load(contacts, block, CONTACT.resistance)
+            d_load, spin_load = d_load + push * resisted, d_load - resisted
+            d_orbit, spin_orbit = d_orbit + push * rolling * carried, d_orbit - rolling * carried
+            d_spin, spin_spin = d_spin + push * rolling * roller_radius, d_spin - rolling * roller_radius
+        if params.flanges.on:
+            first, per_radius = ROLLER.inner_flange, 1.0 / roller_radius
+            us = load(rows, block, first + FLANGE.us)
+            across += load(rows, block, first + FLANGE.force)
+            d_sliding, spin_sliding = d_sliding + load(rows, block, first + FLANGE.uu), d_sliding + us * per_radius
+            d_spin, spin_spin = d_spin - us, spin_spin - load(rows, block, first + FLANGE.ss) * per_radius
+        radial, along = pressed * n_r - across * n_t, pressed * n_t + across * n_r
         turn_r, turn_t = -n_t * inverse, n_r * inverse
-        q_ar, q_at = -(stiffness * n_r + damping * turn_r * v_t), -(stiffness * n_t + damping * turn_t * v_t)
-        q_vr, q_vt = -(damping * n_r), -(damping * n_t)
-        t_ar, t_at = d_load * q_ar + d_sliding * turn_r * v_n, d_load * q_at + d_sliding * turn_t * v_n
-        t_vr, t_vt = d_load * q_vr + d_sliding * n_t, d_load * q_vt - d_sliding * n_r
-        fr_ar, ft_ar = _in_frame(q_ar, t_ar, turn_r, n_r, n_t, radial, along)
-        fr_at, ft_at = _in_frame(q_at, t_at, turn_t, n_r, n_t, radial, along)
-        fr_vr, ft_vr = q_vr * n_r - t_vr * n_t, q_vr * n_t + t_vr * n_r
-        fr_vt, ft_vt = q_vt * n_r - t_vt * n_t, q_vt * n_t + t_vt * n_r
-        t_orbit = 0.5 * d_rolling * (params.rollers.radius - inner_radius)
-        t_spin = (0.5 * d_rolling - d_sliding) * params.rollers.radius
-        d_orbit, d_spin = (-(t_orbit * n_t), t_orbit * n_r, t_orbit), (-(t_spin * n_t), t_spin * n_r, t_spin)
-        columns_r, columns_t, columns_spin = (fr_ar, fr_at, fr_vr, fr_vt), (ft_ar, ft_at, ft_vr, ft_vt), (t_ar, t_at, t_vr, t_vt)
-        per_inertia = params.rollers.radius / params.rollers.inertia
-        _inner_rows(store, block, y, params, rows, (radial, along), columns_r, columns_t, columns_spin, d_orbit, d_spin, per_inertia, jacobian)
+        normal = -(stiffness * n_r + damping * turn_r * v_t), -(stiffness * n_t + damping * turn_t * v_t), -(damping * n_r), -(damping * n_t)
+        passing = -(turn_r * v_n), -(turn_t * v_n), -n_t, n_r  # of the roller along p; sliding is the other way
+        tangent, driving = _turned(normal, passing, d_load, d_sliding), _turned(normal, passing, spin_load, spin_sliding)
+        by_r, by_t = _turned(normal, tangent, n_r, n_t), _turned(normal, tangent, n_t, -n_r)
+        by_r = by_r[0] - turn_r * along, by_r[1] - turn_t * along, by_r[2], by_r[3]
+        by_t = by_t[0] + turn_r * radial, by_t[1] + turn_t * radial, by_t[2], by_t[3]
+        by_orbit, by_spin = (-(d_orbit * n_t), d_orbit * n_r, spin_orbit), (-(d_spin * n_t), d_spin * n_r, spin_spin)
+        _inner_rows(block, y, params, rows, (radial, along), by_r, by_t, driving, by_orbit, by_spin, jacobian)
 
 
 @fused
-def _outer_jacobian(y, churning, params, rows, contacts, jacobian):
-    """Add the outer contact, the drag of the mixture and the frame's own rotation to the rows of the rollers."""
+def _outer_columns(block, d_load, d_sliding, d_rolling, roller_radius, rows, normal):
+    """Return the derivatives by r, phi, r', phi' of a force along the orbit, from those by load, by sliding and by half the rolling speed.
+
+    ``normal`` are those of the load.
+    """
+    radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
+    d_orbit = d_rolling * (radius + 2.0 * roller_radius) - d_sliding * radius
+    return d_load * normal[0] + (d_rolling - d_sliding) * orbital_speed, d_load * normal[1], d_load * normal[2], d_load * normal[3] + d_orbit
+
+
+@fused
+def _outer_jacobian(y, churning, resists, params, rows, contacts, jacobian):
+    """Add outer contact and outer flanges, the drag of the mixture and the frame's own rotation to the rows of the rollers."""
+    roller_radius, push = params.rollers.radius, 1.0 + 2.0 * params.raceways.diameter_ratio
+    per_mass, per_inertia = 1.0 / params.rollers.mass, -roller_radius / params.rollers.inertia
     for block in range(rows.shape[0]):
         outer = rows.shape[0] + block
         radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
@@ -185,311 +202,185 @@ def _outer_jacobian(y, churning, params, rows, contacts, jacobian):
         slope, curvature = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature)
         stiffness, damping = load(contacts, outer, CONTACT.stiffness), load(contacts, outer, CONTACT.damping)
         d_load, d_sliding = load(contacts, outer, CONTACT.d_load), load(contacts, outer, CONTACT.d_sliding)
-        d_rolling, roller_radius = 0.5 * load(contacts, outer, CONTACT.d_rolling), params.rollers.radius
-        q_phi, q_r_speed, q_phi_speed = -(stiffness * slope) - damping * curvature * orbital_speed, damping, -(damping * slope)
-        t_r = d_load * stiffness + (d_rolling - d_sliding) * orbital_speed
-        t_phi, t_r_speed = d_load * q_phi, d_load * q_r_speed
-        t_phi_speed = d_load * q_phi_speed - d_sliding * radius + d_rolling * (radius + 2.0 * roller_radius)
-        t_spin = (d_sliding + d_rolling) * roller_radius
-        per_mass, per_inertia = 1.0 / params.rollers.mass, -roller_radius / params.rollers.inertia
+        d_rolling = 0.5 * load(contacts, outer, CONTACT.d_rolling)
+        d_spin = (d_sliding + d_rolling) * roller_radius
+        spin_load, spin_sliding, spin_rolling, spin_spin = d_load, d_sliding, d_rolling, d_spin
+        if resists:
+            resisted, rolling = load(contacts, outer, CONTACT.resistance_d_load), 0.5 * load(contacts, outer, CONTACT.resistance_d_rolling)
+            d_load, spin_load = d_load - push * resisted, d_load + resisted
+            d_rolling, spin_rolling = d_rolling - push * rolling, d_rolling + rolling
+            d_spin, spin_spin = d_spin - push * rolling * roller_radius, d_spin + rolling * roller_radius
+        if params.flanges.on:
+            first, per_roller = ROLLER.outer_flange, 1.0 / roller_radius
+            us = load(rows, block, first + FLANGE.us)
+            d_sliding, spin_sliding = d_sliding + load(rows, block, first + FLANGE.uu), d_sliding - us * per_roller
+            d_spin, spin_spin = d_spin - us, spin_spin + load(rows, block, first + FLANGE.ss) * per_roller
         per_radius = 1.0 / radius
         lean, per_lever = params.variants.contour_slope * slope * per_radius, per_mass * per_radius
-        add(jacobian, block, _RADIAL + R, orbital_speed * orbital_speed - per_mass * stiffness)
-        add(jacobian, block, _RADIAL + PHI, -per_mass * q_phi)
-        add(jacobian, block, _RADIAL + R_SPEED, -per_mass * q_r_speed)
-        add(jacobian, block, _RADIAL + PHI_SPEED, 2.0 * radius * orbital_speed - per_mass * q_phi_speed)
+        normal = stiffness, -(stiffness * slope) - damping * curvature * orbital_speed, damping, -(damping * slope)
+        none = spread(0.0)
+        _roller_columns(add, block, jacobian, _RADIAL, -per_mass, normal, none)
+        along = _outer_columns(block, d_load + lean, d_sliding, d_rolling, roller_radius, rows, normal)  # the contour leans the load along the orbit
+        _roller_columns(add, block, jacobian, _ORBITAL, per_lever, along, d_spin)
+        driving = _outer_columns(block, spin_load, spin_sliding, spin_rolling, roller_radius, rows, normal)
+        _roller_columns(add, block, jacobian, _SPINNING, per_inertia, driving, spin_spin)
+        add(jacobian, block, _RADIAL + R, orbital_speed * orbital_speed)
+        add(jacobian, block, _RADIAL + PHI_SPEED, 2.0 * radius * orbital_speed)
         arm = q_e * lean * per_radius + churning[1] * orbital_speed
-        acceleration = load(rows, block, ROLLER.orbital_acceleration)
-        add(jacobian, block, _ORBITAL + R, per_lever * (t_r + stiffness * lean - arm) - acceleration * per_radius)
-        bend = params.variants.contour_slope * q_e * curvature * per_radius
-        add(jacobian, block, _ORBITAL + PHI, per_lever * (t_phi + q_phi * lean + bend))
-        add(jacobian, block, _ORBITAL + R_SPEED, per_lever * (t_r_speed + q_r_speed * lean) - 2.0 * orbital_speed * per_radius)
-        add(
-            jacobian,
-            block,
-            _ORBITAL + PHI_SPEED,
-            per_lever * (t_phi_speed + q_phi_speed * lean) - 2.0 * radial_speed * per_radius - churning[1] * per_mass,
-        )
-        add(jacobian, block, _ORBITAL + SPIN, per_lever * t_spin)
-        pitch_speed = params.raceways.pitch_radius * y[OMEGA]
-        store(jacobian, block, _ORBITAL + _AT_OMEGA, per_lever * (-churning[2] * (radius * orbital_speed - pitch_speed)))
-        add(jacobian, block, _SPINNING + R, per_inertia * t_r)
-        add(jacobian, block, _SPINNING + PHI, per_inertia * t_phi)
-        add(jacobian, block, _SPINNING + R_SPEED, per_inertia * t_r_speed)
-        add(jacobian, block, _SPINNING + PHI_SPEED, per_inertia * t_phi_speed)
-        add(jacobian, block, _SPINNING + SPIN, per_inertia * t_spin)
+        add(jacobian, block, _ORBITAL + R, -(per_lever * arm) - load(rows, block, ROLLER.orbital_acceleration) * per_radius)
+        add(jacobian, block, _ORBITAL + PHI, per_lever * (params.variants.contour_slope * q_e * curvature * per_radius))
+        add(jacobian, block, _ORBITAL + R_SPEED, -2.0 * orbital_speed * per_radius)
+        add(jacobian, block, _ORBITAL + PHI_SPEED, -2.0 * radial_speed * per_radius - churning[1] * per_mass)
+        away = radius * orbital_speed - params.raceways.pitch_radius * y[OMEGA]
+        add(jacobian, block, _ORBITAL + _AT_OMEGA, per_lever * (-churning[2] * away))
 
 
-@kernel
-def _cage_columns(block, jacobian, first, scale, d_position, d_speed):
-    """Write the columns by the cage's position and speed, which begin at ``first``."""
-    for k in range(CAGE):
-        store(jacobian, block, first + k, scale * d_position[k])
-        store(jacobian, block, first + CAGE + k, scale * d_speed[k])
+class _Wall(NamedTuple):
+    """Two opposite walls of the pockets of a block of rollers: the force on them, and what its change does in each row (lanes)."""
+
+    stiffness: float  # derivatives of the force by the offset between the walls, and by its rate
+    damping: float
+    force: float
+    friction: float  # coefficient
+    arm: float  # of the force about the cage's centre
+    radial: float  # from here on scales of the rows
+    along: float
+    spin: float
+    cage_y: float
+    cage_z: float
+    theta: float
+
+
+@fused
+def _wall_column(put_own, put, block, column, of_cage, change, turned, wall, jacobian):
+    """Put the change of the force by one variable, and of its torque on the cage, into all rows; ``of_cage`` is the column in those of the cage."""
+    put_own(jacobian, block, _RADIAL + column, wall.radial * change)
+    put_own(jacobian, block, _ORBITAL + column, wall.along * change)
+    put_own(jacobian, block, _SPINNING + column, wall.spin * change)
+    put(jacobian, block, CAGE_ROWS + of_cage, wall.cage_y * change)
+    put(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + of_cage, wall.cage_z * change)
+    put(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + of_cage, wall.theta * turned)
+
+
+@fused
+def _wall_columns(put_own, put, block, column, step, before, moved, rate, arm, wall, jacobian):
+    """Put the changes by a position and by its speed, ``step`` columns further on, into all rows, as far as directions stay.
+
+    Parameters
+    ----------
+    put_own, put : `store` or `add` for the rows of the rollers and of the cage.
+    before : columns of a roller's rows that those of the cage lack.
+    moved, rate, arm : change of the offset between the walls, of its rate, and of the force's arm, by the position (lanes).
+    """
+    change, by_rate = wall.stiffness * moved + wall.damping * rate, wall.damping * moved
+    turned = change * wall.arm + wall.force * (arm - wall.friction * moved)
+    _wall_column(put_own, put, block, column, column - before, change, turned, wall, jacobian)
+    column += step
+    _wall_column(put_own, put, block, column, column - before, by_rate, by_rate * wall.arm, wall, jacobian)
+
+
+@fused
+def _wall_jacobian(put, block, force, springs, arm, push, bends, slid, moved, rates, arms, params, rows, jacobian):
+    """Add what two opposite walls of the pockets do to the rows of a block of rollers, and write those of the cage.
+
+    Parameters
+    ----------
+    put : `store` where nothing has written what the cage does yet, else `add`.
+    force, springs : of the rollers on the walls, and its derivatives by the offset between them and by its rate.
+    arm : of the force about the cage's centre.
+    push, bends : directions of the force on a roller outwards and along the orbit, on the cage along y and z, with friction, and their derivatives
+        by its coefficient (lanes).
+    slid : by what the torque on the cage falls with it.
+    moved, rates, arms : changes of the offset, of its rate and of the arm by r, phi and the cage's y, z and angle.
+    """
+    cage, rollers, present = params.cage, params.rollers, load(rows, block, ROLLER.present)
+    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
+    per_mass, per_spin, per_turn = 1.0 / rollers.mass, rollers.radius / rollers.inertia, present * (1.0 / cage.inertia)
+    per_lever, per_cage = per_mass / load(rows, block, ROLLER.radius), present * (1.0 / cage.mass)
+    braking = where_positive(force, friction, -friction)
+    radial, along = -(per_mass * push[0]), -(per_lever * push[1])
+    wall = _Wall(springs[0], springs[1], force, friction, arm, radial, along, -(per_spin * braking), per_cage * push[2], per_cage * push[3], per_turn)
+    _wall_columns(add, put, block, R, R_SPEED - R, 0, moved[0], rates[0], arms[0], wall, jacobian)
+    _wall_columns(add, put, block, PHI, PHI_SPEED - PHI, 0, moved[1], rates[1], arms[1], wall, jacobian)
+    _wall_columns(put, put, block, AT_CAGE, CAGE, 2 * RING, moved[2], rates[2], arms[2], wall, jacobian)
+    _wall_columns(put, put, block, AT_CAGE + 1, CAGE, 2 * RING, moved[3], rates[3], arms[3], wall, jacobian)
+    _wall_columns(put, put, block, _AT_THETA, CAGE, 2 * RING, moved[4], rates[4], arms[4], wall, jacobian)
+    # the force's direction turns with the roller's azimuth and with the pocket
+    outwards, onwards, caged = per_mass * force, per_lever * force, per_cage * force
+    cage_y, cage_z, theta = CAGE_ROWS, CAGE_ROWS + CAGE_COLUMNS, _AT_THETA - 2 * RING
+    add(jacobian, block, _RADIAL + PHI, -(outwards * push[1]))
+    add(jacobian, block, _RADIAL + _AT_THETA, outwards * push[1])
+    add(jacobian, block, _ORBITAL + PHI, onwards * push[0])
+    add(jacobian, block, _ORBITAL + _AT_THETA, -(onwards * push[0]))
+    add(jacobian, block, cage_y + theta, -(caged * push[3]))
+    add(jacobian, block, cage_z + theta, caged * push[2])
+    # friction goes with the spin
+    add(jacobian, block, _RADIAL + SPIN, -(outwards * bends[0] * bend))
+    add(jacobian, block, _ORBITAL + SPIN, -(onwards * bends[1] * bend))
+    add(jacobian, block, _SPINNING + SPIN, -(per_spin * magnitude(force) * bend))
+    put(jacobian, block, cage_y + SPIN, caged * bends[2] * bend)
+    put(jacobian, block, cage_z + SPIN, caged * bends[3] * bend)
+    put(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + SPIN, -(per_turn * slid * bend))
 
 
 @fused
 def _pocket_jacobian(y, params, rows, jacobian):
-    """Add the pockets to the rows of the rollers, write those of the cage."""
+    """Add the pockets to the rows of the rollers, write those of the cage; what guides stands at a right angle to what drives."""
+    omega, guidance, roller_radius = y[OMEGA], params.cage.guidance, params.rollers.radius
     for block in range(rows.shape[0]):
-        mass = params.rollers.mass
         radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
-        stiffness, damping = load(rows, block, ROLLER.pocket_stiffness), load(rows, block, ROLLER.pocket_damping)
-        force = -load(rows, block, ROLLER.pocket_force)
-        friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
+        orbital_speed, friction = load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.pocket_friction)
+        force, offset = -load(rows, block, ROLLER.pocket_force), load(rows, block, ROLLER.pocket_offset)
         p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-        play_c, play_s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-        omega = y[OMEGA]
+        c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
         cage_r, cage_t = y[CAGE_Y] * p_c + y[CAGE_Z] * p_s, y[CAGE_Z] * p_c - y[CAGE_Y] * p_s
         speed_r = y[BORDER + CAGE_Y] * p_c + y[BORDER + CAGE_Z] * p_s
-        turning, reach = load(rows, block, ROLLER.orbital_speed) - omega, radius * play_c
-        lever, rise = reach - cage_r, radial_speed * play_c - radius * play_s * turning
-        own = (stiffness * play_s + damping * play_c * turning, stiffness * reach + damping * rise, damping * play_s, damping * reach)
-        at = (
-            stiffness * p_s + damping * (omega * p_c),
-            damping * (omega * p_s) - stiffness * p_c,
-            damping * (speed_r + omega * cage_t - rise) - stiffness * lever,
-        )
-        with_speed = (damping * p_s, -(damping * p_c), -(damping * lever))
-        push_r, push_t = play_s + friction * play_c, play_c - friction * play_s
-        size, side = magnitude(force), where_positive(force, 1.0, -1.0)
-        per_mass, per_lever = -1.0 / mass, (-1.0 / mass) / radius
-        per_inertia = (-params.rollers.radius / params.rollers.inertia) * friction * side
-        _roller_columns(add, block, jacobian, _RADIAL, per_mass * push_r, own, per_mass * (force * play_c * bend))
-        _roller_columns(add, block, jacobian, _ORBITAL, per_lever * push_t, own, -(per_lever * (force * play_s * bend)))
-        _roller_columns(add, block, jacobian, _SPINNING, per_inertia, own, (-params.rollers.radius / params.rollers.inertia) * size * bend)
-        _cage_columns(block, jacobian, _RADIAL + AT_CAGE, per_mass * push_r, at, with_speed)
-        churned = load(jacobian, block, _ORBITAL + _AT_OMEGA)
-        _cage_columns(block, jacobian, _ORBITAL + AT_CAGE, per_lever * push_t, at, with_speed)
-        add(jacobian, block, _ORBITAL + _AT_OMEGA, churned)
-        _cage_columns(block, jacobian, _SPINNING + AT_CAGE, per_inertia, at, with_speed)
-        # the force's direction turns with the roller's azimuth and with the pocket
-        add(jacobian, block, _RADIAL + PHI, per_mass * (force * push_t))
-        add(jacobian, block, _RADIAL + _AT_THETA, -per_mass * (force * push_t))
-        add(jacobian, block, _ORBITAL + PHI, -(per_lever * (force * push_r)))
-        add(jacobian, block, _ORBITAL + _AT_THETA, per_lever * (force * push_r))
-        _cage_jacobian(block, params, rows, jacobian, own, at, with_speed, cage_t, lever)
-
-
-@kernel
-def _cage_jacobian(block, params, rows, jacobian, own, at, with_speed, cage_t, lever):
-    """Write the rows of the cage's accelerations as far as the pockets make them."""
-    cage, present, roller_radius = params.cage, load(rows, block, ROLLER.present), params.rollers.radius
-    radius, offset = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.pocket_offset)
-    force = -load(rows, block, ROLLER.pocket_force)
-    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    play_c, play_s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    push_y, push_z = friction * p_c - p_s, p_c + friction * p_s
-    arm = lever - friction * (where_positive(force, roller_radius, -roller_radius) + offset)
-    per_mass, per_inertia = present * (1.0 / cage.mass), present * (1.0 / cage.inertia)
-    cage_y, cage_z, theta = CAGE_ROWS, CAGE_ROWS + CAGE_COLUMNS, CAGE_ROWS + 2 * CAGE_COLUMNS
-    _roller_columns(store, block, jacobian, cage_y, per_mass * push_y, own, 0.0)
-    _roller_columns(store, block, jacobian, cage_z, per_mass * push_z, own, 0.0)
-    store(jacobian, block, cage_y + SPIN, per_mass * (force * p_c * bend))
-    store(jacobian, block, cage_z + SPIN, per_mass * (force * p_s * bend))
-    _cage_columns(block, jacobian, cage_y + BLOCK, per_mass * push_y, at, with_speed)
-    _cage_columns(block, jacobian, cage_z + BLOCK, per_mass * push_z, at, with_speed)
-    add(jacobian, block, cage_y + BLOCK + 2, -(per_mass * (force * push_z)))
-    add(jacobian, block, cage_z + BLOCK + 2, per_mass * (force * push_y))
-    braked = force * friction
-    turned = (own[0] * arm - braked * play_s + force * play_c, own[1] * arm - (braked * play_c + force * play_s) * radius, own[2] * arm, own[3] * arm)
-    _roller_columns(store, block, jacobian, theta, per_inertia, turned, per_inertia * (-((magnitude(force) * roller_radius + offset * force) * bend)))
-    moved = (
-        at[0] * arm - braked * p_s - force * p_c,
-        at[1] * arm + braked * p_c - force * p_s,
-        at[2] * arm + braked * lever + force * (radius * play_s - cage_t),
-    )
-    _cage_columns(block, jacobian, theta + BLOCK, per_inertia, moved, (with_speed[0] * arm, with_speed[1] * arm, with_speed[2] * arm))
+        turning, reach, fall = orbital_speed - omega, radius * c, radius * s
+        lever, rise = reach - cage_r, radial_speed * c - fall * turning
+        along, outwards = (s, reach, p_s, -p_c, -lever), (c, -fall, -p_c, -p_s, offset)
+        rates = c * turning, rise, omega * p_c, omega * p_s, speed_r + omega * cage_t - rise
+        push = s + friction * c, c - friction * s, friction * p_c - p_s, p_c + friction * p_s
+        springs = load(rows, block, ROLLER.pocket_stiffness), load(rows, block, ROLLER.pocket_damping)
+        arm = lever - friction * (where_positive(force, roller_radius, -roller_radius) + offset)
+        slid = magnitude(force) * roller_radius + offset * force
+        _wall_jacobian(store, block, force, springs, arm, push, (c, -s, p_c, p_s), slid, along, rates, outwards, params, rows, jacobian)
+        if not guidance.lands:
+            force = -load(rows, block, ROLLER.guide_force)
+            speed_t, falling = y[BORDER + CAGE_Z] * p_c - y[BORDER + CAGE_Y] * p_s, radial_speed * s
+            rates = (
+                -(s * turning),
+                -(falling + reach * turning),
+                omega * p_s,
+                -(omega * p_c),
+                falling + reach * orbital_speed - speed_t - omega * lever,
+            )
+            push = c - friction * s, -(s + friction * c), p_c + friction * p_s, p_s - friction * p_c
+            springs = load(rows, block, ROLLER.guide_stiffness), load(rows, block, ROLLER.guide_damping)
+            arm = -(offset + friction * (lever + where_positive(force, roller_radius, -roller_radius)))
+            slid, arms = force * lever + magnitude(force) * roller_radius, (-s, -reach, -p_s, p_c, lever)
+            _wall_jacobian(add, block, force, springs, arm, push, (-s, -c, p_s, -p_c), slid, outwards, rates, arms, params, rows, jacobian)
 
 
 @fused
-def roller_jacobian(y, inner_radius, churning, params, rows, contacts, jacobian):
+def roller_jacobian(y, inner_radius, churning, resists, params, rows, contacts, jacobian):
     """Write all derivatives through the rollers; their forces have been written.
+
+    How the rollers share an axial load is taken as constant.
 
     Parameters
     ----------
     y : state.
     inner_radius : R_i, grown [m].
     churning : see `bearing_sim.levels.common.rollers.linear_churning`.
+    resists : whether contacts resist rolling.
     params : of the bearing.
     rows : of the rollers, see `bearing_sim.levels.planar.state.ROLLER`.
     contacts : see `bearing_sim.physics.contact.CONTACT`.
     jacobian : takes the derivatives.
     """
-    _inner_jacobian(y, inner_radius, params, rows, contacts, jacobian)
-    _outer_jacobian(y, churning, params, rows, contacts, jacobian)
+    _inner_jacobian(y, inner_radius, resists, params, rows, contacts, jacobian)
     _pocket_jacobian(y, params, rows, jacobian)
-
-
-@kernel
-def _inner_resistance(y, inner_radius, params, rows, contacts, jacobian):
-    """Add the inner contacts' resistance to rolling to the rows of ring and rollers."""
-    push = 1.0 - 2.0 * params.raceways.diameter_ratio
-    per_inertia = -params.rollers.radius / params.rollers.inertia
-    for block in range(rows.shape[0]):
-        n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
-        d_load, d_rolling = load(contacts, block, CONTACT.resistance_d_load), 0.5 * load(contacts, block, CONTACT.resistance_d_rolling)
-        stiffness, damping = d_load * load(contacts, block, CONTACT.stiffness), d_load * load(contacts, block, CONTACT.damping)
-        passing = damping * load(rows, block, ROLLER.speed_tangent)
-        turn_r, turn_t = -n_t * inverse, n_r * inverse
-        p_ar, p_at = -(stiffness * n_r + turn_r * passing), -(stiffness * n_t + turn_t * passing)
-        p_vr, p_vt = -(damping * n_r), -(damping * n_t)
-        pushed = push * load(contacts, block, CONTACT.resistance)
-        radial, along = -(pushed * n_t), pushed * n_r
-        fr_ar, ft_ar = -(push * p_ar * n_t) - turn_r * along, push * p_ar * n_r + turn_r * radial
-        fr_at, ft_at = -(push * p_at * n_t) - turn_t * along, push * p_at * n_r + turn_t * radial
-        fr_vr, ft_vr, fr_vt, ft_vt = -(push * p_vr * n_t), push * p_vr * n_r, -(push * p_vt * n_t), push * p_vt * n_r
-        p_orbit, p_spin = d_rolling * (params.rollers.radius - inner_radius), d_rolling * params.rollers.radius
-        d_orbit, d_spin = (-(push * p_orbit * n_t), push * p_orbit * n_r, p_orbit), (-(push * p_spin * n_t), push * p_spin * n_r, p_spin)
-        columns_r, columns_t, columns_spin = (fr_ar, fr_at, fr_vr, fr_vt), (ft_ar, ft_at, ft_vr, ft_vt), (p_ar, p_at, p_vr, p_vt)
-        _inner_rows(add, block, y, params, rows, (radial, along), columns_r, columns_t, columns_spin, d_orbit, d_spin, per_inertia, jacobian)
-
-
-@kernel
-def _outer_resistance(params, rows, contacts, jacobian):
-    """Add the outer contacts' resistance to rolling to the rows of the rollers."""
-    push, roller_radius = 1.0 + 2.0 * params.raceways.diameter_ratio, params.rollers.radius
-    per_mass, per_inertia = -push / params.rollers.mass, -roller_radius / params.rollers.inertia
-    for block in range(rows.shape[0]):
-        outer, radius, orbital_speed = rows.shape[0] + block, load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
-        d_load, d_rolling = load(contacts, outer, CONTACT.resistance_d_load), 0.5 * load(contacts, outer, CONTACT.resistance_d_rolling)
-        stiffness, damping = d_load * load(contacts, outer, CONTACT.stiffness), d_load * load(contacts, outer, CONTACT.damping)
-        slope, curvature = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature)
-        d_angle, d_orbit = -(stiffness * slope) - damping * curvature * orbital_speed, d_rolling * (radius + 2.0 * roller_radius)
-        columns = (stiffness + d_rolling * orbital_speed, d_angle, damping, d_orbit - damping * slope)
-        per_lever, d_spin = per_mass / radius, d_rolling * roller_radius
-        _roller_columns(add, block, jacobian, _ORBITAL, per_lever, columns, per_lever * d_spin)
-        _roller_columns(add, block, jacobian, _SPINNING, per_inertia, columns, per_inertia * d_spin)
-
-
-@kernel
-def resistance_jacobian(y, inner_radius, params, rows, contacts, jacobian):
-    """Add what resistance to rolling does to the derivatives of `roller_jacobian`, which have been written; parameters as there."""
-    _inner_resistance(y, inner_radius, params, rows, contacts, jacobian)
-    _outer_resistance(params, rows, contacts, jacobian)
-
-
-@kernel
-def flange_jacobian(y, params, rows, jacobian):
-    """Add what flanges do to roller ends to the derivatives of `roller_jacobian`, which have been written; parameters as there.
-
-    How the rollers share an axial load is taken as constant.
-    """
-    per_mass, per_inertia = 1.0 / params.rollers.mass, 1.0 / params.rollers.inertia
-    for block in range(rows.shape[0]):
-        n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
-        v_n, first = load(rows, block, ROLLER.speed_normal), ROLLER.inner_flange
-        force = load(rows, block, first + FLANGE.force)
-        uu, us, ss = load(rows, block, first + FLANGE.uu), load(rows, block, first + FLANGE.us), load(rows, block, first + FLANGE.ss)
-        turn_r, turn_t = -n_t * inverse, n_r * inverse
-        radial, along = -(force * n_t), force * n_r
-        # u = v_p - omega_i r_m changes with the direction of p, by -v_n for a turn, and with the speed along it
-        slides = -(v_n * turn_r), -(v_n * turn_t), -n_t, n_r
-        f_ar, f_at, f_vr, f_vt = -(uu * slides[0]), -(uu * slides[1]), -(uu * slides[2]), -(uu * slides[3])
-        columns_r = -(f_ar * n_t) - turn_r * along, -(f_at * n_t) - turn_t * along, -(f_vr * n_t), -(f_vt * n_t)
-        columns_t = f_ar * n_r + turn_r * radial, f_at * n_r + turn_t * radial, f_vr * n_r, f_vt * n_r
-        columns_spin = -(us * slides[0]), -(us * slides[1]), -(us * slides[2]), -(us * slides[3])
-        none = spread(0.0)
-        d_spin = us * n_t, -(us * n_r), -ss
-        _inner_rows(
-            add, block, y, params, rows, (radial, along), columns_r, columns_t, columns_spin, (none, none, none), d_spin, per_inertia, jacobian
-        )
-        first, radius, orbital_speed = ROLLER.outer_flange, load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
-        uu, us, ss = load(rows, block, first + FLANGE.uu), load(rows, block, first + FLANGE.us), load(rows, block, first + FLANGE.ss)
-        per_lever = -per_mass / radius
-        add(jacobian, block, _ORBITAL + R, per_lever * uu * orbital_speed)
-        add(jacobian, block, _ORBITAL + PHI_SPEED, per_lever * uu * radius)
-        add(jacobian, block, _ORBITAL + SPIN, per_lever * us)
-        add(jacobian, block, _SPINNING + R, -(per_inertia * us * orbital_speed))
-        add(jacobian, block, _SPINNING + PHI_SPEED, -(per_inertia * us * radius))
-        add(jacobian, block, _SPINNING + SPIN, -(per_inertia * ss))
-
-
-@kernel
-def _guide_by_variable(block, column, d_offset, d_rate, d_place, params, rows, jacobian):
-    """Add to all rows the change by one variable, as far as the directions stay.
-
-    Parameters
-    ----------
-    column : of the variable.
-    d_offset, d_rate : how the offset outwards and its rate change.
-    d_place : how the offset along the orbit does.
-    """
-    cage, rollers, present = params.cage, params.rollers, load(rows, block, ROLLER.present)
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    force, friction = -load(rows, block, ROLLER.guide_force), load(rows, block, ROLLER.pocket_friction)
-    change = load(rows, block, ROLLER.guide_stiffness) * d_offset + load(rows, block, ROLLER.guide_damping) * d_rate
-    braking = friction * where_positive(force, rollers.radius, -rollers.radius)
-    arm = load(rows, block, ROLLER.pocket_offset) + friction * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius) + braking
-    per_mass, of_cage = 1.0 / rollers.mass, CAGE_ROWS + (column if column < BLOCK else column - 2 * RING)
-    add(jacobian, block, column, -(per_mass * change * (c - friction * s)))
-    add(jacobian, block, LOCAL + column, per_mass * change * (s + friction * c) / load(rows, block, ROLLER.radius))
-    add(jacobian, block, 2 * LOCAL + column, -(change * braking * (1.0 / rollers.inertia)))
-    add(jacobian, block, of_cage, present * change * (p_c + friction * p_s) * (1.0 / cage.mass))
-    add(jacobian, block, of_cage + CAGE_COLUMNS, present * change * (p_s - friction * p_c) * (1.0 / cage.mass))
-    turned = change * arm + force * (d_place + friction * d_offset)
-    add(jacobian, block, of_cage + 2 * CAGE_COLUMNS, -(present * turned * (1.0 / cage.inertia)))
-
-
-@kernel
-def _guide_directions(block, params, rows, jacobian):
-    """Add what the turning of the force with pocket and roller contributes, and what friction does by the spin."""
-    cage, rollers, present = params.cage, params.rollers, load(rows, block, ROLLER.present)
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
-    force = -load(rows, block, ROLLER.guide_force)
-    turned = force * (1.0 / rollers.mass)
-    lever = turned / load(rows, block, ROLLER.radius)
-    add(jacobian, block, PHI, turned * (s + friction * c))
-    add(jacobian, block, _AT_THETA, -(turned * (s + friction * c)))
-    add(jacobian, block, SPIN, turned * s * bend)
-    add(jacobian, block, LOCAL + PHI, lever * (c - friction * s))
-    add(jacobian, block, LOCAL + _AT_THETA, -(lever * (c - friction * s)))
-    add(jacobian, block, LOCAL + SPIN, lever * c * bend)
-    add(jacobian, block, 2 * LOCAL + SPIN, -(magnitude(force) * bend * (rollers.radius / rollers.inertia)))
-    turned = present * force * (1.0 / cage.mass)
-    add(jacobian, block, CAGE_ROWS + BLOCK + 2, turned * (friction * p_c - p_s))
-    add(jacobian, block, CAGE_ROWS + SPIN, turned * p_s * bend)
-    add(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + BLOCK + 2, turned * (p_c + friction * p_s))
-    add(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + SPIN, -(turned * p_c * bend))
-    slid = force * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius) + magnitude(force) * rollers.radius
-    add(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + SPIN, -(present * slid * bend * (1.0 / cage.inertia)))
-
-
-@kernel
-def guide_jacobian(y, params, rows, jacobian):
-    """Add the derivatives of `guide_accelerations` to those of everything else through the rollers.
-
-    Parameters
-    ----------
-    y, params, rows : as of `guide_forces`.
-    jacobian : takes the derivatives, see `bearing_sim.numerics.block_arrow`.
-    """
-    omega = y[OMEGA]
-    for block in range(rows.shape[0]):
-        radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
-        orbital_speed, offset = load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.pocket_offset)
-        p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-        c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-        speed_t = y[BORDER + CAGE_Z] * p_c - y[BORDER + CAGE_Y] * p_s
-        turning, lever = orbital_speed - omega, load(rows, block, ROLLER.guide_offset) + params.cage.guidance.pocket_radius
-        none = spread(0.0)
-        rise = -(radial_speed * s + radius * c * turning)
-        turned = radial_speed * s + radius * c * orbital_speed - speed_t - omega * lever
-        _guide_by_variable(block, R, c, -(s * turning), s, params, rows, jacobian)
-        _guide_by_variable(block, PHI, -(radius * s), rise, radius * c, params, rows, jacobian)
-        _guide_by_variable(block, R_SPEED, none, c, none, params, rows, jacobian)
-        _guide_by_variable(block, PHI_SPEED, none, -(radius * s), none, params, rows, jacobian)
-        _guide_by_variable(block, AT_CAGE, -p_c, omega * p_s, p_s, params, rows, jacobian)
-        _guide_by_variable(block, AT_CAGE + 1, -p_s, -(omega * p_c), -p_c, params, rows, jacobian)
-        _guide_by_variable(block, _AT_THETA, offset, turned, -lever, params, rows, jacobian)
-        _guide_by_variable(block, AT_CAGE + CAGE, none, -p_c, none, params, rows, jacobian)
-        _guide_by_variable(block, AT_CAGE + CAGE + 1, none, -p_s, none, params, rows, jacobian)
-        _guide_by_variable(block, _AT_OMEGA, none, offset, none, params, rows, jacobian)
-        _guide_directions(block, params, rows, jacobian)
+    _outer_jacobian(y, churning, resists, params, rows, contacts, jacobian)
 
 
 @kernel

@@ -11,14 +11,13 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.advance import advance_by
-from bearing_sim.levels.common.dynamic import average_step, observe_level
+from bearing_sim.levels.common.dynamic import average_step, dynamic_kernels, observe_level
 from bearing_sim.levels.common.flanges import largest_corner
-from bearing_sim.levels.common.model import FIFTH_PITCH, POSITION_WEIGHT, orbital_speed_tolerance, play_weight, ring_step, ring_weight, shaft_speed_at
+from bearing_sim.levels.common.model import FIFTH_PITCH, shaft_speed_at
 from bearing_sim.levels.common.observation import count_damage, oil_at_speed, turn_is_over
-from bearing_sim.levels.common.rollers import restrain_rollers
 from bearing_sim.levels.common.slice_balance import balance, roller_tilts
 from bearing_sim.levels.common.state_transfer import FIRST_CAGE_TILT, first_cage_centre, rolling_state
-from bearing_sim.levels.common.support import factor_level, place_support, solve_level, support_change
+from bearing_sim.levels.common.support import place_support
 from bearing_sim.levels.spatial import state as spatial_state
 from bearing_sim.levels.spatial.forces import carry_forces, equations
 from bearing_sim.levels.spatial.power import spatial_powers
@@ -32,8 +31,6 @@ from bearing_sim.levels.spatial.state import (
     CAGE_Z,
     LAYOUT,
     OMEGA,
-    PHI,
-    PHI_SPEED,
     R_SPEED,
     RING_TILT_Y,
     RING_TILT_Z,
@@ -42,10 +39,7 @@ from bearing_sim.levels.spatial.state import (
     ROLLER,
     ROLLERS,
     RUNS,
-    SKEW,
     SLICED,
-    SPIN,
-    THETA,
     TILT,
     TILT_SPEED,
     R,
@@ -53,8 +47,7 @@ from bearing_sim.levels.spatial.state import (
 from bearing_sim.model.params import Params
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import fused, kernel
-from bearing_sim.numerics.simd import LANES, highest, larger, load_run, magnitude, spread, total
-from bearing_sim.numerics.time_stepping import Kernels
+from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.lamina import ROLLER_ROW
 from bearing_sim.physics.lamina_life import equivalent_lamina_loads
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
@@ -133,86 +126,6 @@ def rhs(t, y, model, work, rate):
 
 
 @fused
-def rhs_and_jacobian(t, y, model, work, rate):
-    """Write dy/dt into ``rate`` and all derivatives into ``work``."""
-    return equations(t, y, model, work, rate, True)
-
-
-@fused
-def factor(shift, work):
-    """Factor I - shift J; return False where it is singular."""
-    return factor_level(LAYOUT, shift, work)
-
-
-@fused
-def solve(work, x):
-    """Replace the right side ``x`` by the solution with the last factorisation."""
-    solve_level(LAYOUT, work, x)
-
-
-@fused
-def error_norm(t, y, change, model):
-    """Return the largest ratio of any state's change to its tolerance."""
-    return _largest_ratio(t, y, change, model, 1.0, ring_weight(t, model), 1.0)
-
-
-@fused
-def correction_norm(t, y, change, model):
-    """Return `error_norm` of an iteration's correction, in which positions have the weight `POSITION_WEIGHT`, and play `play_weight`."""
-    return _largest_ratio(t, y, change, model, POSITION_WEIGHT, 1.0, play_weight(y[OMEGA], model.params.raceways.pitch_radius))
-
-
-@fused
-def _largest_ratio(t, y, change, model, position_weight, own_ring_weight, own_play_weight):
-    """Return the largest ratio of any state's change to its tolerance, positions, but not tilts, the ring's, and play with weights of their own.
-
-    As at level ``planar``; tilts count by what they move the end of a roller, a raceway or a land.  Skew and the cage's tilts have play.
-    """
-    raceways, rollers, half = model.params.raceways, model.params.rollers, 0.5 * model.params.rollers.length
-    position, play = position_weight / model.tolerances.position, own_play_weight / model.tolerances.play
-    speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
-    offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
-    tilt, skew = half / model.tolerances.position, play * half
-    largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * own_ring_weight * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
-    largest = max(largest, abs(change[OMEGA]) * speed, max(abs(change[RING_TILT_Y]), abs(change[RING_TILT_Z])) * tilt)
-    largest = max(largest, max(abs(change[CAGE_TILT_Y]), abs(change[CAGE_TILT_Z])) * play * model.params.tilts.land_position)
-    count = rollers.count
-    if change.shape[0] > ROLLERS + BLOCK * count:
-        largest = max(largest, support_change(change) * position)
-    whole, turned = count // LANES, change[THETA]
-    highest_ratio, finite = spread(largest), spread(0.0)
-    for block in range(whole):
-        j = ROLLERS + block * LANES
-        radial, orbital = load_run(change, j), load_run(change, j + PHI * count)
-        tilting, skewing = load_run(change, j + TILT * count), load_run(change, j + SKEW * count)
-        orbital_speed, spinning = load_run(change, j + PHI_SPEED * count), load_run(change, j + SPIN * count)
-        ratio = larger(magnitude(radial) * position, magnitude(orbital - turned) * offset)
-        ratio = larger(ratio, larger(magnitude(orbital_speed) * speed, magnitude(spinning) * spin))
-        highest_ratio = larger(highest_ratio, larger(ratio, larger(magnitude(tilting) * tilt, magnitude(skewing) * skew)))
-        finite += (radial + orbital) + (tilting + skewing) + (orbital_speed + spinning)
-    largest, passed = highest(highest_ratio), total(finite)
-    for j in range(ROLLERS + whole * LANES, ROLLERS + count):
-        ratio = max(abs(change[j]) * position, abs(change[j + PHI * count] - turned) * offset)
-        ratio = max(ratio, abs(change[j + PHI_SPEED * count]) * speed, abs(change[j + SPIN * count]) * spin)
-        largest = max(largest, ratio, abs(change[j + TILT * count]) * tilt, abs(change[j + SKEW * count]) * skew)
-        passed += change[j] + change[j + PHI * count] + change[j + TILT * count] + change[j + SKEW * count]
-        passed += change[j + PHI_SPEED * count] + change[j + SPIN * count]
-    return largest if math.isfinite(passed) else passed  # a comparison with NaN would lose it
-
-
-@fused
-def restrain(y, change, model, work):
-    """Shorten the correction of an iteration; see `bearing_sim.levels.common.rollers.restrain_rollers`."""
-    restrain_rollers(ROLLER, SLICED, RUNS, y, change, model.params, work.rollers, work.contacts)
-
-
-@fused
-def step_limit(t, y, model, work):
-    """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.ring_step`)."""
-    return ring_step(y[OMEGA], model.params, work.ring_stiffness)
-
-
-@fused
 def sum_up(t, h, y, model, work):
     """Take the loads of a step of length ``h`` [s], and the stiffness at its end, into the running means over a cage turn, and count damage.
 
@@ -254,7 +167,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
         row[first + COLUMN.roller_skew * count] = rows[block, ROLLER.skew, lane]
 
 
-KERNELS = Kernels(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, correction_norm, restrain, step_limit, sum_up, observe)
+KERNELS = dynamic_kernels(LAYOUT, ROLLER, SLICED, RUNS, equations, rhs, predict, sum_up, observe)
 
 
 @kernel
