@@ -325,8 +325,8 @@ def _wall_jacobian(put, block, force, springs, arm, push, bends, slid, moved, ra
 
 @fused
 def _pocket_jacobian(y, params, rows, jacobian):
-    """Add the pockets to the rows of the rollers, write those of the cage; what guides stands at a right angle to what drives."""
-    omega, guidance, roller_radius = y[OMEGA], params.cage.guidance, params.rollers.radius
+    """Add the pockets to the rows of the rollers, write those of the cage."""
+    omega, roller_radius = y[OMEGA], params.rollers.radius
     for block in range(rows.shape[0]):
         radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
         orbital_speed, friction = load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.pocket_friction)
@@ -344,21 +344,37 @@ def _pocket_jacobian(y, params, rows, jacobian):
         arm = lever - friction * (where_positive(force, roller_radius, -roller_radius) + offset)
         slid = magnitude(force) * roller_radius + offset * force
         _wall_jacobian(store, block, force, springs, arm, push, (c, -s, p_c, p_s), slid, along, rates, outwards, params, rows, jacobian)
-        if not guidance.lands:
-            force = -load(rows, block, ROLLER.guide_force)
-            speed_t, falling = y[BORDER + CAGE_Z] * p_c - y[BORDER + CAGE_Y] * p_s, radial_speed * s
-            rates = (
-                -(s * turning),
-                -(falling + reach * turning),
-                omega * p_s,
-                -(omega * p_c),
-                falling + reach * orbital_speed - speed_t - omega * lever,
-            )
-            push = c - friction * s, -(s + friction * c), p_c + friction * p_s, p_s - friction * p_c
-            springs = load(rows, block, ROLLER.guide_stiffness), load(rows, block, ROLLER.guide_damping)
-            arm = -(offset + friction * (lever + where_positive(force, roller_radius, -roller_radius)))
-            slid, arms = force * lever + magnitude(force) * roller_radius, (-s, -reach, -p_s, p_c, lever)
-            _wall_jacobian(add, block, force, springs, arm, push, (-s, -c, p_s, -p_c), slid, outwards, rates, arms, params, rows, jacobian)
+
+
+@kernel
+def _guide_jacobian(y, params, rows, jacobian):
+    """Add pockets that guide the cage to all rows, after `_pocket_jacobian`, of which they are the walls turned by a right angle.
+
+    It is a loop of its own: in that of the other walls it would make both slower.
+    """
+    omega, roller_radius = y[OMEGA], params.rollers.radius
+    for block in range(rows.shape[0]):
+        radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
+        orbital_speed, friction = load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.pocket_friction)
+        force, offset = -load(rows, block, ROLLER.guide_force), load(rows, block, ROLLER.pocket_offset)
+        p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+        c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+        turning, reach, fall = orbital_speed - omega, radius * c, radius * s
+        lever = load(rows, block, ROLLER.guide_offset) + params.cage.guidance.pocket_radius
+        speed_t, falling = y[BORDER + CAGE_Z] * p_c - y[BORDER + CAGE_Y] * p_s, radial_speed * s
+        rates = (
+            -(s * turning),
+            -(falling + reach * turning),
+            omega * p_s,
+            -(omega * p_c),
+            falling + reach * orbital_speed - speed_t - omega * lever,
+        )
+        push = c - friction * s, -(s + friction * c), p_c + friction * p_s, p_s - friction * p_c
+        springs = load(rows, block, ROLLER.guide_stiffness), load(rows, block, ROLLER.guide_damping)
+        arm = -(offset + friction * (lever + where_positive(force, roller_radius, -roller_radius)))
+        slid = force * lever + magnitude(force) * roller_radius
+        outwards, arms = (c, -fall, -p_c, -p_s, offset), (-s, -reach, -p_s, p_c, lever)
+        _wall_jacobian(add, block, force, springs, arm, push, (-s, -c, p_s, -p_c), slid, outwards, rates, arms, params, rows, jacobian)
 
 
 @fused
@@ -380,6 +396,8 @@ def roller_jacobian(y, inner_radius, churning, resists, params, rows, contacts, 
     """
     _inner_jacobian(y, inner_radius, resists, params, rows, contacts, jacobian)
     _pocket_jacobian(y, params, rows, jacobian)
+    if not params.cage.guidance.lands:
+        _guide_jacobian(y, params, rows, jacobian)
     _outer_jacobian(y, churning, resists, params, rows, contacts, jacobian)
 
 
