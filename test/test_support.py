@@ -109,11 +109,11 @@ def test_implicit_step_solves_with_the_jacobian_of_a_complex_step(level, variant
     matrix = np.eye(state.size) - shift * complex_step_jacobian(reference.rate, state)
     assert MODELS[level].KERNELS.rhs_and_jacobian(0.0, state, model, run._work, rate)
     own = run._work.global_block.copy()
-    assert MODELS[level].factor(shift, run._work)
+    assert MODELS[level].KERNELS.factor(shift, run._work)
     assert (run._work.global_block == own).all()  # a factorisation with another step begins with the same derivatives
     for right in np.random.default_rng(2).normal(size=(3, state.size)):
         x = right.copy()
-        MODELS[level].solve(run._work, x)
+        MODELS[level].KERNELS.solve(run._work, x)
         expected = np.linalg.solve(matrix, right)
         for kind in np.unique(blocks(level)):
             of = blocks(level) == kind

@@ -26,17 +26,14 @@ a roller that moves the other way.
 
     Q_r = k,  Q_phi = -k R_e' - d R_e'' phi',  Q_r' = d,  Q_phi' = -d R_e';   T likewise, with T_s and T_u.
 
-**Pocket.** The force f on the wall depends on s and s' (`bearing_sim.levels.common.rollers.place_in_pockets`), its direction on psi.  A
-pocket that guides is another pair of walls, turned by a right angle: its offset is the first one's arm about the cage's centre, and the first one's
-offset is its arm.  The rate of an offset changes by a speed as the offset does by the position.
+**Pocket.** The force f on the wall depends on s and s' (`bearing_sim.levels.common.rollers.place_in_pockets`), its direction on psi.
 """
-
-from typing import NamedTuple
 
 from bearing_sim.levels.common.flanges import FLANGE
 from bearing_sim.levels.planar.state import (
     AT_CAGE,
     AT_RING,
+    BLOCK,
     BORDER,
     CAGE,
     CAGE_COLUMNS,
@@ -84,7 +81,7 @@ def _roller_columns(put, block, jacobian, first, scale, columns, d_spin):
     put(jacobian, block, first + PHI, scale * columns[1])
     put(jacobian, block, first + R_SPEED, scale * columns[2])
     put(jacobian, block, first + PHI_SPEED, scale * columns[3])
-    put(jacobian, block, first + SPIN, scale * d_spin)
+    put(jacobian, block, first + SPIN, d_spin)
 
 
 @fused
@@ -124,9 +121,9 @@ def _inner_rows(block, y, params, rows, force, radial_columns, along_columns, sp
     radial = _d_roller(radial_columns, d_orbit[0], y, cosine, sine, radius, orbital_speed)
     along = _d_roller(along_columns, d_orbit[1], y, cosine, sine, radius, orbital_speed)
     spinning = _d_roller(spin_columns, d_orbit[2], y, cosine, sine, radius, orbital_speed)
-    _roller_columns(store, block, jacobian, _RADIAL, per_mass, radial, d_spin[0])
-    _roller_columns(store, block, jacobian, _ORBITAL, per_lever, along, d_spin[1])
-    _roller_columns(store, block, jacobian, _SPINNING, per_inertia, spinning, d_spin[2])
+    _roller_columns(store, block, jacobian, _RADIAL, per_mass, radial, per_mass * d_spin[0])
+    _roller_columns(store, block, jacobian, _ORBITAL, per_lever, along, per_lever * d_spin[1])
+    _roller_columns(store, block, jacobian, _SPINNING, per_inertia, spinning, per_inertia * d_spin[2])
     _ring_columns(block, jacobian, _RADIAL, per_mass, radial_columns, cosine, sine)
     _ring_columns(block, jacobian, _ORBITAL, per_lever, along_columns, cosine, sine)
     _ring_columns(block, jacobian, _SPINNING, per_inertia, spin_columns, cosine, sine)
@@ -221,9 +218,9 @@ def _outer_jacobian(y, churning, resists, params, rows, contacts, jacobian):
         none = spread(0.0)
         _roller_columns(add, block, jacobian, _RADIAL, -per_mass, normal, none)
         along = _outer_columns(block, d_load + lean, d_sliding, d_rolling, roller_radius, rows, normal)  # the contour leans the load along the orbit
-        _roller_columns(add, block, jacobian, _ORBITAL, per_lever, along, d_spin)
+        _roller_columns(add, block, jacobian, _ORBITAL, per_lever, along, per_lever * d_spin)
         driving = _outer_columns(block, spin_load, spin_sliding, spin_rolling, roller_radius, rows, normal)
-        _roller_columns(add, block, jacobian, _SPINNING, per_inertia, driving, spin_spin)
+        _roller_columns(add, block, jacobian, _SPINNING, per_inertia, driving, per_inertia * spin_spin)
         add(jacobian, block, _RADIAL + R, orbital_speed * orbital_speed)
         add(jacobian, block, _RADIAL + PHI_SPEED, 2.0 * radius * orbital_speed)
         arm = q_e * lean * per_radius + churning[1] * orbital_speed
@@ -232,149 +229,176 @@ def _outer_jacobian(y, churning, resists, params, rows, contacts, jacobian):
         add(jacobian, block, _ORBITAL + R_SPEED, -2.0 * orbital_speed * per_radius)
         add(jacobian, block, _ORBITAL + PHI_SPEED, -2.0 * radial_speed * per_radius - churning[1] * per_mass)
         away = radius * orbital_speed - params.raceways.pitch_radius * y[OMEGA]
-        add(jacobian, block, _ORBITAL + _AT_OMEGA, per_lever * (-churning[2] * away))
+        store(jacobian, block, _ORBITAL + _AT_OMEGA, per_lever * (-churning[2] * away))
 
 
-class _Wall(NamedTuple):
-    """Two opposite walls of the pockets of a block of rollers: the force on them, and what its change does in each row (lanes)."""
-
-    stiffness: float  # derivatives of the force by the offset between the walls, and by its rate
-    damping: float
-    force: float
-    friction: float  # coefficient
-    arm: float  # of the force about the cage's centre
-    radial: float  # from here on scales of the rows
-    along: float
-    spin: float
-    cage_y: float
-    cage_z: float
-    theta: float
-
-
-@fused
-def _wall_column(put_own, put, block, column, of_cage, change, turned, wall, jacobian):
-    """Put the change of the force by one variable, and of its torque on the cage, into all rows; ``of_cage`` is the column in those of the cage."""
-    put_own(jacobian, block, _RADIAL + column, wall.radial * change)
-    put_own(jacobian, block, _ORBITAL + column, wall.along * change)
-    put_own(jacobian, block, _SPINNING + column, wall.spin * change)
-    put(jacobian, block, CAGE_ROWS + of_cage, wall.cage_y * change)
-    put(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + of_cage, wall.cage_z * change)
-    put(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + of_cage, wall.theta * turned)
-
-
-@fused
-def _wall_columns(put_own, put, block, column, step, before, moved, rate, arm, wall, jacobian):
-    """Put the changes by a position and by its speed, ``step`` columns further on, into all rows, as far as directions stay.
-
-    Parameters
-    ----------
-    put_own, put : `store` or `add` for the rows of the rollers and of the cage.
-    before : columns of a roller's rows that those of the cage lack.
-    moved, rate, arm : change of the offset between the walls, of its rate, and of the force's arm, by the position (lanes).
-    """
-    change, by_rate = wall.stiffness * moved + wall.damping * rate, wall.damping * moved
-    turned = change * wall.arm + wall.force * (arm - wall.friction * moved)
-    _wall_column(put_own, put, block, column, column - before, change, turned, wall, jacobian)
-    column += step
-    _wall_column(put_own, put, block, column, column - before, by_rate, by_rate * wall.arm, wall, jacobian)
-
-
-@fused
-def _wall_jacobian(put, block, force, springs, arm, push, bends, slid, moved, rates, arms, params, rows, jacobian):
-    """Add what two opposite walls of the pockets do to the rows of a block of rollers, and write those of the cage.
-
-    Parameters
-    ----------
-    put : `store` where nothing has written what the cage does yet, else `add`.
-    force, springs : of the rollers on the walls, and its derivatives by the offset between them and by its rate.
-    arm : of the force about the cage's centre.
-    push, bends : directions of the force on a roller outwards and along the orbit, on the cage along y and z, with friction, and their derivatives
-        by its coefficient (lanes).
-    slid : by what the torque on the cage falls with it.
-    moved, rates, arms : changes of the offset, of its rate and of the arm by r, phi and the cage's y, z and angle.
-    """
-    cage, rollers, present = params.cage, params.rollers, load(rows, block, ROLLER.present)
-    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
-    per_mass, per_spin, per_turn = 1.0 / rollers.mass, rollers.radius / rollers.inertia, present * (1.0 / cage.inertia)
-    per_lever, per_cage = per_mass / load(rows, block, ROLLER.radius), present * (1.0 / cage.mass)
-    braking = where_positive(force, friction, -friction)
-    radial, along = -(per_mass * push[0]), -(per_lever * push[1])
-    wall = _Wall(springs[0], springs[1], force, friction, arm, radial, along, -(per_spin * braking), per_cage * push[2], per_cage * push[3], per_turn)
-    _wall_columns(add, put, block, R, R_SPEED - R, 0, moved[0], rates[0], arms[0], wall, jacobian)
-    _wall_columns(add, put, block, PHI, PHI_SPEED - PHI, 0, moved[1], rates[1], arms[1], wall, jacobian)
-    _wall_columns(put, put, block, AT_CAGE, CAGE, 2 * RING, moved[2], rates[2], arms[2], wall, jacobian)
-    _wall_columns(put, put, block, AT_CAGE + 1, CAGE, 2 * RING, moved[3], rates[3], arms[3], wall, jacobian)
-    _wall_columns(put, put, block, _AT_THETA, CAGE, 2 * RING, moved[4], rates[4], arms[4], wall, jacobian)
-    # the force's direction turns with the roller's azimuth and with the pocket
-    outwards, onwards, caged = per_mass * force, per_lever * force, per_cage * force
-    cage_y, cage_z, theta = CAGE_ROWS, CAGE_ROWS + CAGE_COLUMNS, _AT_THETA - 2 * RING
-    add(jacobian, block, _RADIAL + PHI, -(outwards * push[1]))
-    add(jacobian, block, _RADIAL + _AT_THETA, outwards * push[1])
-    add(jacobian, block, _ORBITAL + PHI, onwards * push[0])
-    add(jacobian, block, _ORBITAL + _AT_THETA, -(onwards * push[0]))
-    add(jacobian, block, cage_y + theta, -(caged * push[3]))
-    add(jacobian, block, cage_z + theta, caged * push[2])
-    # friction goes with the spin
-    add(jacobian, block, _RADIAL + SPIN, -(outwards * bends[0] * bend))
-    add(jacobian, block, _ORBITAL + SPIN, -(onwards * bends[1] * bend))
-    add(jacobian, block, _SPINNING + SPIN, -(per_spin * magnitude(force) * bend))
-    put(jacobian, block, cage_y + SPIN, caged * bends[2] * bend)
-    put(jacobian, block, cage_z + SPIN, caged * bends[3] * bend)
-    put(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + SPIN, -(per_turn * slid * bend))
+@kernel
+def _cage_columns(block, jacobian, first, scale, d_position, d_speed):
+    """Write the columns by the cage's position and speed, which begin at ``first``."""
+    for k in range(CAGE):
+        store(jacobian, block, first + k, scale * d_position[k])
+        store(jacobian, block, first + CAGE + k, scale * d_speed[k])
 
 
 @fused
 def _pocket_jacobian(y, params, rows, jacobian):
     """Add the pockets to the rows of the rollers, write those of the cage."""
-    omega, roller_radius = y[OMEGA], params.rollers.radius
     for block in range(rows.shape[0]):
+        mass = params.rollers.mass
         radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
-        orbital_speed, friction = load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.pocket_friction)
-        force, offset = -load(rows, block, ROLLER.pocket_force), load(rows, block, ROLLER.pocket_offset)
+        stiffness, damping = load(rows, block, ROLLER.pocket_stiffness), load(rows, block, ROLLER.pocket_damping)
+        force = -load(rows, block, ROLLER.pocket_force)
+        friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
         p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-        c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+        play_c, play_s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+        omega = y[OMEGA]
         cage_r, cage_t = y[CAGE_Y] * p_c + y[CAGE_Z] * p_s, y[CAGE_Z] * p_c - y[CAGE_Y] * p_s
         speed_r = y[BORDER + CAGE_Y] * p_c + y[BORDER + CAGE_Z] * p_s
-        turning, reach, fall = orbital_speed - omega, radius * c, radius * s
-        lever, rise = reach - cage_r, radial_speed * c - fall * turning
-        along, outwards = (s, reach, p_s, -p_c, -lever), (c, -fall, -p_c, -p_s, offset)
-        rates = c * turning, rise, omega * p_c, omega * p_s, speed_r + omega * cage_t - rise
-        push = s + friction * c, c - friction * s, friction * p_c - p_s, p_c + friction * p_s
-        springs = load(rows, block, ROLLER.pocket_stiffness), load(rows, block, ROLLER.pocket_damping)
-        arm = lever - friction * (where_positive(force, roller_radius, -roller_radius) + offset)
-        slid = magnitude(force) * roller_radius + offset * force
-        _wall_jacobian(store, block, force, springs, arm, push, (c, -s, p_c, p_s), slid, along, rates, outwards, params, rows, jacobian)
+        turning, reach = load(rows, block, ROLLER.orbital_speed) - omega, radius * play_c
+        lever, rise = reach - cage_r, radial_speed * play_c - radius * play_s * turning
+        own = (stiffness * play_s + damping * play_c * turning, stiffness * reach + damping * rise, damping * play_s, damping * reach)
+        at = (
+            stiffness * p_s + damping * (omega * p_c),
+            damping * (omega * p_s) - stiffness * p_c,
+            damping * (speed_r + omega * cage_t - rise) - stiffness * lever,
+        )
+        with_speed = (damping * p_s, -(damping * p_c), -(damping * lever))
+        push_r, push_t = play_s + friction * play_c, play_c - friction * play_s
+        size, side = magnitude(force), where_positive(force, 1.0, -1.0)
+        per_mass, per_lever = -1.0 / mass, (-1.0 / mass) / radius
+        per_inertia = (-params.rollers.radius / params.rollers.inertia) * friction * side
+        _roller_columns(add, block, jacobian, _RADIAL, per_mass * push_r, own, per_mass * (force * play_c * bend))
+        _roller_columns(add, block, jacobian, _ORBITAL, per_lever * push_t, own, -(per_lever * (force * play_s * bend)))
+        _roller_columns(add, block, jacobian, _SPINNING, per_inertia, own, (-params.rollers.radius / params.rollers.inertia) * size * bend)
+        _cage_columns(block, jacobian, _RADIAL + AT_CAGE, per_mass * push_r, at, with_speed)
+        churned = load(jacobian, block, _ORBITAL + _AT_OMEGA)
+        _cage_columns(block, jacobian, _ORBITAL + AT_CAGE, per_lever * push_t, at, with_speed)
+        add(jacobian, block, _ORBITAL + _AT_OMEGA, churned)
+        _cage_columns(block, jacobian, _SPINNING + AT_CAGE, per_inertia, at, with_speed)
+        # the force's direction turns with the roller's azimuth and with the pocket
+        add(jacobian, block, _RADIAL + PHI, per_mass * (force * push_t))
+        add(jacobian, block, _RADIAL + _AT_THETA, -per_mass * (force * push_t))
+        add(jacobian, block, _ORBITAL + PHI, -(per_lever * (force * push_r)))
+        add(jacobian, block, _ORBITAL + _AT_THETA, per_lever * (force * push_r))
+        _cage_jacobian(block, params, rows, jacobian, own, at, with_speed, cage_t, lever)
+
+
+@kernel
+def _cage_jacobian(block, params, rows, jacobian, own, at, with_speed, cage_t, lever):
+    """Write the rows of the cage's accelerations as far as the pockets make them."""
+    cage, present, roller_radius = params.cage, load(rows, block, ROLLER.present), params.rollers.radius
+    radius, offset = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.pocket_offset)
+    force = -load(rows, block, ROLLER.pocket_force)
+    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    play_c, play_s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    push_y, push_z = friction * p_c - p_s, p_c + friction * p_s
+    arm = lever - friction * (where_positive(force, roller_radius, -roller_radius) + offset)
+    per_mass, per_inertia = present * (1.0 / cage.mass), present * (1.0 / cage.inertia)
+    cage_y, cage_z, theta = CAGE_ROWS, CAGE_ROWS + CAGE_COLUMNS, CAGE_ROWS + 2 * CAGE_COLUMNS
+    _roller_columns(store, block, jacobian, cage_y, per_mass * push_y, own, 0.0)
+    _roller_columns(store, block, jacobian, cage_z, per_mass * push_z, own, 0.0)
+    store(jacobian, block, cage_y + SPIN, per_mass * (force * p_c * bend))
+    store(jacobian, block, cage_z + SPIN, per_mass * (force * p_s * bend))
+    _cage_columns(block, jacobian, cage_y + BLOCK, per_mass * push_y, at, with_speed)
+    _cage_columns(block, jacobian, cage_z + BLOCK, per_mass * push_z, at, with_speed)
+    add(jacobian, block, cage_y + BLOCK + 2, -(per_mass * (force * push_z)))
+    add(jacobian, block, cage_z + BLOCK + 2, per_mass * (force * push_y))
+    braked = force * friction
+    turned = (own[0] * arm - braked * play_s + force * play_c, own[1] * arm - (braked * play_c + force * play_s) * radius, own[2] * arm, own[3] * arm)
+    _roller_columns(store, block, jacobian, theta, per_inertia, turned, per_inertia * (-((magnitude(force) * roller_radius + offset * force) * bend)))
+    moved = (
+        at[0] * arm - braked * p_s - force * p_c,
+        at[1] * arm + braked * p_c - force * p_s,
+        at[2] * arm + braked * lever + force * (radius * play_s - cage_t),
+    )
+    _cage_columns(block, jacobian, theta + BLOCK, per_inertia, moved, (with_speed[0] * arm, with_speed[1] * arm, with_speed[2] * arm))
+
+
+@kernel
+def _guide_by_variable(block, column, d_offset, d_rate, d_place, params, rows, jacobian):
+    """Add to all rows the change by one variable, as far as the directions stay.
+
+    Parameters
+    ----------
+    column : of the variable.
+    d_offset, d_rate : how the offset outwards and its rate change.
+    d_place : how the offset along the orbit does.
+    """
+    cage, rollers, present = params.cage, params.rollers, load(rows, block, ROLLER.present)
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    force, friction = -load(rows, block, ROLLER.guide_force), load(rows, block, ROLLER.pocket_friction)
+    change = load(rows, block, ROLLER.guide_stiffness) * d_offset + load(rows, block, ROLLER.guide_damping) * d_rate
+    braking = friction * where_positive(force, rollers.radius, -rollers.radius)
+    arm = load(rows, block, ROLLER.pocket_offset) + friction * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius) + braking
+    per_mass, of_cage = 1.0 / rollers.mass, CAGE_ROWS + (column if column < BLOCK else column - 2 * RING)
+    add(jacobian, block, column, -(per_mass * change * (c - friction * s)))
+    add(jacobian, block, LOCAL + column, per_mass * change * (s + friction * c) / load(rows, block, ROLLER.radius))
+    add(jacobian, block, 2 * LOCAL + column, -(change * braking * (1.0 / rollers.inertia)))
+    add(jacobian, block, of_cage, present * change * (p_c + friction * p_s) * (1.0 / cage.mass))
+    add(jacobian, block, of_cage + CAGE_COLUMNS, present * change * (p_s - friction * p_c) * (1.0 / cage.mass))
+    turned = change * arm + force * (d_place + friction * d_offset)
+    add(jacobian, block, of_cage + 2 * CAGE_COLUMNS, -(present * turned * (1.0 / cage.inertia)))
+
+
+@kernel
+def _guide_directions(block, params, rows, jacobian):
+    """Add what the turning of the force with pocket and roller contributes, and what friction does by the spin."""
+    cage, rollers, present = params.cage, params.rollers, load(rows, block, ROLLER.present)
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
+    force = -load(rows, block, ROLLER.guide_force)
+    turned = force * (1.0 / rollers.mass)
+    lever = turned / load(rows, block, ROLLER.radius)
+    add(jacobian, block, PHI, turned * (s + friction * c))
+    add(jacobian, block, _AT_THETA, -(turned * (s + friction * c)))
+    add(jacobian, block, SPIN, turned * s * bend)
+    add(jacobian, block, LOCAL + PHI, lever * (c - friction * s))
+    add(jacobian, block, LOCAL + _AT_THETA, -(lever * (c - friction * s)))
+    add(jacobian, block, LOCAL + SPIN, lever * c * bend)
+    add(jacobian, block, 2 * LOCAL + SPIN, -(magnitude(force) * bend * (rollers.radius / rollers.inertia)))
+    turned = present * force * (1.0 / cage.mass)
+    add(jacobian, block, CAGE_ROWS + BLOCK + 2, turned * (friction * p_c - p_s))
+    add(jacobian, block, CAGE_ROWS + SPIN, turned * p_s * bend)
+    add(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + BLOCK + 2, turned * (p_c + friction * p_s))
+    add(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + SPIN, -(turned * p_c * bend))
+    slid = force * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius) + magnitude(force) * rollers.radius
+    add(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + SPIN, -(present * slid * bend * (1.0 / cage.inertia)))
 
 
 @kernel
 def _guide_jacobian(y, params, rows, jacobian):
-    """Add pockets that guide the cage to all rows, after `_pocket_jacobian`, of which they are the walls turned by a right angle.
+    """Add the derivatives of `guide_accelerations` to those of everything else through the rollers.
 
-    It is a loop of its own: in that of the other walls it would make both slower.
+    Parameters
+    ----------
+    y, params, rows : as of `guide_forces`.
+    jacobian : takes the derivatives, see `bearing_sim.numerics.block_arrow`.
     """
-    omega, roller_radius = y[OMEGA], params.rollers.radius
+    omega = y[OMEGA]
     for block in range(rows.shape[0]):
         radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
-        orbital_speed, friction = load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.pocket_friction)
-        force, offset = -load(rows, block, ROLLER.guide_force), load(rows, block, ROLLER.pocket_offset)
+        orbital_speed, offset = load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.pocket_offset)
         p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
         c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-        turning, reach, fall = orbital_speed - omega, radius * c, radius * s
-        lever = load(rows, block, ROLLER.guide_offset) + params.cage.guidance.pocket_radius
-        speed_t, falling = y[BORDER + CAGE_Z] * p_c - y[BORDER + CAGE_Y] * p_s, radial_speed * s
-        rates = (
-            -(s * turning),
-            -(falling + reach * turning),
-            omega * p_s,
-            -(omega * p_c),
-            falling + reach * orbital_speed - speed_t - omega * lever,
-        )
-        push = c - friction * s, -(s + friction * c), p_c + friction * p_s, p_s - friction * p_c
-        springs = load(rows, block, ROLLER.guide_stiffness), load(rows, block, ROLLER.guide_damping)
-        arm = -(offset + friction * (lever + where_positive(force, roller_radius, -roller_radius)))
-        slid = force * lever + magnitude(force) * roller_radius
-        outwards, arms = (c, -fall, -p_c, -p_s, offset), (-s, -reach, -p_s, p_c, lever)
-        _wall_jacobian(add, block, force, springs, arm, push, (-s, -c, p_s, -p_c), slid, outwards, rates, arms, params, rows, jacobian)
+        speed_t = y[BORDER + CAGE_Z] * p_c - y[BORDER + CAGE_Y] * p_s
+        turning, lever = orbital_speed - omega, load(rows, block, ROLLER.guide_offset) + params.cage.guidance.pocket_radius
+        none = spread(0.0)
+        rise = -(radial_speed * s + radius * c * turning)
+        turned = radial_speed * s + radius * c * orbital_speed - speed_t - omega * lever
+        _guide_by_variable(block, R, c, -(s * turning), s, params, rows, jacobian)
+        _guide_by_variable(block, PHI, -(radius * s), rise, radius * c, params, rows, jacobian)
+        _guide_by_variable(block, R_SPEED, none, c, none, params, rows, jacobian)
+        _guide_by_variable(block, PHI_SPEED, none, -(radius * s), none, params, rows, jacobian)
+        _guide_by_variable(block, AT_CAGE, -p_c, omega * p_s, p_s, params, rows, jacobian)
+        _guide_by_variable(block, AT_CAGE + 1, -p_s, -(omega * p_c), -p_c, params, rows, jacobian)
+        _guide_by_variable(block, _AT_THETA, offset, turned, -lever, params, rows, jacobian)
+        _guide_by_variable(block, AT_CAGE + CAGE, none, -p_c, none, params, rows, jacobian)
+        _guide_by_variable(block, AT_CAGE + CAGE + 1, none, -p_s, none, params, rows, jacobian)
+        _guide_by_variable(block, _AT_OMEGA, none, offset, none, params, rows, jacobian)
+        _guide_directions(block, params, rows, jacobian)
 
 
 @fused
@@ -395,10 +419,10 @@ def roller_jacobian(y, inner_radius, churning, resists, params, rows, contacts, 
     jacobian : takes the derivatives.
     """
     _inner_jacobian(y, inner_radius, resists, params, rows, contacts, jacobian)
+    _outer_jacobian(y, churning, resists, params, rows, contacts, jacobian)
     _pocket_jacobian(y, params, rows, jacobian)
     if not params.cage.guidance.lands:
         _guide_jacobian(y, params, rows, jacobian)
-    _outer_jacobian(y, churning, resists, params, rows, contacts, jacobian)
 
 
 @kernel
