@@ -27,8 +27,8 @@ from rosgraph_msgs.msg import Clock
 
 from bearing_sim.cli.reporting import print_rows
 from bearing_sim.messages import topics
-from bearing_sim.ros.interface import STATE_QOS
 from bearing_sim.ros.messages import message, message_class
+from bearing_sim.ros.qos import STATE_QOS
 from bearing_sim.simulation import Inputs
 
 _AHEAD = 4.0  # [s] of wall time, at the rate, between the clock and the newest output

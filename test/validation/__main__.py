@@ -10,7 +10,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "test"), str(ROOT / "examples")]
 
 import click  # noqa: E402
 
-from bearing_sim.cli.options import allow_outside_option, csv_option, json_option, level_type, picture_option, scene_options, set_option  # noqa: E402
+from bearing_sim.cli.options import SECONDS, allow_outside_option, csv_option, json_option, level_type, picture_option, scene_options, set_option  # noqa: E402
 from bearing_sim.cli.outputs import OutputFile, OutputJournal, default_output  # noqa: E402
 from bearing_sim.cli.reporting import (  # noqa: E402
     FailedRun,
@@ -26,7 +26,6 @@ from bearing_sim.cli.reporting import (  # noqa: E402
     print_table,
     progress_bar,
     scene_of,
-    seconds_of,
     write_csv,
 )
 from bearing_sim.cli.results import Command, Result, command  # noqa: E402
@@ -170,7 +169,7 @@ def _print_slices(name, found) -> None:
 @click.option("--count", default=500, show_default=True, type=click.IntRange(1, 1_000_000), help="Random scenes.")
 @click.option("--level", type=level_type, default="slip", show_default=True, help="Level of fidelity.")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the scenes.")
-@click.option("--at-most", default="100 s", show_default=True, metavar="S", help="Longest simulated time of a scene.")
+@click.option("--at-most", type=SECONDS, default="100 s", show_default=True, metavar="S", help="Longest simulated time of a scene.")
 @click.option("--journal", type=OutputJournal(), metavar="PATH", help="File from which an interrupted study resumes.")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
 @json_option
@@ -183,7 +182,7 @@ def scenes(count, level, seed, at_most, journal, workers, as_json):
 
     announce_compilation()
     with Points(f"{count} scenes at level {level}", count) as points:
-        report = run_scenes(count, level, seed, seconds_of(at_most, "--at-most"), journal and journal.path, workers, points.update)
+        report = run_scenes(count, level, seed, at_most, journal and journal.path, workers, points.update)
     if as_json:
         print_json(
             {"level": level, "settled": report.settled, "counts": report.counts, "others": [[one._asdict(), *why] for one, *why in report.others]}
