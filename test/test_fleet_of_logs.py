@@ -204,7 +204,7 @@ def test_all_logs_of_a_bearing_share_one_table_of_operating_points(fleet, monkey
         return empty_table(), None
 
     monkeypatch.setattr(replay, "obtain_table", obtain_table)
-    monkeypatch.setattr("bearing_sim.cli.fleet._build_table", lambda *_: None)
+    monkeypatch.setattr("bearing_sim.cli.table.build_with_progress", lambda *_: None)
     (fleet / "logs" / "fast.csv").write_text(text(rows(60_000.0)))
     found = bearings("logs", "--set", "level=steady", "--set", "input_limits.maximum_speed=70000rpm")
     assert {row["status"] for row in found.values()} == {"ok"} and len(built) == 1
