@@ -83,7 +83,8 @@ def test_every_path_that_a_document_names_exists():
 
 
 def test_every_name_that_architecture_says_to_change_stands_in_its_file():
-    rows = [line for line in (DOC / "architecture.md").read_text().splitlines() if line.startswith("| ") and "`bearing_sim/" in line]
+    _, _, rest = (DOC / "architecture.md").read_text().partition("## Where to change what\n")
+    rows = [line for line in rest.partition("\n## ")[0].splitlines() if line.startswith("| ") and "`bearing_sim/" in line]
     checked = 0
     for row in rows:
         file = row.split("|")[2]
