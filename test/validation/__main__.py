@@ -10,7 +10,16 @@ sys.path[:0] = [str(ROOT), str(ROOT / "test"), str(ROOT / "examples")]
 
 import click  # noqa: E402
 
-from bearing_sim.cli.options import SECONDS, allow_outside_option, csv_option, json_option, level_type, picture_option, scene_options, set_option  # noqa: E402
+from bearing_sim.cli.options import (  # noqa: E402
+    SECONDS,
+    allow_outside_option,
+    csv_option,
+    json_option,
+    level_type,
+    picture_option,
+    scene_options,
+    set_option,
+)
 from bearing_sim.cli.outputs import OutputFile, OutputJournal, default_output  # noqa: E402
 from bearing_sim.cli.reporting import (  # noqa: E402
     FailedRun,
