@@ -105,7 +105,7 @@ def main(scene, level, speed, overrides, steps, second):
     os.environ["NUMBA_DISABLE_JIT"] = "1"
     run = _simulation(scene, level, overrides)
     run.resume(start)
-    sizes_of = kinds(importlib.import_module(f"bearing_sim.levels.{level}.model").error_norm)
+    sizes_of = kinds(importlib.import_module(f"bearing_sim.levels.{level}.model").KERNELS.error_norm)
     stages = corrections(run, steps, second, sizes_of)
     print(f"{scene}, {level}: {len(stages)} stages, {np.mean([len(sizes) for sizes in stages]):.2f} iterations each; corrections in tolerances")
     for kind in sizes_of:

@@ -67,7 +67,7 @@ class Problem(NamedTuple):
 def level_kernels(level: str) -> Kernels:
     """Return the kernels in the module of the level's initial state."""
     module = sys.modules[LEVELS[level].initial_state.__module__]
-    return Kernels(*(getattr(module, name, None) for name in Kernels._fields))
+    return Kernels(*(getattr(module, name, getattr(getattr(module, "KERNELS", None), name, None)) for name in Kernels._fields))
 
 
 def scaled_scene(level: str, speed_rpm: float, rollers: int) -> Scene:
