@@ -127,6 +127,46 @@ def test_a_watcher_that_cannot_be_made_is_named_and_the_others_watch(monkeypatch
     assert watchers.values(0.0)["watcher loaded_rollers: rollers loaded"] == 0
 
 
+class Gathering(Watcher):
+    """Sees many samples together, and fails when it hears or is asked for a service."""
+
+    together = 10
+
+    def hear(self, channel, time, value, standard_error):
+        raise ZeroDivisionError("on purpose")
+
+    def serve(self, service):
+        raise ZeroDivisionError("on purpose")
+
+
+@pytest.mark.parametrize("act", [lambda watchers: watchers.hear("cage_speed_measured", 0.0, 1.0), lambda watchers: watchers.serve("accept_change")])
+def test_a_watcher_that_fails_while_samples_wait_for_it_is_named_once(act, monkeypatch):
+    monkeypatch.setitem(registry.WATCHERS, "gathering", f"{__name__}:Gathering")
+    scene = load_scene("deng2017_table1", ["watchers=[gathering]"])
+    watchers = Watchers(scene)
+    watchers.see(new_block(1, scene.bearing.roller.count))
+    assert not act(watchers)
+    assert watchers.flush() == []
+    assert [event.kind for event in watchers.events(0.0)] == ["watcher.gathering"]
+
+
+class Mute(Watcher):
+    """Answers nothing at all, as acts do that end without a return."""
+
+    def see(self, block):
+        pass
+
+    events = values = news = see
+
+
+def test_a_watcher_whose_acts_return_nothing_says_nothing(monkeypatch):
+    monkeypatch.setitem(registry.WATCHERS, "mute", f"{__name__}:Mute")
+    scene = load_scene("deng2017_table1", ["watchers=[mute]"])
+    watchers = Watchers(scene)
+    assert watchers.see(new_block(1, scene.bearing.roller.count)) == watchers.events(0.0) == watchers.news(0.0) == []
+    assert watchers.values(0.0) == {} and watchers.close() is None
+
+
 def test_a_live_run_shows_a_watcher_what_is_before_a_reset_before_it_lets_it_forget(seen):
     bench = Bench(scene=["watchers=[seen]"])
     try:

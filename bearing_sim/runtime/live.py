@@ -164,10 +164,6 @@ class Model(Run):
         """Return the run time [s] of an instant of the clock."""
         return (now_ns - self.start_ns) * 1e-9
 
-    def stamp(self, run_time: float) -> int:
-        """Return the instant of the clock [ns since the epoch] of a run time [s]."""
-        return self.start_ns + round(run_time * 1e9)
-
     def tick(self, now_ns: int) -> None:
         """Take a reading of the clock [ns since the epoch]."""
         raise NotImplementedError

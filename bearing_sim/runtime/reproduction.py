@@ -229,7 +229,7 @@ class _Run(Run):
                 return self._give_up(sample, error, np.array([sample]))
             self.result.sim_seconds += lead
         if begins and not first:  # totals continue over a reset
-            self.life_at_reset = float(sample["damage"]) - float(block["damage"][-1])
+            self.watchers.memory.continue_from(float(sample["damage"]) - float(block["damage"][-1]))
         return self._counted(block, np.array([sample]), max(lead, 0.0))
 
     def _counted(self, block: np.ndarray, recorded: np.ndarray, seconds: float) -> np.ndarray:

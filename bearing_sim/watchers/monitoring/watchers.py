@@ -42,14 +42,12 @@ class Run:
     is_predicted : whether the newest sample predicts what is measured now: not where the run has not begun or computes at another level.
     heard : input channels with good messages; None where that is not known.
     newest_bands : the newest bands of results; None before the first.
-    life_at_reset : fraction of its life that the bearing had used at the last reset, where the clock is a recorded run; None without one.
     watchers : all that watch the run.
     """
 
     acts_on_arrival = is_reviewed = False
     start_ns = 0
     interval = shaft_speed = math.nan
-    life_at_reset: float | None = None
     reset_at = -math.inf
     published_until = math.inf
     newest: np.void | None = None
@@ -209,6 +207,9 @@ class Memory(Watcher):
         """
         return None
 
+    def continue_from(self, life_used: float) -> None:
+        """Take the fraction of its life that the bearing had used where a recorded run was reset."""
+
     def contained(self, time_ns: int) -> bool:
         """Return whether the bearing was watched at an instant [ns since the epoch] in an earlier run, so that nothing of it counts again."""
         return False
@@ -346,7 +347,7 @@ class Watchers:
         for name in () if only_given else scene.watchers:
             try:
                 self._add(name)
-            except Exception as error:  # of code that is not the run's, as in `_each`
+            except Exception as error:  # of code that is not the run's, as in `_ask`
                 self._fail(name, 0.0, error)
 
     def _add(self, name: str, given: object = None) -> None:
@@ -355,22 +356,28 @@ class Watchers:
         self._watchers[name] = watcher
 
     def _fail(self, name: str, now: float, error: Exception) -> None:
-        self._watchers.pop(name, None)
+        for of_watchers in (self._watchers, self._waiting):
+            of_watchers.pop(name, None)
         reason = f"failed: {type(error).__name__}: {error}"
         self._failed.append(Event(now, Level.ERROR, f"watcher.{name}", name, reason, "it sees nothing more; the run continues"))
 
+    def _ask(self, name: str, now: float, act: str, *arguments) -> object | None:
+        """Return the answer of one watcher; None where it has none or fails."""
+        try:
+            return getattr(self._watchers[name], act)(*arguments)
+        except Exception as error:
+            if name not in self._optional:
+                raise
+            self._fail(name, now, error)
+            return None
+
     def _each(self, now: float, act: str, *arguments) -> Iterator[tuple[str, object]]:
+        """Ask all, and yield the names and answers of those that have one."""
         for name, watcher in list(self._watchers.items()):
             if watcher.goes_by_wall and act in ("events", "values") and not self._run.is_reviewed:
                 continue
-            try:
-                found = getattr(watcher, act)(*arguments)
-            except Exception as error:
-                if name not in self._optional:
-                    raise
-                self._fail(name, now, error)
-            else:
-                yield name, found
+            if (answer := self._ask(name, now, act, *arguments)) is not None:
+                yield name, answer
 
     def _all(self, act: str, *arguments) -> None:
         for _ in self._each(0.0, act, *arguments):
@@ -406,7 +413,7 @@ class Watchers:
 
     def hear(self, channel: str, time: float, value, standard_error: float = math.nan) -> list[Record]:
         """Pass a measurement on and return what sinks are to keep."""
-        return [record for _, records in self._each(time, "hear", channel, time, value, standard_error) for record in records or ()]
+        return [record for _, records in self._each(time, "hear", channel, time, value, standard_error) for record in records]
 
     def correct(self, block: np.ndarray, seconds: np.ndarray) -> None:
         """Let samples be changed before anybody sees or keeps them."""
@@ -426,13 +433,7 @@ class Watchers:
         return found
 
     def _show(self, name: str, block: np.ndarray) -> Sequence[Record]:
-        try:
-            return self._watchers[name].see(block)
-        except Exception as error:
-            if name not in self._optional:
-                raise
-            self._fail(name, float(block["time"][-1]), error)
-            return ()
+        return self._ask(name, float(block["time"][-1]), "see", block) or ()
 
     def flush(self) -> list[Record]:
         """Show the samples that wait to be seen together, and return what sinks are to keep."""
@@ -514,7 +515,7 @@ class Watchers:
 
     def serve(self, service: str) -> tuple[bool, str] | None:
         """Return the answer of the one whose service it is; None where the run has none."""
-        return next((answer for watcher in self if (answer := watcher.serve(service)) is not None), None)
+        return next((answer for _, answer in self._each(0.0, "serve", service)), None)
 
     def close(self) -> None:
         """End all."""

@@ -67,7 +67,7 @@ class RecordedState(_StateMemory):
     def __init__(self, scene: Scene, state: StoredState, once: bool):
         super().__init__(scene)
         self.state, self._covered = state, state.covered if once else None
-        self._counter, self._life_at_reset = LifeCounter(state.totals.damage, self._covered), self.run.life_at_reset
+        self._counter = LifeCounter(state.totals.damage, self._covered)
 
     @property
     def life_used(self) -> float:
@@ -75,11 +75,12 @@ class RecordedState(_StateMemory):
         return self.state.totals.damage
 
     def correct(self, block: np.ndarray, seconds: np.ndarray) -> None:
-        """Write the life used into samples; behind a reset it continues from what the recorded run had used there."""
-        if self.run.life_at_reset is not self._life_at_reset:
-            self._life_at_reset = self.run.life_at_reset
-            self._counter.restart(self._life_at_reset)
+        """Write the life used into samples."""
         self._counter.take(block, _times_ns(block, self.run.start_ns), seconds)
+
+    def continue_from(self, life_used: float) -> None:
+        """Count from what the recorded run had used where it was reset."""
+        self._counter.restart(life_used)
 
     def contained(self, time_ns: int) -> bool:
         """Return whether the state contained an instant [ns since the epoch]."""
