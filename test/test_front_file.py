@@ -141,6 +141,7 @@ def rewritten(folder, change):
         (lambda one: one["settings"][0].update(real_time_factor=-1.0), "-1.0"),
         (lambda one: one["settings"][0].update(real_time_factor="fast"), "something else"),
         (lambda one: one["settings"][0]["errors"].update(slip=-0.1), "-0.1"),
+        (lambda one: one["settings"][0]["errors"].pop("largest_slip"), "largest_slip"),
         (lambda one: one["extent"].pop("radial_load"), "radial_load"),
         (lambda one: one.update(settings=None), "something else"),
     ],
@@ -158,6 +159,10 @@ def test_no_number_of_a_front_may_be_nan_or_infinite(folder, number):
     head = {"format": "bearing_sim front", "version": 3, "checksum": hashlib.sha256(b"3 " + contents).hexdigest()}
     (folder / "rig.front.json").write_bytes(json.dumps(head).encode()[:-1] + b', "front": ' + contents + b"}\n")
     assert "where a number that is not negative belongs" in refusal(folder)
+
+
+def test_a_front_has_the_errors_that_a_trade_measures():
+    assert measured_tradeoffs.ERRORS == NAMES
 
 
 def test_an_error_that_was_not_measured_keeps_no_want(folder):

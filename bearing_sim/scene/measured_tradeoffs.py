@@ -39,6 +39,8 @@ _FIELDS = ("integration.", "bearing.roller.slices=", "table.correction=")  # tha
 _SLACK = 1.25  # factor by which a scene may operate outside of what was measured in speed and load; assumption
 _TEMPERATURE_SLACK = 10.0  # K, likewise
 _PATIENCE, _PAUSE = 10.0, 0.05  # s, for another process that is writing
+ERRORS = ("slip", "largest_slip", "load", "largest_load", "life", "window_life", "edge", "largest_edge")
+"""Names of the errors of a setting, those of `bearing_sim.studies.trade.Errors`."""
 _INPUTS = {"shaft_speed": "shaft speed", "radial_load": "radial load", "oil_temperature": "oil temperature"}
 
 
@@ -51,8 +53,7 @@ class Setting(NamedTuple):
     detail : tolerances, step or slices, in words.
     overrides : of a scene's fields, complete: tolerances, step and slices.
     real_time_factor : simulated over processor time on this machine.
-    errors : by name: ``slip`` and ``largest_slip`` [percentage points], ``load``, ``largest_load``, ``life``, ``window_life``, ``edge`` and
-        ``largest_edge``, relative; NaN where they were not measured (see `bearing_sim.studies.trade.Errors`).
+    errors : by the names `ERRORS`: of slip in percentage points, others relative; NaN where they were not measured.
     """
 
     level: str
@@ -304,7 +305,8 @@ def _setting(stored: Mapping) -> Setting:
     overrides = tuple(map(str, stored["overrides"]))
     if foreign := [each for each in overrides if not each.startswith(_FIELDS)]:  # a front from a stranger changes nothing else of a scene
         raise Damaged(f"a setting changes {foreign[0].partition('=')[0]!r}, which is no setting")
-    return Setting(str(stored["level"]), str(stored["detail"]), overrides, _finite(stored["real_time_factor"]), _errors(stored["errors"]))
+    errors = _errors({name: stored["errors"][name] for name in ERRORS})
+    return Setting(str(stored["level"]), str(stored["detail"]), overrides, _finite(stored["real_time_factor"]), errors)
 
 
 def _finite(value) -> float:
