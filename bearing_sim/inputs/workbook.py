@@ -77,4 +77,6 @@ def _text(cell: object) -> str:
         return ""
     if hasattr(cell, "total_seconds"):  # a duration [s]
         return repr(cell.total_seconds())
-    return cell.isoformat() if hasattr(cell, "isoformat") else " ".join(str(cell).split())
+    if hasattr(cell, "isoformat"):
+        return cell.isoformat().removesuffix("T00:00:00")  # a sheet has no date without a time of day, which may stand in another column
+    return " ".join(str(cell).split())
