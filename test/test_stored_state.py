@@ -613,7 +613,10 @@ def test_what_a_residual_monitor_has_learned_goes_on_as_if_there_had_been_no_res
     assert math.isnan(other.mean), "learned from other batches"
 
 
-@pytest.mark.parametrize(("name", "value"), [("starts", 2.5), ("starts", True), ("damage", -1), ("running_hours", "3"), ("serial", "\a")])
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("starts", 2.5), ("starts", True), ("damage", -1), ("running_hours", "3"), ("running_hours", True), ("running_hours", -1), ("serial", "\a")],
+)
 def test_what_people_write_wrongly_is_refused_with_its_name_and_nothing_is_rounded(name, value):
     state = {"serial": 4711, "starts": 5.0}
     assert parsed(_by_hand(state)).serial == "4711" and parsed(_by_hand(state)).totals.starts == 5
