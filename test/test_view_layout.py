@@ -16,7 +16,7 @@ from bearing_sim.messages.topics import MEASURED, MEASURED_CHANNELS, MEASURED_CL
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.blueprint import blueprint
 from bearing_sim.view.drawings import BarDrawing
-from bearing_sim.view.plots import AROUND, LINES, RunSeries, roller_series, threshold_lines
+from bearing_sim.view.plots import AROUND, LINES, RunSeries, features, roller_series, table, threshold_lines
 from bearing_sim.view.worker import RerunFile
 
 SCENES = {level: load_scene("deng2017_table1", [f"level={level}"]) for level in ("steady", "slip", "planar", "spatial")}
@@ -68,6 +68,19 @@ def test_every_series_that_is_written_has_a_plot(tmp_path, level):
     plotted = {path for plot in plots(scene) for path in plot.contents}
     of_readers = {"/life/hours"} | ({"/cage/eccentricity"} if not scene.cage_whirls else set())
     assert series - plotted <= of_readers, "which are there for whoever reads the file"
+
+
+@pytest.mark.parametrize("level", SCENES)
+def test_every_line_that_a_scene_may_have_is_in_a_plot(level):
+    scene = SCENES[level]
+    plotted = {path for plot in plots(scene) for path in plot.contents}
+    lines = {path for path, row in LINES.items() if row.needs in features(scene, MEASURED_CHANNELS)}
+    assert lines - plotted == {"/sink/dropped"} | ({"/cage/eccentricity"} if not scene.cage_whirls else set())
+
+
+def test_lives_and_temperatures_do_not_begin_at_zero_and_frequencies_have_a_legend():
+    axes = {row["title"].split(" ")[0]: row["axis"] for row in table("plots") if row["axis"]}
+    assert axes == {"Lives,": "free", "Remaining": "free", "Temperatures": "free", "Frequencies": "legend"}
 
 
 def test_each_threshold_of_a_scene_has_a_line_in_the_unit_of_its_plot_and_one_that_is_not_set_has_none():
