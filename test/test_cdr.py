@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 
+from bearing_sim.files.limits import VARIABLE
 from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, is_known
 
@@ -170,6 +171,16 @@ def test_a_message_cut_short_is_refused(ros_type, seed, share):
 )
 def test_bytes_that_are_no_message_are_refused(data):
     with pytest.raises(CdrError):
+        CdrLayout("sensor_msgs/msg/JointState", data)
+
+
+def test_a_layout_has_no_more_fields_than_the_limit(monkeypatch):
+    data = joint_state((1.0, 2.0))
+    count = len(CdrLayout("sensor_msgs/msg/JointState", data).fields)
+    monkeypatch.setenv(VARIABLE, f"message_items={count}")
+    assert len(CdrLayout("sensor_msgs/msg/JointState", data).fields) == count == 12
+    monkeypatch.setenv(VARIABLE, f"message_items={count - 1}")
+    with pytest.raises(CdrError, match="message_items=NUMBER"):
         CdrLayout("sensor_msgs/msg/JointState", data)
 
 

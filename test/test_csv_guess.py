@@ -130,6 +130,13 @@ def test_what_may_mean_two_things_is_asked_for_and_the_option_that_is_named_deci
     assert read_table(tmp_path / "data.csv", mapping_from_yaml(decision.text)).tally.there == 2
 
 
+def test_a_temperature_that_is_a_percentage_is_asked_for(tmp_path):
+    found = guessed(tmp_path, "t [s];n [rpm];F [N];Oil [%]\n0;1;2;3\n1;1;2;3\n", columns={"oil_temperature": "Oil [%]"})
+    assert found.questions == {
+        "oil_temperature": "'Oil [%]' is a percentage, which no temperature is; name another column: --column oil_temperature=HEADING"
+    }
+
+
 @pytest.mark.parametrize(
     "date, format_",
     [

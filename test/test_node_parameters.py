@@ -148,6 +148,23 @@ def test_thresholds_are_changed_by_their_place_and_faults_are_told():
         assert reason in messages(raised.value)
 
 
+def test_the_bounds_of_the_nodes_own_parameters_are_these():
+    assert {row.name: (row.low, row.high) for row in DECLARATIONS if np.isfinite([row.low, row.high]).any()} == {
+        "processes": (0, 256),
+        "publish_rate": (0.1, 200.0),
+        "sample_rate": (1.0, 10_000.0),
+        "clock_tolerance": (0.0, 10.0),
+        "stamp_tolerance": (0.0, 1e9),
+        "inputs_expected_within": (0.0, 1e6),
+        "maximum_lag": (0.02, 10.0),
+        "record_part_size": (0.0, 1e6),
+        "record_part_duration": (0.0, 1e7),
+        "record_keep_free": (0.0, 1e7),
+        "rerun_port": (0, 65535),
+        "rerun_web_port": (0, 65535),
+    }
+
+
 def test_each_parameter_is_described_with_range_and_with_when_a_change_counts(running):
     names = [row.name for row in (*DECLARATIONS, *SCENE_DECLARATIONS)]
     assert running.names() >= set(names)

@@ -1,13 +1,15 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The player without a network: in which order it publishes, and that it ends when it is asked to.  `test_node_sim_time` has it play for a node."""
 
+import io
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 pytest.importorskip("rclpy", reason="the player needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
 
-from bearing_sim.ros.player import Player, ScheduledMessage, Timeline, schedule  # noqa: E402
+from bearing_sim.ros.player import Player, ScheduledMessage, Timeline, progress_of, schedule  # noqa: E402
 
 MESSAGES = [ScheduledMessage(0.02 * k, "shaft_speed", (300.0 + k,), 10**9 + k) for k in range(5)]
 
@@ -55,6 +57,30 @@ def test_every_message_is_published_once_in_order_and_none_before_its_time():
     done, published, player, shown = played(lambda node: False)
     assert done and published == [300.0, 301.0, 302.0, 303.0, 304.0]
     assert player.sent == {"shaft_speed": 5} and player.lateness >= 0.0 and player.reached == shown[-1] == MESSAGES[-1].time
+
+
+class Terminal(io.StringIO):
+    """A terminal that keeps what it shows."""
+
+    def isatty(self):
+        return True
+
+
+@pytest.mark.parametrize("total", [0.3, 12.5])
+def test_a_terminal_shows_a_bar_that_ends_when_all_is_played_and_not_before(monkeypatch, total):
+    monkeypatch.setattr("sys.stderr", terminal := Terminal())
+    with progress_of("playing a log", total) as show:
+        for time in np.linspace(0.0, max(total - 1.0, 0.0), 50).tolist():
+            show(time)
+        assert "playing a log" in terminal.getvalue() and "100%" not in terminal.getvalue()
+        show(total)
+    assert "100%" in terminal.getvalue()
+
+
+def test_a_log_of_one_instant_is_shown_too(monkeypatch):
+    monkeypatch.setattr("sys.stderr", Terminal())
+    with progress_of("playing a log", 0.0) as show:
+        show(0.0)
 
 
 @pytest.mark.parametrize("count", [0, 1, 3])

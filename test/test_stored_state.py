@@ -33,7 +33,7 @@ from bearing_sim.watchers.stored_state.counting import LifeCounter
 from bearing_sim.watchers.stored_state.covered import MOST, Covered
 from bearing_sim.watchers.stored_state.keeper import RECORD, StateKeeper
 from bearing_sim.watchers.stored_state.merging import merge
-from bearing_sim.watchers.stored_state.state import Damaged, StoredState, new_state
+from bearing_sim.watchers.stored_state.state import Damaged, StoredState, migrated, new_state
 from bearing_sim.watchers.stored_state.state_file import StateError, StateFile, checked_serial, default_path, parsed, previous_path, read_state
 from bearing_sim.watchers.stored_state.totals import Criteria, Totals
 
@@ -613,12 +613,57 @@ def test_what_a_residual_monitor_has_learned_goes_on_as_if_there_had_been_no_res
     assert math.isnan(other.mean), "learned from other batches"
 
 
-@pytest.mark.parametrize(("name", "value"), [("starts", 2.5), ("starts", True), ("damage", -1), ("running_hours", "3"), ("serial", "\a")])
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("starts", 2.5), ("starts", True), ("damage", -1), ("running_hours", "3"), ("running_hours", True), ("running_hours", -1), ("serial", "\a")],
+)
 def test_what_people_write_wrongly_is_refused_with_its_name_and_nothing_is_rounded(name, value):
     state = {"serial": 4711, "starts": 5.0}
     assert parsed(_by_hand(state)).serial == "4711" and parsed(_by_hand(state)).totals.starts == 5
     with pytest.raises(Damaged, match=name):
         parsed(_by_hand({name: value}))
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        *[("totals.damage", value) for value in ("0.5", True, -1e-9, math.nan, math.inf)],
+        *[("totals.starts", value) for value in ("5", True, -1, 2**63, 2.5)],
+        ("totals.slip_seconds", [0.0]),
+        ("totals.slip_seconds", [0.0, 0.0, 0.0, -1.0]),
+        ("totals.largest_slip", [math.nan, 0]),
+        ("totals.largest_slip", [0.1, -1]),
+        ("days.2024-10-04.revolutions", math.inf),
+        ("covered", [[-1, 5]]),
+        ("covered", [[0, 2**63]]),
+        ("estimates", [[0, {"mounting.clearance": [0.0, math.nan, 1.0]}]]),
+        ("thermal", {"time_ns": 0, "nodes": [math.nan], "rings": [300.0, 300.0]}),
+        ("calibration", {"mounting.clearance": math.inf}),
+        ("writes", -1),
+        ("retired_ns", 2**63),
+        ("serial", "\a"),
+    ],
+)
+def test_contents_that_no_state_has_are_refused_with_their_place(place, value):
+    contents = json.loads(json.dumps(new_state(SCENE, "A1", MIDNIGHT).as_mapping() | {"days": {"2024-10-04": {}}}))
+    StoredState.from_mapping(contents)
+    *blocks, name = place.split(".")
+    block = contents
+    for each in blocks:
+        block = block[each]
+    block[name] = value
+    with pytest.raises(Damaged, match=f"it is not a bearing's state: {place}"):
+        StoredState.from_mapping(contents)
+
+
+@pytest.mark.parametrize("version", [-1, 3, "2", None])
+def test_an_unknown_version_and_contents_without_totals_are_refused(version):
+    with pytest.raises(Damaged, match="version .* is unknown"):
+        migrated(version, {})
+    with pytest.raises(Damaged, match="it has no totals"):
+        StoredState.from_mapping({"serial": "A1", "identity": {}})
+    with pytest.raises(Damaged, match="version 0 has no hours; expected some of damage"):
+        migrated(0, {"hours": 3.0})
 
 
 def _by_hand(state):

@@ -16,7 +16,7 @@ from bearing_sim.messages.topics import MEASURED, MEASURED_CHANNELS, MEASURED_CL
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.blueprint import blueprint
 from bearing_sim.view.drawings import BarDrawing
-from bearing_sim.view.plots import AROUND, LINES, RunSeries, roller_series, threshold_lines
+from bearing_sim.view.plots import AROUND, LINES, RunSeries, features, roller_series, table, threshold_lines
 from bearing_sim.view.worker import RerunFile
 
 SCENES = {level: load_scene("deng2017_table1", [f"level={level}"]) for level in ("steady", "slip", "planar", "spatial")}
@@ -68,6 +68,39 @@ def test_every_series_that_is_written_has_a_plot(tmp_path, level):
     plotted = {path for plot in plots(scene) for path in plot.contents}
     of_readers = {"/life/hours"} | ({"/cage/eccentricity"} if not scene.cage_whirls else set())
     assert series - plotted <= of_readers, "which are there for whoever reads the file"
+
+
+@pytest.mark.parametrize("level", SCENES)
+def test_every_line_that_a_scene_may_have_is_in_a_plot(level):
+    scene = SCENES[level]
+    plotted = {path for plot in plots(scene) for path in plot.contents}
+    lines = {path for path, row in LINES.items() if row.needs in features(scene, MEASURED_CHANNELS)}
+    assert lines - plotted == {"/sink/dropped"} | ({"/cage/eccentricity"} if not scene.cage_whirls else set())
+
+
+def test_lives_and_temperatures_do_not_begin_at_zero_and_frequencies_have_a_legend():
+    axes = {row["title"].split(" ")[0]: row["axis"] for row in table("plots") if row["axis"]}
+    assert axes == {"Lives,": "free", "Remaining": "free", "Temperatures": "free", "Frequencies": "legend"}
+
+
+def test_each_threshold_of_a_scene_has_a_line_in_the_unit_of_its_plot_and_one_that_is_not_set_has_none():
+    limits = ("clearance_warning=20um", "clearance_error=10um", "pocket_force_warning=50N", "pocket_force_error=80N", "life_error=100h")
+    of_slip_and_life = {"/slip/warning": 5.0, "/slip/error": 10.0, "/life/warning": np.log10(300.0)}
+    assert threshold_lines(SLIP) == pytest.approx(of_slip_and_life)
+    further = {"/clearance/warning": 20.0, "/clearance/error": 10.0, "/loads/pocket_warning": 50.0, "/loads/pocket_error": 80.0, "/life/error": 2.0}
+    scene = load_scene("deng2017_table1", [f"thresholds.{limit}" for limit in limits])
+    assert threshold_lines(scene) == pytest.approx(of_slip_and_life | further)
+
+
+def test_a_scene_without_bands_has_no_band_in_its_plots_and_one_with_bands_has_all():
+    bands = ["/slip/band", "/life/band", "/remaining_life/band", "/clearance/band"]
+    for scene, expected in ((SLIP, []), (load_scene("deng2017_table1", ["estimation.bands=true"]), bands)):
+        assert [path for plot in plots(scene) for path in plot.contents if path.endswith("/band") and not path.startswith("/range")] == expected
+
+
+def test_of_samples_that_share_a_pixel_the_largest_slip_and_loads_are_drawn():
+    largest = {"/slip/cage", "/loads/inner_largest", "/loads/outer_largest", "/loads/pocket_largest"}
+    assert {path: row.pixel for path, row in LINES.items() if row.pixel} == dict.fromkeys(largest, "Max")
 
 
 # G. M. Machado, M. M. Oliveira, L. A. F. Fernandes, IEEE Trans. Vis. Comput. Graph. 15 (2009): full severity, linear RGB.

@@ -3,12 +3,13 @@
 
 import json
 import zipfile
-from datetime import datetime, timedelta
+from datetime import datetime, time, timedelta
 
 import pytest
 from click.testing import CliRunner
 
 from bearing_sim.cli.main import main
+from bearing_sim.inputs import workbook
 from bearing_sim.inputs.csv_guess import guess
 from bearing_sim.inputs.csv_import import TableError, mapping_from_yaml, read_table
 
@@ -39,6 +40,25 @@ def test_a_sheet_with_dates_is_guessed_and_imported_with_its_rows_as_lines(tmp_p
     assert table.examples["time.empty_cell"][0][0] == 4 and table.tally.used == 5
     assert list(table.values["radial_load"]) == [5250.0] * 5
     assert table.stamps["shaft_speed"][0] == 1773921600_000_000_000
+
+
+def test_a_date_and_a_time_of_day_in_two_columns_are_one_time(tmp_path):
+    rows = [["Datum", "Uhrzeit", "n [rpm]", "F [N]"]] + [[NOON.date(), time(12, 0, k, 500_000 * (k % 2)), 1480, 5] for k in range(4)]
+    path = write_workbook(tmp_path / "rig.xlsx", s=rows)
+    found = guess(path)
+    assert not found.questions and found.tree["time"] == {"column": "Datum", "time_of_day": "Uhrzeit", "format": "iso"}
+    stamps = read_table(path, mapping_from_yaml(found.text)).stamps["shaft_speed"]
+    assert [stamp - 1773921600_000_000_000 for stamp in stamps] == [0, 1_500_000_000, 2_000_000_000, 3_500_000_000]
+
+
+def test_times_that_begin_at_midnight_durations_and_headings_of_two_lines_are_understood(tmp_path):
+    midnight = datetime(2026, 3, 19)
+    rows = [["Zeit", "t\n[s]", "n [rpm]", "F\n[N]"]] + [[midnight + timedelta(hours=k), timedelta(minutes=k), 1480, 5] for k in range(3)]
+    path = write_workbook(tmp_path / "rig.xlsx", s=rows)
+    found = guess(path, columns={"time": "Zeit"})
+    assert list(read_table(path, mapping_from_yaml(found.text)).stamps["shaft_speed"]) == [(1773878400 + 3600 * k) * 10**9 for k in range(3)]
+    found = guess(path, columns={"time": "t [s]"})
+    assert list(read_table(path, mapping_from_yaml(found.text)).stamps["shaft_speed"]) == [60 * k * 10**9 for k in range(3)]
 
 
 def test_serial_days_that_are_not_shown_as_dates_are_days_of_a_spreadsheet(tmp_path):
@@ -88,6 +108,37 @@ def test_a_damaged_or_cut_workbook_is_refused_or_read_as_before(tmp_path, place)
     (tmp_path / "rig.xlsx").write_bytes(bytes(data[: len(data) // 2]))
     with pytest.raises(TableError, match="cannot be read as a workbook .BadZipFile"):
         guess(tmp_path / "rig.xlsx")
+
+
+def rewritten(path, old, new, checksum=True):
+    """Replace a text in the first sheet of a workbook, with the checksum of what was there unless that is to be right."""
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    sheet = parts["xl/worksheets/sheet1.xml"]
+    assert old in sheet
+    with zipfile.ZipFile(path, "w") as archive:  # not compressed
+        for name, data in parts.items():
+            archive.writestr(name, data.replace(old, new) if data is sheet and checksum else data)
+    if not checksum:
+        path.write_bytes(path.read_bytes().replace(old, new))
+
+
+def test_a_number_that_does_not_fit_the_checksum_is_not_read(tmp_path):
+    path = write_workbook(tmp_path / "rig.xlsx", s=ROWS)
+    rewritten(path, b"<v>1482.5</v>", b"<v>9482.5</v>", checksum=False)
+    with pytest.raises(TableError, match="damaged: the checksum of its part 'xl/worksheets/sheet1.xml' is wrong"):
+        guess(path)
+
+
+def test_a_sheet_may_state_another_size_than_it_has_but_no_row_that_sheets_cannot_have(tmp_path, monkeypatch):
+    path = write_workbook(tmp_path / "rig.xlsx", s=ROWS)
+    good = guess(path).text
+    rewritten(path, b'<dimension ref="A1:D6"', b'<dimension ref="A1:B2"')
+    assert guess(path).text == good
+    monkeypatch.setattr(workbook, "_MOST_ROWS", 1000)
+    rewritten(path, b'<row r="6"', b'<row r="9999999"')
+    with pytest.raises(TableError, match="row 1001: no sheet has more than 1,000 rows"):
+        guess(path)
 
 
 def test_a_workbook_with_a_password_and_another_archive_are_refused_with_what_to_do(tmp_path):

@@ -20,6 +20,7 @@ from bearing_sim.files.labview_text import start_of
 from bearing_sim.inputs.csv_import import TimeColumn, time_reader
 from bearing_sim.inputs.csv_text import (
     DELIMITERS,
+    EXPECTED_ENCODINGS,
     HEADINGS,
     NAMES,
     QUANTITIES,
@@ -160,7 +161,7 @@ def guess(
         found.enter("decimal", layout.marks.decimal, "given" if decimal else "by the cells")
     if layout.marks.thousands:
         found.enter("thousands", layout.marks.thousands, "by the cells: all of a column have it")
-    if layout.encoding not in ("utf-8", "utf-8-sig", "workbook"):
+    if layout.encoding not in EXPECTED_ENCODINGS:
         found.enter("encoding", layout.encoding, "the file is not UTF-8")
     if sheet:
         found.enter("sheet", sheet, "given")
@@ -505,6 +506,8 @@ def _column_of(layout: Layout, name: str, headings: list[str], columns, units) -
     if unit is None and re.search(r"rpm", heading, re.IGNORECASE):
         unit = "rpm"
     if is_relative(headed) and not is_relative(unit or ""):
+        if not may_be_relative(role.si_unit):
+            raise _Asked(f"{heading!r} is a percentage, which no {QUANTITIES[role.si_unit]['name']} is; name another column: --column {name}=HEADING")
         relative = percentage_question(headed, role.si_unit).replace(", such as ", f": --unit {name}=")
         raise _Asked(f"{heading!r} is a percentage; give {relative}")
     if unit is None:

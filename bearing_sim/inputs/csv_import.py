@@ -28,6 +28,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from bearing_sim.files.provenance import git_hash, package_version
 from bearing_sim.files.tally import Tally
 from bearing_sim.inputs.csv_text import (
+    EXPECTED_ENCODINGS,
     QUANTITIES,
     Layout,
     Marks,
@@ -639,7 +640,7 @@ def layout_of(path: Path, mapping: Mapping) -> Layout:
         See `read_table`.
     """
     layout = first_look(path, mapping.encoding, mapping.sheet)
-    if mapping.encoding is None and layout.encoding not in ("utf-8", "utf-8-sig", "workbook"):
+    if mapping.encoding is None and layout.encoding not in EXPECTED_ENCODINGS:
         layout.found.append(f"encoding: {layout.encoding}, since it is not UTF-8")
     find_header(layout, mapping.column_names(), "\t" if mapping.delimiter == "tab" else mapping.delimiter)
     numbers = [one.column for _, one in mapping.columns()] + [mapping.time.column] * (mapping.time.format is None)

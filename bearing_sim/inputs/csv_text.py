@@ -29,6 +29,9 @@ DELIMITERS = (",", ";", "\t", "|")
 NAMES = {",": "comma", ";": "semicolon", "\t": "tab", "|": "vertical bar"}
 """Words for delimiters, for messages."""
 
+EXPECTED_ENCODINGS = ("utf-8", "utf-8-sig", "workbook")
+"""Those that nobody needs to be told of."""
+
 _WORKBOOK = b"PK\x03\x04"
 _COMMENTS = ("#", "//")
 _FIRST_LINES, _FIRST_CHARACTERS = 2000, 2_000_000  # of a file, in which header, delimiter and decimal mark are looked for

@@ -8,6 +8,7 @@ import csv
 import io
 import zipfile
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 from bearing_sim.files.extras import what_is_missing
@@ -41,22 +42,8 @@ def sheet_lines(path: Path, sheet: str = "") -> Iterator[str]:
             WORKBOOK_BYTES.check(sum(member.file_size for member in archive.infolist()), str(path))
             if damaged := archive.testzip():  # it also has another length than it says
                 raise FileError(f"{path}: damaged: the checksum of its part {damaged[:_SHOWN]!r} is wrong")
-        book = load_workbook(path, read_only=True, data_only=True)
-        names = [each.title for each in book.worksheets]
-        if not sheet and len(names) > 1:
-            raise FileError(f"{path}: it has the sheets {shortened(', '.join(names), _SHOWN)}; say which: sheet: NAME in the mapping, or --sheet")
-        if sheet and sheet not in names:
-            raise FileError(f"{path}: no sheet {sheet!r}{did_you_mean(sheet, names)}; it has {shortened(', '.join(names), _SHOWN)}")
-        rows = book[sheet or names[0]]
-        rows.reset_dimensions()  # those that it states may be wrong
-        widest = 0
-        for number, row in enumerate(rows.iter_rows(values_only=True), 1):
-            TABLE_COLUMNS.check(len(row), f"{path}, row {number}")
-            if number > _MOST_ROWS:
-                raise FileError(f"{path}: row {number}: no sheet has more than {_MOST_ROWS:,} rows")
-            line, widest = io.StringIO(), max(widest, len(row))
-            csv.writer(line, lineterminator="\n").writerow([*map(_text, row), *[""] * (widest - len(row))])  # empty cells at the end are left out
-            yield line.getvalue()
+        with closing(load_workbook(path, read_only=True, data_only=True)) as book:
+            yield from _lines(path, book, sheet)
     except FileError:
         raise
     except MemoryError:
@@ -66,10 +53,30 @@ def sheet_lines(path: Path, sheet: str = "") -> Iterator[str]:
         raise FileError(f"{path}: cannot be read as a workbook ({why}); open it and save the sheet as CSV") from None
 
 
+def _lines(path: Path, book, sheet: str) -> Iterator[str]:
+    names = [each.title for each in book.worksheets]
+    if not sheet and len(names) > 1:
+        raise FileError(f"{path}: it has the sheets {shortened(', '.join(names), _SHOWN)}; say which: sheet: NAME in the mapping, or --sheet")
+    if sheet and sheet not in names:
+        raise FileError(f"{path}: no sheet {sheet!r}{did_you_mean(sheet, names)}; it has {shortened(', '.join(names), _SHOWN)}")
+    rows = book[sheet or names[0]]
+    rows.reset_dimensions()  # those that it states may be wrong
+    widest = 0
+    for number, row in enumerate(rows.iter_rows(values_only=True), 1):
+        TABLE_COLUMNS.check(len(row), f"{path}, row {number}")
+        if number > _MOST_ROWS:
+            raise FileError(f"{path}: row {number}: no sheet has more than {_MOST_ROWS:,} rows")
+        line, widest = io.StringIO(), max(widest, len(row))
+        csv.writer(line, lineterminator="\n").writerow([*map(_text, row), *[""] * (widest - len(row))])  # empty cells at the end are left out
+        yield line.getvalue()
+
+
 def _text(cell: object) -> str:
     """Return what a CSV table would have for the value of a cell."""
     if cell is None:
         return ""
     if hasattr(cell, "total_seconds"):  # a duration [s]
         return repr(cell.total_seconds())
-    return cell.isoformat() if hasattr(cell, "isoformat") else " ".join(str(cell).split())
+    if hasattr(cell, "isoformat"):
+        return cell.isoformat().removesuffix("T00:00:00")  # a sheet has no date without a time of day, which may stand in another column
+    return " ".join(str(cell).split())

@@ -169,6 +169,7 @@ class CdrLayout:
         else:
             (item, item_detail), count = detail
             if node == Nodetype.SEQUENCE:
+                self._cursor.make_item()
                 count = self._cursor.length()
                 self.fields.append(Field(path, _dtype(f"{self._cursor.order}u4"), self._cursor.at - 4, 1, self._cursor.at, True))
             if item == Nodetype.BASE and item_detail[0] in NUMBERS:

@@ -282,4 +282,4 @@ def plain_name(file: Path) -> str:
 
 def _by_number(file: Path) -> tuple:
     """Return the key by which ``run_10.mcap`` comes after ``run_9.mcap``."""
-    return tuple(int(part) if part.isdigit() else part for part in re.split(r"(\d+)", file.name))
+    return tuple(int(part) if k % 2 else part for k, part in enumerate(re.split(r"(\d+)", file.name)))

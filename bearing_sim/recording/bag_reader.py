@@ -30,7 +30,7 @@ from bearing_sim.recording.foreign_formats import EndsEarly, ForeignTopic, Item,
 from bearing_sim.recording.mcap_format import Message, own_topic
 from bearing_sim.recording.mcap_reader import McapReader
 
-_PIECE = 1 << 20  # [byte] that is unpacked at once
+_PIECE = 1 << 17  # [byte] that is unpacked at once; zstandard takes several times as long for a small message where more is made ready
 _PACKED = {b"\x28\xb5\x2f\xfd": "zstd", b"\x04\x22\x4d\x18": "lz4"}
 """By its first bytes, how a file or a message is compressed; a message in CDR begins with a zero, an MCAP file and a database with others."""
 _UNPACKED_BY = {b"\x1f\x8b": "gunzip -k", b"BZh": "bunzip2 -k", b"\xfd7zXZ": "unxz -k", b"PK\x03\x04": "unzip", b"7z\xbc\xaf": "7z x"}

@@ -4,6 +4,7 @@
 Run it with ``bearing_player LOG.mcap`` or ``python -m bearing_sim.ros.player LOG.mcap``; remappings follow ``--ros-args``.
 """
 
+import math
 import sys
 import time
 from collections import Counter
@@ -255,8 +256,8 @@ def _fields(due: ScheduledMessage, stamp_ns: int) -> dict:
 def progress_of(title: str, total: float) -> Iterator[Callable[[float], None]]:
     """Show progress on stderr, a bar on a terminal, otherwise a line every 10 %; yields the function that takes how much of ``total`` is done."""
     if sys.stderr.isatty():
-        with click.progressbar(length=total, label=title, file=sys.stderr) as bar:
-            yield lambda time: bar.update(time - bar.pos)
+        with click.progressbar(length=math.ceil(total), label=title, file=sys.stderr) as bar:  # which counts whole seconds
+            yield lambda time: bar.update(math.ceil(time) - bar.pos)
         return
     due = 0.1
 

@@ -591,7 +591,7 @@ class HeatDrawing(_Drawing):
 
     @staticmethod
     def _measured(sample: np.void, body: Series) -> str:
-        row = next((row for row in LINES.values() if row.observable == f"{body.observable}_measured"), None)
+        row = LINES.get(f"/temperature/{body.observable}_measured")
         known = row is not None and math.isfinite(sample[row.observable])
         return f", measured {_celsius(float(row.values(sample[row.observable])))}" if known else ""
 

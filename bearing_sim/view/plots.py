@@ -27,12 +27,11 @@ from bearing_sim.messages.topics import (
     largest_loads,
     turns,
 )
-from bearing_sim.scene.display import number, quantity_text, shown
+from bearing_sim.scene.display import RPM, number, quantity_text, shown
 from bearing_sim.scene.fidelity import LEVELS, level_of
 from bearing_sim.scene.scene import NO_CLEARANCE_LIMIT, Scene
 from bearing_sim.view import colours, section
 
-RPM = 30 / math.pi
 RINGS = ("inner", "outer")
 ENDLESS = 1e7  # [h]; a bearing that hardly turns has a life of 1e30 h, which would flatten everything else
 LOG_HOURS = "log10 h"

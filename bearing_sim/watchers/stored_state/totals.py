@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from pydantic import Field, FiniteFloat
+from pydantic import BeforeValidator, Field, FiniteFloat
 
 from bearing_sim.model.turning import turns
 from bearing_sim.scene.ratings import rate
@@ -27,9 +27,16 @@ _LEAST_OF_OPERATING = 0.01  # of the operating speed: a shaft that is made to tu
 _STOPPED = 0.5  # of the speed from which on the shaft runs: below, it has stopped, and the next running is a start
 _HOUR = 3600.0  # [s]
 
+
+def _number(value: object) -> object:
+    if isinstance(value, (bool, str)):
+        raise ValueError("expected a number")
+    return value
+
+
 Amount = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
 """A sum in a state file."""
-Instant = Annotated[int, Field(ge=0, lt=2**63)]
+Instant = Annotated[int, BeforeValidator(_number), Field(ge=0, lt=2**63)]
 """A time [ns since the epoch] or a count in a state file."""
 
 
