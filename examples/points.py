@@ -4,13 +4,13 @@
 import click
 from click import Choice, FloatRange
 
-from bearing_sim.cli.options import csv_option, json_option, option, picture_option, together
+from bearing_sim.cli.options import allow_outside_option, csv_option, json_option, option, picture_option, set_option, together
 from bearing_sim.cli.reporting import print_rows
 from bearing_sim.cli.results import Result
 from bearing_sim.scene.display import number
 
 varied_scene = together(csv_option("Write the results to a table."), picture_option("Draw the results"), json_option)
-scene_or_paper = click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
+scene_or_paper = together(allow_outside_option, click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1"), set_option)
 vibrating_level = option("--level", "Level with vibration.", Choice(["planar", "spatial"]), default="planar")
 
 

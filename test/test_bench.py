@@ -3,6 +3,7 @@
 
 import json
 import math
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,9 +12,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from level_speed import SPEEDS, _print_levels, level_integrators, quantile_error
+from validation.__main__ import main as validation
 
 from bearing_sim.cli.bench import one_core
-from bearing_sim.cli.main import main
+from bearing_sim.cli.main import _MOVED, main
 from bearing_sim.cli.reporting import print_rows
 
 # level spatial goes the same way, but takes minutes to compile
@@ -90,6 +92,15 @@ def test_the_benchmarks_are_listed_and_an_unknown_level_is_refused():
 def test_a_command_that_left_the_program_names_what_to_run_instead(removed, successor):
     refused = CliRunner().invoke(main, [*removed, "deng2017_table1"])
     assert refused.exit_code == 2 and successor in refused.output
+
+
+def test_every_successor_of_a_command_that_left_the_program_is_there():
+    assert not [name for name in _MOVED if name.split()[1] in main.get_command(None, name.split()[0]).list_commands(None)]
+    for successor in _MOVED.values():
+        path, *words = re.search(r"python (.+)", successor)[1].split()
+        place = ROOT / path
+        assert place.is_file() or (place / "__main__.py").is_file(), successor
+        assert path != "test/validation" or words[0] in validation.commands, successor
 
 
 def test_a_table_shows_the_units_of_its_headings(capsys):

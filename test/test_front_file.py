@@ -214,13 +214,13 @@ def test_what_a_front_fits_does_not_hang_on_last_digits_operating_points_and_set
     assert digest_of(HERE.at({"bearing.roller.length": length * (1.0 + 1e-6)})) != digest_of(HERE)
 
 
-def trade(monkeypatch, folder, *words, settings=SETTINGS):
+def trade(monkeypatch, folder, *words, settings=SETTINGS, **more):
     from bearing_sim.studies import trade as study
 
     measured = [
         study.Traded(study.Candidate(one.level, one.detail, ()), one.real_time_factor, Errors(**one.errors), "", one.overrides) for one in settings
     ]
-    found = study.Trade(measured, study.front_of(measured), "planar", Errors(*[1e-4] * 8), study.built_in("manoeuvre", HERE), {})
+    found = study.Trade(measured, study.front_of(measured), "planar", Errors(*[1e-4] * 8), study.built_in("manoeuvre", HERE), {}, **more)
     monkeypatch.setattr(study, "trade", Mock(return_value=found))
     return CliRunner().invoke(main, ["trade", str(folder / "rig.yaml"), *map(str, words)])
 
@@ -261,4 +261,13 @@ def test_trade_writes_no_setting_where_nothing_is_chosen_by_or_none_is_good_enou
     result = trade(monkeypatch, folder, "--chosen", out, "--set", "wants=[life]", "--set", "level=slip")
     assert result.exit_code == 2 and "nothing says what to choose by" in result.output
     result = trade(monkeypatch, folder, "--chosen", out, "--error", 1e-9, "--no-keep")
-    assert result.exit_code != 0 and "no setting is that fast and that accurate" in result.output and not out.exists()
+    assert result.exit_code == 1 and "no setting is that fast and that accurate" in result.output and not out.exists()
+
+
+def test_what_trade_has_measured_is_told_also_where_front_and_chosen_setting_cannot_be_written(folder, monkeypatch):
+    front, out = folder / "other.json", folder / "chosen.yaml"
+    result = trade(monkeypatch, folder, "--front", front, "--json", reference_level="slip")
+    assert result.exit_code == 1 and f"{front} is not written: errors against level slip say nothing" in result.stderr and not front.exists()
+    assert len(json.loads(result.stdout)["settings"]) == len(SETTINGS)
+    result = trade(monkeypatch, folder, "--chosen", out, "--error", 1e-9, "--no-keep")
+    assert "tolerances x 3" in result.stdout

@@ -15,12 +15,11 @@ from bearing_sim import load_scene
 from bearing_sim.sweep.pictures import new_figure
 
 SLOW = ["operating.shaft_speed=5000 rpm", "operating.radial_load=2 kN"]
-QUIET = {"progress": lambda text: None}
 
 
 @pytest.fixture(scope="module")
 def found():
-    points = misalign("deng2017_table1", SLOW, [0.0, 1e-3, 3e-3], turns=(6.0, 4.0), **QUIET)
+    points = misalign("deng2017_table1", SLOW, [0.0, 1e-3, 3e-3], turns=(6.0, 4.0))
     return {(one.crown, round(1e3 * one.misalignment)): one for one in points}
 
 
@@ -57,7 +56,7 @@ def test_life_by_slices_in_motion_is_near_that_of_quasi_static_balance(found):
 
 def test_results_settle_as_a_crowned_roller_is_cut_finer():
     scene = load_scene("deng2017_table1", [*SLOW, "level=spatial", "bearing.roller.crown=iso_log", "operating.misalignment=1 mrad"])
-    few, some, many = by_slices(scene, 0.1, 0.06, (10, 30, 100), **QUIET)
+    few, some, many = by_slices(scene, 0.1, 0.06, (10, 30, 100))
     for name, gain in (("l10r", 2), ("static_l10r", 5)):  # in motion the life always takes 40 laminae
         rough, fine, finest = (getattr(one, name) for one in (few, some, many))
         assert abs(fine / finest - 1) < 0.08  # 30 slices, as many as the standard asks for

@@ -2,6 +2,7 @@
 """No output of any command destroys a file of its user; ``python test/benchmarks/output_walk.py`` kills commands and fills disks."""
 
 import errno
+import json
 import os
 import signal
 import stat
@@ -16,8 +17,10 @@ from click.testing import CliRunner
 from output_cases import CASES, commands, file_name, outputs
 
 from bearing_sim.cli.main import main
+from bearing_sim.cli.options import csv_option, json_option, picture_option
 from bearing_sim.cli.outputs import OutputFile, OutputFolder, OutputJournal, OutputWithJournal
-from bearing_sim.cli.results import Command
+from bearing_sim.cli.reporting import note
+from bearing_sim.cli.results import Command, Result, command
 from bearing_sim.files.outputs import Output, RefusedOutput, protecting_inputs, remember_input, rename_without_replacing, replaced
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, require_same_study, study_digest, write_table
@@ -120,6 +123,46 @@ def test_an_output_never_replaces_an_input_by_whatever_name(name, option, tmp_pa
                 assert result.exit_code == 2 and "is an input of this command" in result.output, result.output
             assert path.read_bytes() == OLD
             written.unlink()
+
+
+def drawing(fails):
+    """Return a command that writes a file of its own, a table and a picture, whose drawing may fail."""
+
+    @command("draw")
+    @csv_option("Write a table.")
+    @picture_option("Draw it")
+    @json_option
+    def found():
+        def draw(draft):
+            if fails:
+                raise OSError(errno.EIO, "the disk has failed")
+            draft.write_bytes(b"drawn")
+
+        return Result(
+            {"slip": 0.5, "picture": None, "files": None, "kept": None},
+            lambda: click.echo("slip 0.5"),
+            draw,
+            [{"slip": 0.5}],
+            files=["own.txt"],
+            warnings=["outside of its range"],
+            after=lambda: note("after it"),
+        )
+
+    return found
+
+
+@pytest.mark.parametrize("fails", [False, True])
+@pytest.mark.parametrize("as_json", [False, True])
+def test_a_result_is_told_with_its_warnings_and_the_files_written_also_where_its_picture_cannot_be_drawn(fails, as_json, tmp_path):
+    table, picture = str(tmp_path / "a.csv"), str(tmp_path / "a.png")
+    told = CliRunner().invoke(drawing(fails), ["-o", table, "--picture", picture, *(["--json"] if as_json else [])])
+    written = ["own.txt", table] + ([] if fails else [picture])
+    if as_json:
+        assert json.loads(told.stdout) == {"slip": 0.5, "picture": None if fails else picture, "files": written, "kept": None}
+    else:
+        assert told.stdout.splitlines() == ["slip 0.5", ", ".join(written)]
+    assert told.stderr.startswith("warning: outside of its range\nafter it\n") and ("the disk has failed" in told.stderr) == fails
+    assert (told.exit_code != 0) == fails and os.path.exists(picture) != fails
 
 
 def test_two_outputs_of_a_command_are_two_files(tmp_path):

@@ -146,3 +146,10 @@ def test_an_option_out_of_its_bounds_is_refused_with_the_bounds_in_its_unit(argu
 @pytest.mark.parametrize("command", ["uncertainty", "trade"])
 def test_a_removed_option_is_refused_with_its_successor(command):
     assert "--csv is no longer an option; give -o, --out instead" in called(command, "deng2017_table1", "--csv", "a.csv", code=2)
+
+
+@pytest.mark.parametrize("words", [["--against-slip", "5"], ["--seed", "3", "--against-slip", "5"]])
+def test_the_comparison_with_level_slip_that_left_table_names_what_to_run_instead(words):
+    refused = called("table", "deng2017_table1", *words, code=2)
+    assert f"{words[0]} is no longer an option" in refused
+    assert "bearing-sim trade SCENE --level steady --against slip" in refused and "python test/validation against-slip SCENE" in refused

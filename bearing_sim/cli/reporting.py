@@ -184,13 +184,13 @@ def unknown_report(profile) -> dict:
     return {"read": profile.tally.report(), **seconds, "verdict": profile.verdict}
 
 
-def scene_of_point(name: str, overrides: Sequence[str], level: str | None = None, fields: Sequence[str] = (), before_results: bool = True):
+def scene_of_point(name: str, overrides: Sequence[str], level: str | None = None, before_results: bool = True):
     """Return a scene as `scene_of` for results in thermal equilibrium, and print what is implausible about it as `warn_of_scene`.
 
-    An oil temperature that its network computes is refused, among the overrides and further fields (`refuse_idle_temperature`).
+    An oil temperature that its network computes is refused among the overrides (`refuse_idle_temperature`).
     """
     scene = scene_of(name, overrides, level)
-    refuse_idle_temperature(scene, [*overrides, *fields])
+    refuse_idle_temperature(scene, overrides)
     warn_of_scene(scene, before_results)
     return scene
 

@@ -55,9 +55,9 @@ class Result(NamedTuple):
                 self.show()
                 for remark in [*self.remarks, *([", ".join(written)] if written else [])]:
                     click.echo(remark)
-        warn(self.warnings)
-        if self.after is not None:
-            self.after()
+            warn(self.warnings)
+            if self.after is not None:
+                self.after()
         if self.ending is not None:
             raise self.ending
         if self.code:

@@ -312,7 +312,7 @@ def _courses_report(scene, found) -> dict:
     return {"scene": scene.name, **found._asdict(), "courses": courses, "loadings": [each._asdict() for each in found.loadings]}
 
 
-_INSTANTS = 12  # instants of a course
+_INSTANTS = 12  # of a course that are printed
 
 
 def _print_course(scene, found, load) -> None:

@@ -21,6 +21,8 @@ from bearing_sim.cli.reporting import (
 from bearing_sim.cli.results import Result, command
 from bearing_sim.scene.display import SHOWN, force, number, quantity_text, shown
 
+_AGAINST_SLIP = "bearing-sim trade SCENE --level steady --against slip, or, from a checkout, python test/validation against-slip SCENE"
+
 
 @command("table")
 @scene_options
@@ -29,9 +31,8 @@ from bearing_sim.scene.display import SHOWN, force, number, quantity_text, shown
 @option("--at", "points", "Show this operating point, interpolated and solved; can be repeated.", multiple=True, metavar="RPM,N[,DEGC[,DEG]]")
 @option("-o", "--out", "Also write the table to this file, for another machine.", OutputFile(), metavar="FILE.npz")
 @option("--from", "shared", "Build nothing: keep the table that another machine has written for this scene with -o.", PATH, metavar="FILE.npz")
-@removed_option(
-    "--against-slip", "bearing-sim trade SCENE --level steady --against slip, or, from a checkout, python test/validation against-slip SCENE"
-)
+@removed_option("--against-slip", _AGAINST_SLIP)
+@removed_option("--seed", _AGAINST_SLIP)
 @flag("--bands", "Instead build the response to the uncertain fields, from which bands and calibration follow, or show it.")
 @option("--dask", "Compute that response on this Dask cluster, such as tcp://10.0.0.1:8786.", metavar="ADDRESS")
 @json_option

@@ -124,11 +124,17 @@ def trade(
             found = trade(scene_name, overrides, levels, quick, points.update, against, course, journal and journal.path, workers)
         except IntegrationError as failure:
             raise FailedRun(f"the reference failed: {failure}") from None
-    kept, written = _store(scene, found, keep and not quick, front and front.path)
+    kept = _keep(scene, found) if keep and not quick else None
     best = recommend(found, factor, error) if factor is not None or error is not None else None
-    remarks = [f"added to {written.path} ({_courses_in(written)})"] if written is not None else []
-    if chosen is not None:
-        remarks.append(_write_chosen(chosen, scene, scene_name, found, best, by_wants=factor is None and error is None))
+    written, remarks, ending = None, [], None
+    try:
+        if front is not None:
+            written = _add_to_front(front.path, scene, found)
+            remarks.append(f"added to {written.path} ({_courses_in(written)})")
+        if chosen is not None:
+            remarks.append(_write_chosen(chosen, scene, scene_name, found, best, by_wants=factor is None and error is None))
+    except FailedRun as failure:  # what was measured is told nevertheless
+        ending = failure
 
     def show():
         print_trade(scene_name, found)
@@ -137,7 +143,7 @@ def trade(
         _print_advice(found, factor, error, best)
 
     report = _report(found) | {"recommended": best and best.setting.name, "kept": kept and str(kept.path), "front": written and str(written.path)}
-    return Result(report, show, lambda draft: draw(draft, scene_name, found), rows_of(found), remarks)
+    return Result(report, show, lambda draft: draw(draft, scene_name, found), rows_of(found), remarks, ending=ending)
 
 
 def _require_use(scene, front, chosen, factor, error, quick) -> None:
@@ -159,27 +165,36 @@ def _courses_in(front) -> str:
     return ", ".join(dict.fromkeys(course.name for course in front.courses))
 
 
-def _store(scene, found, keep: bool, front: Path | None):
-    """Keep the settings of a trade in the cache and in a front file; return what each holds then, or None."""
-    from bearing_sim.scene import measured_tradeoffs
+def _why_incomplete(found) -> str:
+    return f"errors against level {found.reference_level} say nothing of what it leaves out; leave out --against, or give planar"
+
+
+def _keep(scene, found):
+    """Keep the settings of a trade for later; return what is kept for the bearing, or None where that cannot be or says nothing."""
+    from bearing_sim.scene.measured_tradeoffs import keep
     from bearing_sim.studies.trade import measured_course
 
     if not found.is_complete:
-        reason = f"errors against level {found.reference_level} say nothing of what it leaves out; leave out --against, or give planar"
-        if front is not None:
-            raise FailedRun(f"{front} is not written: {reason}")
-        if keep:
-            note(f"not kept: {reason}")
-        return None, None
-    course, kept = measured_course(found), None
+        note(f"not kept: {_why_incomplete(found)}")
+        return None
     try:
-        kept = measured_tradeoffs.keep(scene, course) if keep else None
+        return keep(scene, measured_course(found))
     except OSError as failure:
         note(f"warning: the settings are not kept: {failure}")
+        return None
+
+
+def _add_to_front(path: Path, scene, found):
+    """Add the settings of a trade to a front file; return what it holds then, or raise `FailedRun`."""
+    from bearing_sim.scene.measured_tradeoffs import add_to_front
+    from bearing_sim.studies.trade import measured_course
+
+    if not found.is_complete:
+        raise FailedRun(f"{path} is not written: {_why_incomplete(found)}")
     try:
-        return kept, front and measured_tradeoffs.add_to_front(front, scene, course)
+        return add_to_front(path, scene, measured_course(found))
     except (ValueError, OSError) as failure:
-        raise FailedRun(f"{front} is not written: {failure}") from None
+        raise FailedRun(f"{path} is not written: {failure}") from None
 
 
 def _write_chosen(out, scene, name: str, found, best, by_wants: bool) -> str:

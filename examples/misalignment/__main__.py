@@ -10,15 +10,13 @@ sys.path[:0] = [str(ROOT), str(ROOT / "examples")]
 from click import FloatRange, IntRange  # noqa: E402
 from points import over_points, scene_or_paper, varied_scene  # noqa: E402
 
-from bearing_sim.cli.options import allow_outside_option, option, set_option  # noqa: E402
+from bearing_sim.cli.options import option  # noqa: E402
 from bearing_sim.cli.reporting import announce_compilation, as_usage_error, progress_bar  # noqa: E402
 from bearing_sim.cli.results import command  # noqa: E402
 
 
 @command("misalignment")
-@allow_outside_option
 @scene_or_paper
-@set_option
 @option("--largest", "Largest misalignment.", FloatRange(0.0, 20.0), default=3.0, metavar="MRAD")
 @option("--points", "Number of misalignments, starting at 0.", IntRange(2, 1000), default=7)
 @option("--crown", "crowns", "Value of bearing.roller.crown; can be repeated [default: none, iso_log].", multiple=True, metavar="LAW")
@@ -32,10 +30,9 @@ def misalignment(scene_name, overrides, largest, points, crowns, slices):
     from misalignment.misaligned_rings import CROWNS, draw, misalign
 
     crowns = crowns or CROWNS
-    done = iter(range(points * len(crowns) + 1))
     amounts = [round(float(each), 9) for each in 1e-3 * np.linspace(0.0, largest, points)]
     with progress_bar("points", points * len(crowns)) as show, as_usage_error(ValueError):
-        found = misalign(scene_name, overrides, amounts, crowns, slices, progress=lambda name: show(next(done)))
+        found = misalign(scene_name, overrides, amounts, crowns, slices, progress=show)
     title = f"{' '.join([scene_name, *overrides])}: misalignment of the inner ring, {slices} laminae"
     return over_points(
         f"{scene_name}: misalignment of the inner ring, level spatial",

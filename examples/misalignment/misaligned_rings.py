@@ -4,6 +4,7 @@
 Each point is a settled run of level ``spatial``, shown with the quasi-static balance by slices.
 """
 
+import itertools
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -43,7 +44,7 @@ def misalign(
     crowns: Sequence[str] = CROWNS,
     slices: int = 30,
     turns: tuple[float, float] = (50.0, 20.0),
-    progress: Callable[[str], None] = print,
+    progress: Callable[[int], None] = lambda done: None,
 ) -> list[Misaligned]:
     """Run a scene with each crown at each misalignment.
 
@@ -54,7 +55,7 @@ def misalign(
     crowns : values of ``bearing.roller.crown``.
     slices : per roller of the quasi-static balance; laminae of the life and pressures in motion.
     turns : of the cage, before and during the averaging.
-    progress : called with the name of each point.
+    progress : called with the number of finished points.
 
     Raises
     ------
@@ -66,11 +67,10 @@ def misalign(
         A run stopped early.
     """
     found = []
-    for crown in crowns:
-        for misalignment in misalignments:
-            progress(f"crown {crown}, {1e3 * misalignment:g} mrad")
-            own = ("level=spatial", f"bearing.roller.crown={crown}", f"life.laminae={slices}", f"operating.misalignment={misalignment!r}")
-            found.append(_run(load_scene(name, [*overrides, *own]), crown, misalignment, slices, turns))
+    for crown, misalignment in itertools.product(crowns, misalignments):
+        own = ("level=spatial", f"bearing.roller.crown={crown}", f"life.laminae={slices}", f"operating.misalignment={misalignment!r}")
+        found.append(_run(load_scene(name, [*overrides, *own]), crown, misalignment, slices, turns))
+        progress(len(found))
     return found
 
 

@@ -11,15 +11,13 @@ sys.path[:0] = [str(ROOT), str(ROOT / "examples")]
 from click import IntRange  # noqa: E402
 from points import over_points, scene_or_paper, speed_option, varied_scene, vibrating_level  # noqa: E402
 
-from bearing_sim.cli.options import allow_outside_option, option, set_option  # noqa: E402
+from bearing_sim.cli.options import option  # noqa: E402
 from bearing_sim.cli.reporting import UsageError, announce_compilation, progress_bar, scene_of  # noqa: E402
 from bearing_sim.cli.results import command  # noqa: E402
 
 
 @command("resonances")
-@allow_outside_option
 @scene_or_paper
-@set_option
 @speed_option("--from", "lowest", "Lowest", otherwise=" [default: 0.5 of the scene's]")
 @speed_option("--to", "highest", "Highest", otherwise=" [default: 1.3 of the scene's]")
 @option("--points", "Number of speeds.", IntRange(2, 1000), default=33)

@@ -11,15 +11,13 @@ sys.path[:0] = [str(ROOT), str(ROOT / "examples")]
 from click import IntRange  # noqa: E402
 from points import over_points, scene_or_paper, speed_option, varied_scene, vibrating_level  # noqa: E402
 
-from bearing_sim.cli.options import allow_outside_option, option, set_option  # noqa: E402
+from bearing_sim.cli.options import option  # noqa: E402
 from bearing_sim.cli.reporting import announce_compilation, progress_bar  # noqa: E402
 from bearing_sim.cli.results import command  # noqa: E402
 
 
 @command("response_over_speed")
-@allow_outside_option
 @scene_or_paper
-@set_option
 @speed_option("--from", "lowest", "Lowest", 10000.0)
 @speed_option("--to", "highest", "Highest", 52000.0)
 @option("--points", "Number of speeds.", IntRange(2, 1000), default=29)
@@ -35,10 +33,9 @@ def response_over_speed(scene_name, overrides, lowest, highest, points, level):
     announce_compilation()
     from response_over_speed.responses import draw, relative_damage, respond
 
-    done = iter(range(3 * points + 1))
     speeds = [float(each) for each in np.linspace(lowest, highest, points) * (math.pi / 30)]
     with progress_bar("points", 3 * points) as show:
-        found = respond(scene_name, overrides, speeds, level, progress=lambda name: show(next(done)))
+        found = respond(scene_name, overrides, speeds, level, progress=show)
     relative = relative_damage(found)
     title = f"response over speed, level {level}"
     return over_points(

@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Response over speed: how a bearing vibrates on its support, beside the same bearing in a rigid housing and in quasi-static balance."""
 
+import itertools
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -34,7 +35,7 @@ def respond(
     overrides: Sequence[str],
     shaft_speeds: Sequence[float],
     level: str = "planar",
-    progress: Callable[[str], None] = print,
+    progress: Callable[[int], None] = lambda done: None,
 ) -> list[Response]:
     """Run a scene over speeds at level ``slip``, and at a level with vibration in a rigid housing and on its support.
 
@@ -43,7 +44,7 @@ def respond(
     name, overrides : of the scene, as `bearing_sim.scene.loader.load_scene` takes them; a support that yields is `support.elastic` if it has none.
     shaft_speeds : [rad/s], not 0.
     level : ``planar`` or ``spatial``.
-    progress : called with the name of each point.
+    progress : called with the number of finished points.
 
     Raises
     ------
@@ -62,10 +63,9 @@ def respond(
         CARRIED: (*carried, f"level={level}"),
     }
     found = []
-    for speed in shaft_speeds:
-        for model, own in models.items():
-            progress(f"{speed * RPM:.0f} rpm, {model}")
-            found.append(_run(load_scene(name, [*overrides, *own, f"operating.shaft_speed={speed!r} rad/s"]), model))
+    for speed, (model, own) in itertools.product(shaft_speeds, models.items()):
+        found.append(_run(load_scene(name, [*overrides, *own, f"operating.shaft_speed={speed!r} rad/s"]), model))
+        progress(len(found))
     return found
 
 

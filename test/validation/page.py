@@ -74,7 +74,7 @@ def markdown_page(results: Sequence[Result], made_by: str) -> str:
     parts += [_markdown_table(("compared with what", "figures", "hold", "in part", "do not", "sources, among others"), _group_rows(results))]
     parts += [
         "## What does not hold, or in part",
-        _markdown_table(("what", "compared with", "expected", "found", "deviation", "verdict", "command"), off),
+        _markdown_table(_MISSED_HEADINGS, off),
     ]
     parts += ["## Open data that would validate slip", _NOT_RUN_HERE, _markdown_table(_DATA_HEADINGS, _data_rows(code="`"))]
     parts += ["## Details", "\n".join(f"- [{name.replace('_', ' ')}](validation/{name}.md): {text}" for name, text in _DETAILS)]

@@ -35,7 +35,7 @@ class Sliced(NamedTuple):
 
 
 def by_slices(
-    scene: Scene, settle: float, duration: float, counts: Sequence[int | None] = SLICES, progress: Callable[[str], None] = print
+    scene: Scene, settle: float, duration: float, counts: Sequence[int | None] = SLICES, progress: Callable[[int], None] = lambda done: None
 ) -> list[Sliced]:
     """Run a scene with each number of slices.
 
@@ -44,11 +44,10 @@ def by_slices(
     scene : of level ``spatial``.
     settle, duration : simulated time before and during the averaging [s].
     counts : numbers of slices; None is the quadrature.
-    progress : called with a line of text for each run.
+    progress : called with the number of finished runs.
     """
     found = []
     for count in counts:
-        progress("quadrature" if count is None else f"{count} slices")
         roller = dataclasses.replace(scene.bearing.roller, slices=count)
         cut = dataclasses.replace(scene, bearing=dataclasses.replace(scene.bearing, roller=roller))
         block, step_seconds, factor = _timed(simulation_in_equilibrium(cut), settle, duration)
@@ -65,6 +64,7 @@ def by_slices(
                 factor,
             )
         )
+        progress(len(found))
     return found
 
 
