@@ -248,7 +248,7 @@ def test_trade_refuses_before_it_measures_a_front_of_something_else(folder, monk
 @pytest.mark.parametrize("words", [(), ("--error", 0.1), ("--factor", 3)])
 def test_trade_writes_the_chosen_setting_as_fields_of_a_scene(folder, monkeypatch, words):
     out = folder / "chosen.yaml"
-    result = trade(monkeypatch, folder, "--chosen", out, "--no-keep", *words)
+    result = trade(monkeypatch, folder, "--chosen", out, "--no-keep", *words, settings=SETTINGS[::-1])
     assert result.exit_code == 0, result.output
     fields = yaml.safe_load(out.read_text())
     tree = {**yaml.safe_load(FILE), **fields, "front": None, "wants": []}

@@ -181,5 +181,5 @@ def test_a_folder_that_cannot_be_written_is_a_warning(folder, monkeypatch):
     monkeypatch.setattr("bearing_sim.studies.trade.measured_course", lambda found: course("idle"))
     said = []
     monkeypatch.setattr(command.click, "echo", lambda text, err=False: said.append(text))
-    assert command._store(scene(), Mock(is_complete=True), True, None) == (None, None)
+    assert command._keep(scene(), Mock(is_complete=True)) is None
     assert said[0].startswith("warning: the settings are not kept: ")

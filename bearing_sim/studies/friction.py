@@ -10,6 +10,8 @@ import dataclasses
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from bearing_sim.levels.steady.model import Work, new_work
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.model.sample import NODE_OBSERVABLES
@@ -186,14 +188,20 @@ def moments_of_makers(
     return simple_moment(series, dimensions, speed, load, viscosity, supply.law), skf
 
 
-def _model_moment(scene: Scene, inputs: Inputs, state: OperatingState, work: Work) -> float:
-    """Return the frictional moment of a scene under conditions by level steady [N mm]; errors as of `compare`."""
+def turning_answer(scene: Scene, inputs: Inputs, state: OperatingState, work: Work) -> np.ndarray:
+    """Return the answer of level steady under conditions, see `bearing_sim.levels.steady.operating_point.ANSWER`; errors as of `compare`."""
     if inputs.shaft_speed == 0.0:
         raise ValueError(f"{scene.name}: operating.shaft_speed: 0; friction is compared with makers' models while the shaft turns: give a speed")
     answer, speed = solved_answer(state, inputs, work), abs(inputs.shaft_speed) / _RPM
     if not math.isfinite(answer[ANSWER.cage_slip]):
         raise ValueError(f"{scene.name}: no operating point at {speed:g} rpm and {math.hypot(inputs.load_y, inputs.load_z):g} N")
-    return float(answer[ANSWER.shaft_power]) * 1e3 / (speed * _RPM)
+    return answer
+
+
+def _model_moment(scene: Scene, inputs: Inputs, state: OperatingState, work: Work) -> float:
+    """Return the frictional moment of a scene under conditions by level steady [N mm]; errors as of `compare`."""
+    power, speed = turning_answer(scene, inputs, state, work)[ANSWER.shaft_power], abs(inputs.shaft_speed) / _RPM
+    return float(power) * 1e3 / (speed * _RPM)
 
 
 class Comparison(NamedTuple):

@@ -16,8 +16,8 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs
-from bearing_sim.studies.friction import Dimensions, dimensions_of, moments_of_makers, series_of, simple_moment, skf_moment
-from bearing_sim.sweep.thermal import OperatingState, operating_state, solved_answer
+from bearing_sim.studies.friction import Dimensions, dimensions_of, moments_of_makers, series_of, simple_moment, skf_moment, turning_answer
+from bearing_sim.sweep.thermal import OperatingState, operating_state
 
 _RPM = math.pi / 30.0
 LOADS = (0.02, 0.05, 0.1, 0.2)  # of C_0
@@ -122,11 +122,7 @@ def _moment(scene: Scene, series: str, inputs: Inputs, state: OperatingState, wo
     """Return the moments at one condition, see `moments`."""
     params, lubrication, _ = state
     speed, load = abs(inputs.shaft_speed) / _RPM, math.hypot(inputs.load_y, inputs.load_z)
-    if speed == 0.0:
-        raise ValueError(f"{scene.name}: operating.shaft_speed: 0; friction is compared with makers' models while the shaft turns: give a speed")
-    answer = solved_answer(state, inputs, work)
-    if not math.isfinite(answer[ANSWER.cage_slip]):
-        raise ValueError(f"{scene.name}: no operating point at {speed:g} rpm and {load:g} N")
+    answer = turning_answer(scene, inputs, state, work)
     parts = {name: float(answer[column]) * 1e3 / (speed * _RPM) for name, column in ANSWER._asdict().items() if name.endswith("_power")}
     viscosity = 1e6 * lubrication.kinematic_viscosity
     (viscous, by_load), skf = moments_of_makers(scene, series, speed, load, viscosity, scene.operating.axial_load)
