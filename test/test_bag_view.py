@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Bags that others wrote: what can be shown is, what cannot is said; and measured cages in recordings of ours."""
 
+import inspect
 import math
 
 import numpy as np
@@ -215,7 +216,8 @@ def test_a_measured_clearance_of_another_source_is_known_by_its_joint_or_its_fie
             other.write("/lift", "std_msgs/msg/Float64", START + k * SECOND, {"data": 30.0 - k})
     by_joint = {key: values.tolist() for key, (_, values) in read_bag_series(tmp_path / "probe.mcap").series.items()}
     assert by_joint["clearance", "/probe running_clearance", "µm"] == pytest.approx([20.0, 21.0, 22.0])
-    named, constants = view._lines(clearance="/lift.data", clearance_unit="um")
+    given = dict.fromkeys(inspect.signature(view._lines).parameters) | {"clearance": "/lift.data", "clearance_unit": "um"}
+    named, constants = view._lines(**given)
     series = read_bag_series(tmp_path / "log.mcap", named, constants).series
     assert series["clearance", "/lift.data", "µm"][1].tolist() == pytest.approx([30.0, 29.0, 28.0])
     assert run(tmp_path / "log.mcap", "-o", tmp_path / "a.rrd", "--no-open", "--clearance", "/lift.data", "--clearance-unit", "um").exit_code == 0

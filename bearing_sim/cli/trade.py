@@ -114,7 +114,8 @@ def trade(
 
     overrides = [*overrides, "front=null"]  # a front that is to be written need not be there yet
     scene = scene_of(scene_name, overrides)  # fails before anything is compiled
-    _require_use(scene, front, chosen, factor, error, quick)
+    is_asked = factor is not None or error is not None
+    _require_use(scene, front, chosen, is_asked, quick)
     course = _course(course_name, scene, mapping_name, reading, windows, window_turns, quick)
     announce_compilation()
     from bearing_sim.studies.trade import draw, recommend, trade
@@ -125,14 +126,14 @@ def trade(
         except IntegrationError as failure:
             raise FailedRun(f"the reference failed: {failure}") from None
     kept = _keep(scene, found) if keep and not quick else None
-    best = recommend(found, factor, error) if factor is not None or error is not None else None
+    best = recommend(found, factor, error) if is_asked else None
     written, remarks, ending = None, [], None
     try:
         if front is not None:
             written = _add_to_front(front.path, scene, found)
-            remarks.append(f"added to {written.path} ({_courses_in(written)})")
+            remarks += [f"added to {front} ({_courses_in(written)})"]
         if chosen is not None:
-            remarks.append(_write_chosen(chosen, scene, scene_name, found, best, by_wants=factor is None and error is None))
+            remarks += [_write_chosen(chosen, scene, scene_name, found, best, is_asked)]
     except FailedRun as failure:  # what was measured is told nevertheless
         ending = failure
 
@@ -142,11 +143,11 @@ def trade(
             click.echo(f"kept for this bearing and machine ({_courses_in(kept)}): {kept.path}")
         _print_advice(found, factor, error, best)
 
-    report = _report(found) | {"recommended": best and best.setting.name, "kept": kept and str(kept.path), "front": written and str(written.path)}
+    report = _report(found) | {"recommended": best and best.setting.name, "kept": kept and str(kept.path), "front": written and str(front)}
     return Result(report, show, lambda draft: draw(draft, scene_name, found), rows_of(found), remarks, ending=ending)
 
 
-def _require_use(scene, front, chosen, factor, error, quick) -> None:
+def _require_use(scene, front, chosen, is_asked, quick) -> None:
     """Refuse, before anything is measured, a front that cannot be written and a choice by nothing."""
     if front is not None and quick:
         raise UsageError("--front: --quick measures too little for a front; leave one of them out")
@@ -157,7 +158,7 @@ def _require_use(scene, front, chosen, factor, error, quick) -> None:
             front_to_extend(front.path, scene)
         except ValueError as reason:
             raise UsageError(f"--front {front}: {reason}") from None
-    if chosen is not None and factor is None and error is None and not scene.wanted_errors:
+    if chosen is not None and not (is_asked or scene.wanted_errors):
         raise UsageError("--chosen: nothing says what to choose by; give --factor, --error, or errors in the scene's wants")
 
 
@@ -197,7 +198,7 @@ def _add_to_front(path: Path, scene, found):
         raise FailedRun(f"{path} is not written: {failure}") from None
 
 
-def _write_chosen(out, scene, name: str, found, best, by_wants: bool) -> str:
+def _write_chosen(out, scene, name: str, found, best, is_asked: bool) -> str:
     """Write the fields of a scene file that choose the recommended setting, or the fastest that keeps the errors in wants; say so."""
     from bearing_sim.scene.loader import fields_to_yaml
     from bearing_sim.scene.measured_tradeoffs import Tradeoffs
@@ -207,10 +208,10 @@ def _write_chosen(out, scene, name: str, found, best, by_wants: bool) -> str:
     from bearing_sim.studies.trade import measured_course
 
     course = measured_course(found)
-    if by_wants:
-        fitting = candidates(scene, {each.want: each.error for each in scene.wanted_errors}, Tradeoffs(out.path, (course,)))
-    else:
+    if is_asked:
         fitting = [one for one in course.settings if best is not None and (one.level, one.detail) == best.setting[:2]]
+    else:
+        fitting = candidates(scene, {each.want: each.error for each in scene.wanted_errors}, Tradeoffs(out.path, (course,)))
     setting = next(iter(fitting), None)
     if setting is None:
         raise FailedRun(f"{out} is not written: no setting is that fast and that accurate")

@@ -15,7 +15,7 @@ from bearing_sim.cli.results import command
 from bearing_sim.files.outputs import Output
 
 
-def _lines(speed=None, load=None, cage=None, clearance=None, temperature=None, speed_unit=None, load_unit=None, clearance_unit=None):
+def _lines(speed, load, cage, clearance, temperature, speed_unit, load_unit, clearance_unit):
     """Return by role where its quantity is recorded, and the values [SI] of those that are constant, from texts of options with their units."""
     from bearing_sim.inputs.log import constant, is_constant, source
     from bearing_sim.view.bag import Line
