@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Checks and studies of the code itself: ``python test/validation COMMAND``, from a checkout."""
 
+import functools
 import math
 import sys
 from pathlib import Path
@@ -115,6 +116,27 @@ def against_slip(scene_name, overrides, count, seed):
     agreeing = sum(row["agrees"] for row in rows)
     remark = f"{agreeing} of {count} agree: slip within 2 % or 0.05 points, and life within 2 %"
     return Result({"scene": scene.name, "agreeing": agreeing, "points": rows}, lambda: _print_comparison(rows), remarks=[remark])
+
+
+@command("cold-oil")
+@scene_options
+@json_option
+def cold_oil(scene_name, overrides):
+    """Say which published trends of cages in cold oil the map of `bearing-sim study cold-oil` has for SCENE."""
+    from bearing_sim.simulation import IntegrationError
+    from bearing_sim.studies.cold_oil import SUPPLIES, TEMPERATURES, skid_map
+    from validation.cold_oil_trends import trends
+
+    scene = scene_of(scene_name, overrides)
+    announce_compilation(scene, with_states=True)
+    with as_usage_error(IntegrationError):
+        found = trends(skid_map(scene, SUPPLIES, TEMPERATURES, ()))
+    verdicts = {True: "holds", False: "does not hold", None: "no case on the map"}
+    rows = [(verdicts[each.holds], each.claim, each.figures) for each in found]
+    show = functools.partial(
+        print_rows, f"{scene.name}: published trends with cold oil", ("verdict", "trend", "figures"), rows, words=("verdict", "trend", "figures")
+    )
+    return Result({"scene": scene.name, "trends": [each._asdict() for each in found]}, show)
 
 
 def _print_comparison(rows) -> None:
@@ -478,7 +500,7 @@ def _print_extremes(level, results) -> None:
     print_table(f"extremes at level {level}, {results['core_seconds']:.0f} s of core time", rows)
 
 
-@click.group(commands=[report, scenes, findings, slices, catalog_rules, extremes, nightly, estimator, friction, against_slip])
+@click.group(commands=[report, scenes, findings, slices, catalog_rules, extremes, nightly, estimator, friction, against_slip, cold_oil])
 def main():
     """Check and study the model itself, against what is independent of it."""
 
