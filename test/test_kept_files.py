@@ -36,7 +36,7 @@ QUALITY = Quality(*(kind(1) for kind in Quality.__annotations__.values()))
 
 
 def _front(folder):
-    errors = {"slip": 1.9, "largest_slip": 3.8, "load": math.nan}
+    errors = dict.fromkeys(measured_tradeoffs.ERRORS, math.nan) | {"slip": 1.9, "largest_slip": 3.8}
     extent = {"shaft_speed": (1000.0, 5000.0), "radial_load": (400.0, 800.0), "oil_temperature": (370.0, 380.0)}
     setting = Setting("slip", "tolerances x 1", ("integration.fixed_step=null",), 12.0, errors)
     measured_tradeoffs.keep(SCENE, MeasuredCourse("idle", "planar", errors, extent, (setting,)))
