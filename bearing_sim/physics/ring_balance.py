@@ -36,9 +36,9 @@ from bearing_sim.physics.load_balance import LOAD, squeezed_roller
 from bearing_sim.physics.raceway import contour_at
 
 _CENTRING_STIFFNESS = 1e3  # N/m, of rings that nothing holds, as in `bearing_sim.physics.load_balance` (assumption)
-_ITERATIONS, _HALVINGS = 100, 30
-_RELATIVE_RESIDUAL = 1e-6  # of the load, as for a rigid ring
-_HOLDING_STIFFNESS = 1e6  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
+_ITERATIONS, _HALVINGS = 100, 12
+_RELATIVE_RESIDUAL, _LEAST_RESIDUAL = 1e-6, 1e-3  # of the load, as for a rigid ring; N, of a light load
+_HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
 _PIVOTS = 2000  # changes of sides at most
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
 _SERVES = 0.2  # of the residual before, that a compliance of a moment ago has to leave at most
@@ -315,6 +315,8 @@ def _write_system(elastic, loads, bending):
         bending.sides[k] = bending.touching[k]
         for i in range(first):
             system[k, i] = tableau[k, i]
+        for i in range(first, size):
+            system[k, i] = 0.0
     for k in range(first, size):
         bending.sides[k] = 0
         for i in range(size):
@@ -349,18 +351,17 @@ def _write_system(elastic, loads, bending):
             direction = loads[LOAD.cosine + axis, j]
             system[size - 2 + axis, row], system[row, size - 2 + axis] = -direction, direction
     for axis in range(2):
-        system[size - 2 + axis, size - 2 + axis] = _HOLDING_STIFFNESS
+        system[size - 2 + axis, size - 2 + axis] = _CENTRING_STIFFNESS
     bending.state[0] = 1.0
 
 
 @kernel
-def _correct_all(y, z, load_y, load_z, shrunk, stiffness, profile, elastic, loads, bending):
+def _correct_all(load_y, load_z, shrunk, stiffness, profile, elastic, loads, bending):
     """Write the correction by all equations with rollers as springs; return whether it was found, and the inner ring's position y, z [m].
 
     Parameters
     ----------
-    y, z : of the inner ring [m].
-    load_y, load_z : radial load on it [N].
+    load_y, load_z : radial load on the inner ring [N].
     shrunk, stiffness, profile, elastic, loads, bending : as of `balance_elastic_ring`.
     """
     _write_system(elastic, loads, bending)
@@ -392,8 +393,7 @@ def _correct_all(y, z, load_y, load_z, shrunk, stiffness, profile, elastic, load
         given[first + j] = right[j]
     given[points] += _HOLDING_STIFFNESS * bending.state[1]
     given[points + 1] += _HOLDING_STIFFNESS * bending.state[2]
-    held = _HOLDING_STIFFNESS - _CENTRING_STIFFNESS
-    given[size - 2], given[size - 1] = load_y + held * y, load_z + held * z
+    given[size - 2], given[size - 1] = load_y, load_z
     for j in range(rollers):
         if loads[LOAD.slope, j] > 0.0:
             _pivot(first + j, system)
@@ -544,7 +544,7 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     _look_from_rollers(turn, elastic, bending)
     y, z = ring[0] + bending.points[POINT.force, points], ring[1] + bending.points[POINT.force, points + 1]
     before = math.inf
-    allowed = _RELATIVE_RESIDUAL * (math.hypot(load_y, load_z) + 1.0)
+    allowed = _RELATIVE_RESIDUAL * math.hypot(load_y, load_z) + _LEAST_RESIDUAL
     fine, force_y, force_z, residual = _evaluate(y, z, load_y, load_z, shrunk, stiffness, profile, elastic, loads, bending)
     for _ in range(_ITERATIONS):
         start_x_y, start_x_z = bending.points[POINT.force, points], bending.points[POINT.force, points + 1]
@@ -563,7 +563,7 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
         if serves:
             fine, step_y, step_z = _correct_carrying(force_y, force_z, elastic, loads, bending)
         else:
-            fine, step_y, step_z = _correct_all(y, z, load_y, load_z, shrunk, stiffness, profile, elastic, loads, bending)
+            fine, step_y, step_z = _correct_all(load_y, load_z, shrunk, stiffness, profile, elastic, loads, bending)
             step_y, step_z = step_y - y, step_z - z
         if not fine:
             return False
