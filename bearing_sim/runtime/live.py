@@ -35,7 +35,7 @@ from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import IntegrationError, Simulation
-from bearing_sim.watchers.monitoring.watchers import NOTHING, Run, Watcher, Watchers
+from bearing_sim.watchers.monitoring.watchers import MEMORY, NOTHING, Run, Watcher, Watchers
 
 _REPLACED_WITHIN = 10.0  # [s] for the reset of a model that is held
 _CLOCKS = 3  # times 0 by clocks before the present one under which a recording may have its stamps
@@ -213,13 +213,12 @@ class Model(Run):
         self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
         self.watchers.adjust(thresholds)
 
-    def replace_bearing(self, name: str, change: Callable[[], Watcher]) -> None:
+    def replace_bearing(self, change: Callable[[], Watcher]) -> None:
         """Continue with another bearing of the same scene, in ideal rolling at the present inputs.
 
         Parameters
         ----------
-        name : of the watcher that remembers bearings.
-        change : ends that of the present bearing, which by then has seen all its samples, and returns that of the other one.
+        change : ends the watcher that remembers the present bearing, which by then has seen all its samples, and returns that of the other one.
 
         Raises
         ------
@@ -231,7 +230,7 @@ class Model(Run):
             if not self.solver.hold():
                 raise OSError("the model is busy and did not stop within two seconds; call the service again")
             self._take(self.solver.take(), 0.0 if self.solver.newest is None else float(self.solver.newest["time"]))
-            self.watchers.replace(name, change())
+            self.watchers.replace(MEMORY, change())
             self.solver.continue_from(self.watchers.memory.life_used)
             self.solver.reset(_REPLACED_WITHIN)
             self.watchers.begin()
