@@ -547,10 +547,8 @@ class LiveModel(Model):
         self._conflicts[channel].take(values[:1] if channel in topics.MEASURED_CHANNELS else values)
         if channel in topics.MEASURED_CHANNELS:
             reading, origin = self.gate.latest(channel), topics.Origin(stamp_ns, frame_id)
-            if channel == topics.MEASURED_CLEARANCE:
-                self.write(MeasuredClearance(now, *reading, origin), now)
             for record in self.watchers.hear(channel, now, *reading):
-                self.write(record._replace(origin=origin) if isinstance(record, Measurement) else record, now)
+                self.write(record._replace(origin=origin) if isinstance(record, (Measurement, MeasuredClearance)) else record, now)
         # Speed starts the model: the scene has sensible values of load and temperature, but a wrong speed would be a false jolt.
         elif self.gate.accepted["shaft_speed"]:
             self.solver.post(self.gate.held)

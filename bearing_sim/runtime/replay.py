@@ -15,7 +15,7 @@ import numpy as np
 from bearing_sim.inputs.profile import InputProfile
 from bearing_sim.messages.bands import BANDS, Bands
 from bearing_sim.messages.diagnostics import condition, further_condition
-from bearing_sim.messages.events import FOR_KEEPING, Event, MeasuredClearance, Record, Report
+from bearing_sim.messages.events import FOR_KEEPING, Event, Record, Report
 from bearing_sim.messages.topics import MEASURED, MEASURED_CLEARANCE
 from bearing_sim.model.sample import joined
 from bearing_sim.model.turning import SLIP_FROM_SPEED, Use, slip_statistics, slipping_seconds, turns, use_of
@@ -312,7 +312,7 @@ class _Run(Run):
 
     def _report(self, sample, moment: float) -> None:
         """Write a change of the bearing's condition at once, and the condition once a second."""
-        changes = self._changes.take(moment, self.watchers.events(moment, told=False))
+        changes = self._changes.update(moment, self.watchers.events(moment, told=False))
         if changes or moment >= self._next_report:
             self._flush(moment)  # their events come first
         for event in changes:
@@ -354,8 +354,6 @@ class _Run(Run):
         measurements, events = self._pending_measurements, self._pending_events
         while measurements and measurements[0][1] <= moment:
             channel, *reading = measurements.popleft()
-            if channel == MEASURED_CLEARANCE:
-                self.write(MeasuredClearance(*reading), moment)
             for record in self.watchers.hear(channel, *reading):
                 self.write(record, moment)
         while events and events[0].time <= moment:

@@ -20,7 +20,7 @@ import numpy as np
 from bearing_sim.inputs.gate import REQUIRED, ClockJumpFilter, InputGate, Message, Verdict
 from bearing_sim.inputs.profile import OnlineInputProfile, gap_event
 from bearing_sim.messages import topics
-from bearing_sim.messages.events import Event, Level, MeasuredClearance
+from bearing_sim.messages.events import Event, Level
 from bearing_sim.runtime.advance_segment import pass_on, put_at_start
 from bearing_sim.runtime.live import Model, Published
 from bearing_sim.runtime.sink_registry import Sink
@@ -410,8 +410,6 @@ class SimTimeModel(Model):
 
     def _measure(self, channel: str, time: float, value: float, standard_error: float) -> None:
         """Take a measurement of one of `bearing_sim.messages.topics.MEASURED_CHANNELS` and its standard error [SI] of a run time [s]."""
-        if channel == topics.MEASURED_CLEARANCE:
-            self.write(MeasuredClearance(time, value, standard_error), time)
         for record in self.watchers.hear(channel, time, value, standard_error):
             self.write(record, time)
 

@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.messages.bands import Bands
-from bearing_sim.messages.events import Event, Level, Record
+from bearing_sim.messages.events import Event, Level, MeasuredClearance, Record
+from bearing_sim.messages.topics import MEASURED_CLEARANCE
 from bearing_sim.model.sample import joined
 from bearing_sim.model.validity import Exceedance
 from bearing_sim.scene.scene import Scene, Thresholds
@@ -434,8 +435,9 @@ class Watchers:
         self._all("begin")
 
     def hear(self, channel: str, time: float, value, standard_error: float = math.nan) -> list[Record]:
-        """Pass a measurement on and return what sinks are to keep."""
-        return [record for _, records in self._each(time, "hear", channel, time, value, standard_error) for record in records]
+        """Pass a measurement on and return what sinks are to keep: a clearance itself, and what the watchers make of it."""
+        own = [MeasuredClearance(time, value, standard_error)] if channel == MEASURED_CLEARANCE else []
+        return own + [record for _, records in self._each(time, "hear", channel, time, value, standard_error) for record in records]
 
     def correct(self, block: np.ndarray, seconds: np.ndarray) -> None:
         """Let samples be changed before anybody sees or keeps them."""
