@@ -332,10 +332,10 @@ class SimTimeModel(Model):
         if event is not None:
             self._note(event)
             return event
-        for returned in self.gate.take_returned():
+        for returned in self.gate.drain_returned():
             self._note(returned)
         self._newest[channel] = stamp
-        self._conflicts[channel].take(values[:1] if channel in topics.MEASURED_CHANNELS else values)
+        self._conflicts[channel].receive(values[:1] if channel in topics.MEASURED_CHANNELS else values)
         if channel in topics.MEASURED_CHANNELS:
             if self._started:
                 self._measure(channel, self.run_time(stamp), *self.gate.latest(channel))
@@ -385,7 +385,7 @@ class SimTimeModel(Model):
             self._jump_filter.reach(self._clock.now)
             self.solver.see_clock(self._clock.now, self._clock.settled(self._wall()), self._expected)
 
-    def _take(self, items: Iterable, now: float) -> None:
+    def _pass_on(self, items: Iterable, now: float) -> None:
         for item in items:
             if isinstance(item, Start):
                 self._start(item.start_ns)

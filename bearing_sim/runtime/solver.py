@@ -133,7 +133,7 @@ class Solver:
             self._threads.wake(self)
             return self._changed.wait_for(lambda: not self._threads.is_running(self), timeout)
 
-    def take(self) -> list[Item]:
+    def drain(self) -> list[Item]:
         """Return the results since the last call, oldest first."""
         return [self._queue.popleft() for _ in range(len(self._queue))]
 
@@ -507,12 +507,12 @@ class SimTimeSolver(Solver):
                 self._reset_done()
             self._threads.wake(self)
 
-    def take(self) -> list[Item]:
+    def drain(self) -> list[Item]:
         """Return the results since the last call, oldest first, and make room for more."""
         with self._changed:
-            taken = super().take()
+            drained = super().drain()
             self._threads.wake(self)
-        return taken
+        return drained
 
     @property
     def failed_ticks(self) -> int:
@@ -582,7 +582,7 @@ class SimTimeSolver(Solver):
         if len(self._queue) >= self._capacity:
             return None, None
         if self._items is None:
-            segment = None if self._run.given_up else self._profile.take(self._known_until())
+            segment = None if self._run.given_up else self._profile.claim(self._known_until())
             if segment is None:
                 self._busy_since = None
                 return None, None
