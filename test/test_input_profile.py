@@ -208,9 +208,9 @@ def test_a_set_of_the_oil_temperature_is_nothing_to_wait_for_and_acts_from_its_i
         profile.add("radial_load", stamp, (800.0, 0.0))
     profile.set_oil_temperature(T0 + SECOND // 2, 310.0)
     assert profile.known_until(T0 + 2 * SECOND, T0, []) == T0 + 2 * SECOND
-    first = profile.take(T0 + SECOND)
+    first = profile.claim(T0 + SECOND)
     profile.set_oil_temperature(T0 + SECOND // 2, 320.0)
-    second = profile.take(T0 + 2 * SECOND)
+    second = profile.claim(T0 + 2 * SECOND)
     assert first.inputs[:, 3].tolist() == [300.0] * 6 + [310.0] * 5 and set(second.inputs[:, 3]) == {320.0}
     assert sum(map(len, (first.arrived, second.arrived))) == 5, "start, the temperature before the first set, two sets, end"
 
@@ -247,7 +247,7 @@ def test_a_run_under_way_has_the_measured_temperatures_of_the_whole_log_however_
     taken, until = [], T0
     while until < T0 + 60 * SECOND:
         until = min(until + whole.randrange(1, 5 * SECOND), T0 + 60 * SECOND)
-        while (part := profile.take(until)) is not None:
+        while (part := profile.claim(until)) is not None:
             taken.append(part)
     instants, found = np.concatenate([part.instants for part in taken]), np.concatenate([part.inputs for part in taken])
     expected = inputs_at(instants, Messages(stamps, values), LIMITS, 300.0)

@@ -445,7 +445,7 @@ def test_another_bearing_begins_anew_and_the_state_of_the_first_is_kept(tmp_path
         kept.append(run.keeper.retire(into_archive=True))
         return StateKeeper(tmp_path / "a.json", SCENE, "B2")
 
-    run.live.replace_bearing("state", change)
+    run.live.replace_bearing(change)
     first, run.damages = run.damages, []
     run.feed(0.2)
     run.live.close()

@@ -139,7 +139,9 @@ class Gathering(Watcher):
         raise ZeroDivisionError("on purpose")
 
 
-@pytest.mark.parametrize("act", [lambda watchers: watchers.hear("cage_speed_measured", 0.0, 1.0), lambda watchers: watchers.serve("accept_change")])
+@pytest.mark.parametrize(
+    "act", [lambda watchers: watchers.hear("cage_speed_measured", 0.0, 1.0), lambda watchers: watchers.serve("accept_change")[0]]
+)
 def test_a_watcher_that_fails_while_samples_wait_for_it_is_named_once(act, monkeypatch):
     monkeypatch.setitem(registry.WATCHERS, "gathering", f"{__name__}:Gathering")
     scene = load_scene("deng2017_table1", ["watchers=[gathering]"])

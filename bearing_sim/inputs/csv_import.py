@@ -524,7 +524,7 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
     row_reader.has_rounded_times = row_reader.repeat_their_times(first)
     lines = array("q")
     for line, cells in itertools.chain(first, rows):
-        if cells and row_reader.take(line, cells):  # an empty line is no row
+        if cells and row_reader.accept(line, cells):  # an empty line is no row
             times.append(row_reader.newest)
             lines.append(line)
             table.tally.used += table.faulty_line != line
@@ -692,7 +692,7 @@ class _RowReader:
     def _is_wanted(self, cells: list[str]) -> bool:
         return all(cells[column].strip() == text for column, text in self._only)
 
-    def take(self, line: int, cells: list[str]) -> bool:
+    def accept(self, line: int, cells: list[str]) -> bool:
         """Add one row; return whether its time is good."""
         if len(cells) == self._width and not self._is_wanted(cells):
             self._table.left_out += 1

@@ -47,10 +47,9 @@ from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import messages, with_values
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.view.viewer import stream_url, viewer_command
-from bearing_sim.watchers.monitoring.watchers import Watcher, kind_of, resources
+from bearing_sim.watchers.monitoring.watchers import MEMORY, SERVICES, Watcher, kind_of, resources
 
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
-_STATE = "state"  # the watcher that remembers the bearing
 _SCALAR = "std_msgs/msg/Float64"
 
 
@@ -257,7 +256,7 @@ class BearingInterface:
         self._profiles = profiles(node.parameters, entities_of_bearing(self.scene, self._full_name, follows_clock(node)))
         self._given: dict[str, object] = {}  # to watchers: the state of the bearing, and what takes long to read
         if (state := self._open_state(settings.serial)) is not None:
-            self._given[_STATE] = state
+            self._given[MEMORY] = state
         self.live: LiveModel | SimTimeModel | None = None
         self._wanted_serial = settings.serial  # in use from ~/replace_bearing on
         self.error = ""  # why the model cannot run; reported until the next configure
@@ -281,12 +280,11 @@ class BearingInterface:
             node.create_service(kind, self._service_name(name), self._served(act))
             for kind, name, act in (
                 (Trigger, "reset", self._reset),
-                (Trigger, "get_stored_state", self._get_stored_state),
                 (Trigger, "replace_bearing", self._replace_bearing),
-                (Trigger, "accept_change", self._accept_change),
                 (Trigger, "start_recording", self._begin_recording),
                 (Trigger, "stop_recording", self._stop_recording),
                 (SetBool, "pause", self._pause),
+                *((Trigger, name, lambda _, name=name: self.live.watchers.serve(name)) for name in SERVICES),
             )
         ]
         self._log(f"scene {self.scene.name!r}, bearing {self.scene.bearing.name!r}, level {self.scene.level!r}: warming up")
@@ -395,8 +393,8 @@ class BearingInterface:
         self._subscriptions, self._found = {}, {}
         live, self.live = self.live, None
         stopped = live.close() if live is not None else True
-        if live is not None and (state := live.watchers.get(_STATE)) is not None:
-            self._given[_STATE] = state
+        if live is not None and (state := live.watchers.get(MEMORY)) is not None:
+            self._given[MEMORY] = state
         if not stopped:
             self._simulation = self._governor = None
         return stopped
@@ -404,7 +402,7 @@ class BearingInterface:
     def destroy(self) -> bool:
         """End the run and destroy topics and services.  Returns whether the solver's thread ended."""
         stopped = self.close()
-        if (state := self._given.pop(_STATE, None)) is not None:
+        if (state := self._given.pop(MEMORY, None)) is not None:
             state.leave()
         if self._compiling is not None:
             self._compiling.kill()
@@ -516,7 +514,7 @@ class BearingInterface:
 
     def _open_state(self, serial: str) -> Watcher | None:
         """Return what keeps the state of a bearing, None if nothing is to be remembered; raise OSError if it cannot be used."""
-        keeper = kind_of(_STATE).of_bearing(self.scene, serial, self.settings.state_file.strip(), follows_clock(self._node))
+        keeper = kind_of(MEMORY).of_bearing(self.scene, serial, self.settings.state_file.strip(), follows_clock(self._node))
         if keeper is not None:
             self._log(f"state of the bearing: {keeper.path}")
         return keeper
@@ -755,18 +753,9 @@ class BearingInterface:
             return True, "state and damage are reset" if is_new else "the model is reset; the totals of the bearing continue"
         return False, "not done within two seconds; the reset follows after the running tick"
 
-    def _accept_change(self, _) -> tuple[bool, str]:
-        """Take the machine as it is since a change that the calibration has found for the new normal."""
-        return self.live.watchers.serve("accept_change") or (False, "there is no change to accept: no calibration.change is reported")
-
-    def _get_stored_state(self, _) -> tuple[bool, str]:
-        """Answer with the stored state of the bearing as JSON: totals, calibration, temperatures."""
-        nothing = False, "nothing is remembered: set serial or state_file, and configure the node"
-        return self.live.watchers.serve("get_stored_state") or nothing
-
     def _replace_bearing(self, _) -> tuple[bool, str]:
         """End the stored state of the bearing, which is kept, and begin that of the bearing whose serial number was set before."""
-        before, serial = self.live.watchers.get(_STATE), kind_of(_STATE).checked(self._wanted_serial)
+        before, serial = self.live.watchers.get(MEMORY), kind_of(MEMORY).checked(self._wanted_serial)
         number = before.serial if before is not None else ""
         if not serial or serial == number:
             return False, f"set serial to the number of the new bearing first; it is {serial or 'empty'!r}, and the bearing in service is {number!r}"
@@ -790,12 +779,12 @@ class BearingInterface:
             return other or self._open_state(serial)
 
         try:
-            self.live.replace_bearing(_STATE, change)
+            self.live.replace_bearing(change)
             self.settings = dataclasses.replace(self.settings, serial=serial)
         finally:
             if recording:
                 self._start_recording(self._recording_path)
-        state = self.live.watchers.get(_STATE)
+        state = self.live.watchers.get(MEMORY)
         ended = f"; the state of {number!r} is kept in {kept[0]}" if kept else ""
         return True, f"serial number {serial}: {100.0 * state.used:.6g} % of life used, in {state.path}{ended}"
 

@@ -16,7 +16,7 @@ import numpy as np
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES, joined
 from bearing_sim.scene.scene import Scene, Thresholds
-from bearing_sim.watchers.monitoring.watchers import BUILT_IN, Memory, Watcher
+from bearing_sim.watchers.monitoring.watchers import BUILT_IN, MEMORY, Memory, Watcher
 from bearing_sim.watchers.stored_state.counting import LifeCounter
 from bearing_sim.watchers.stored_state.covered import Covered
 from bearing_sim.watchers.stored_state.history import history_paths, move_days
@@ -24,7 +24,7 @@ from bearing_sim.watchers.stored_state.state import StoredState, Thermal, calibr
 from bearing_sim.watchers.stored_state.state_file import News, StateError, StateFile, checked_serial, default_path, parsed, serialised
 from bearing_sim.watchers.stored_state.totals import criteria
 
-RECORD = BUILT_IN["state"].record
+RECORD = BUILT_IN[MEMORY].record
 """Name of a recording's metadata record with the state that it began with: state, as in a state file, and counts."""
 
 WRITE_EVERY = 2.0
