@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import yaml
@@ -42,6 +43,9 @@ from bearing_sim.recording.mcap_reader import FileIndex, McapReader, Rows, read_
 from bearing_sim.recording.writer import COMMAND, METADATA
 from bearing_sim.scene.loader import SceneError, scene_from_yaml
 from bearing_sim.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from bearing_sim.model.names import Block
 
 ROWS_PER_BLOCK = 1000
 _REPEATS_WITHIN = 2.5  # [s] a lasting trouble is reported every second, and is one event
@@ -186,7 +190,7 @@ class Recording:
         if expected is not None and ros_type != expected:
             raise RecordingError(f"{self.path}: {topic} is of type {ros_type or 'unknown'}; a recording of bearing_sim has {expected}")
 
-    def __iter__(self) -> Iterator[np.ndarray | Event]:
+    def __iter__(self) -> Iterator["Block | Event"]:
         """Yield blocks of at most `ROWS_PER_BLOCK` samples, and events, in the order of the file."""
         return self._items()
 

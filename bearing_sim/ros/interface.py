@@ -41,8 +41,8 @@ from bearing_sim.runtime.health import Condition, Phase, not_running
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
 from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene.fidelity import hint
-from bearing_sim.scene.loader import load_scene
-from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting, read_kept_tradeoffs
+from bearing_sim.scene.loader import load_scene, measured_of
+from bearing_sim.scene.measured_tradeoffs import Setting, Tradeoffs
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import messages, with_values
 from bearing_sim.simulation import IntegrationError, Simulation
@@ -263,7 +263,7 @@ class BearingInterface:
         self._simulation: Simulation | None = None
         self._governor: Governor | None = None
         self._settings: list[Setting] = []  # measured ones, along which the governor falls
-        self._courses: tuple[MeasuredCourse, ...] = ()  # that these were measured on
+        self._front: Tradeoffs | None = None  # that has them, where the scene operates
         self._wants_governor = False
         self._new_governor: Governor | None = None  # made on the warm-up thread, taken over at the next review
         self._compiling: subprocess.Popen | None = None
@@ -310,14 +310,23 @@ class BearingInterface:
             self._given |= resources(self.scene)
             simulation = warmed_up(self.scene)
             governs = self._shared.governor and not follows_clock(self._node)  # with sim time no time is skipped
-            kept = read_kept_tradeoffs(self.scene)
-            self._settings, self._courses = settings_to_fall(self.scene, kept), () if kept is None else kept.at(self.scene).courses
+            self._read_front()
             self._wants_governor = governs  # made once the run has begun, which does not wait for the code of other levels
             self._simulation = simulation
         except IntegrationError as error:
             self.error = f"the scene's own operating conditions cannot be computed: {error}"
         except Exception as error:  # a programming error: reported by the node, where users look
             self.error = f"the model could not be made: {error!r}"
+
+    def _read_front(self) -> None:
+        """Find the measured settings along which the governor falls, by the front of the scene alone if it names one."""
+        settings = self.settings
+        try:
+            front = measured_of(settings.scene, settings.scene_overrides, settings.allow_outside, self.scene)
+            self._front = front and front.at(self.scene)
+        except ValueError as error:
+            self._logger.warning(f"the governor falls along levels only; the front that the scene names cannot be read: {error}")
+        self._settings = settings_to_fall(self.scene, self._front)
 
     def open(self) -> None:
         """Start a run: open recordings and subscriptions.  Run time 0 is now, or the first input with sim time.
@@ -373,8 +382,9 @@ class BearingInterface:
             self._subscribe_to_vibration()
         self._log(f"publishing {', '.join(self._outputs.topic_names)}")
         self._log(f"ready: listening to {', '.join(subscription.topic_name for subscription in self._subscriptions.values())}")
-        if self._settings and shared.governor and not follows_clock(self._node):
-            self._log(f"the governor falls along measured settings: {'; '.join(setting.name for setting in self._settings)}")
+        if self._front is not None and shared.governor and not follows_clock(self._node):
+            found = "; ".join(setting.name for setting in self._settings) or "none for this bearing where it operates, so it falls along levels"
+            self._log(f"the governor falls along measured settings of {self._front.name}: {found}")
 
     def tick(self, now_ns: int) -> None:
         """Pass on a reading of /clock, if the model follows it."""
@@ -638,7 +648,7 @@ class BearingInterface:
         if self._simulation is None:  # the run has ended, and its thread has not
             return
         try:
-            self._new_governor = governor_of(self._simulation, self._settings, self._courses)
+            self._new_governor = governor_of(self._simulation, self._settings, self._front.courses if self._front else ())
         except IntegrationError as error:
             self._logger.warning(f"the governor has no level of lower fidelity to use: {error}")
 
