@@ -116,7 +116,7 @@ def trade(
     scene = scene_of(scene_name, overrides)  # fails before anything is compiled
     is_asked = factor is not None or error is not None
     _require_use(scene, front, chosen, is_asked, quick)
-    from bearing_sim.studies.trade import able_levels, draw, has_all, recommend, trade
+    from bearing_sim.studies.trade import able_levels, has_all, plot_trade, recommend, trade
 
     if front is not None and against and not has_all(against, able_levels(scene_name, overrides)[1]):
         raise UsageError(f"--front {front}: {_why_incomplete(against)}")
@@ -146,7 +146,7 @@ def trade(
         _print_advice(found, factor, error, best)
 
     report = _report(found) | {"recommended": best and best.setting.name, "kept": kept and str(kept.path), "front": written and str(front)}
-    return Result(report, show, lambda draft: draw(draft, scene_name, found), rows_of(found), remarks, ending=ending)
+    return Result(report, show, lambda draft: plot_trade(draft, scene_name, found), rows_of(found), remarks, ending=ending)
 
 
 def _require_use(scene, front, chosen, is_asked, quick) -> None:

@@ -547,7 +547,7 @@ _LEVELS = {"steady": ("#009e73", "D"), "slip": ("#0072b2", "o"), "planar": ("#d5
 _FLOORS = (1e-4, 1e-4, 1e-4)  # smallest error shown on each logarithmic axis
 
 
-def draw(path: Path, title: str, found: Trade) -> None:
+def plot_trade(path: Path, title: str, found: Trade) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     figure = new_figure(14, 5.6)
     labels = ("error of cage slip [percentage points]", "error of the largest roller load", "error of the life")
