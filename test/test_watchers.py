@@ -92,7 +92,7 @@ def test_a_watcher_sees_single_samples_also_where_a_replay_computes_and_judges_m
     monkeypatch.setitem(registry.WATCHERS, "seen", f"{__name__}:Seen")
     quiet = [f"thresholds.{name}=0" for name in ("life_warning", "remaining_life_warning", "lambda_warning")]
     judged_at_once = []
-    monkeypatch.setattr(Monitor, "take_calm", lambda self, block: judged_at_once.append(len(block)))
+    monkeypatch.setattr(Monitor, "judge_calm", lambda self, block: judged_at_once.append(len(block)))
     for watched in (False, True):
         scene = load_scene("deng2017_table1", [*quiet, *(["watchers=[seen]"] if watched else [])])
         sink = replay_of(write(tmp_path / f"{watched}.mcap", course(3.0)), scene, rate=500.0, model=Profiling)

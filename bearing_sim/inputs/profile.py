@@ -565,7 +565,7 @@ class OnlineInputProfile:
         self.start: int | None = None
         self.claimed = self._reached = -1
 
-    def add(self, channel: str, stamp: int, value) -> tuple[int, int] | None:
+    def add_message(self, channel: str, stamp: int, value) -> tuple[int, int] | None:
         """Add a good message, stamped [ns since the epoch] later than the last one of its channel, with its value in SI.
 
         Returns

@@ -343,7 +343,7 @@ class SimTimeModel(Model):
                 self._measured.append((channel, stamp, self.gate.latest(channel)))
             return None
         try:
-            gap = self.solver.add(channel, stamp, self.gate.latest(channel))
+            gap = self.solver.add_message(channel, stamp, self.gate.latest(channel))
         except ValueError as error:
             self._late += 1
             self.gate.refused["input.late"] += 1

@@ -479,10 +479,10 @@ class SimTimeSolver(Solver):
         self._items: Iterator[Item] | None = None  # of the segment that is under way
         self._busy_since: float | None = None
 
-    def add(self, channel: str, stamp: int, value) -> tuple[int, int] | None:
-        """Add a good message to the profile (see `bearing_sim.inputs.profile.OnlineInputProfile.add`)."""
+    def add_message(self, channel: str, stamp: int, value) -> tuple[int, int] | None:
+        """Add a good message to the profile (see `bearing_sim.inputs.profile.OnlineInputProfile.add_message`)."""
         with self._changed:
-            gap = self._profile.add(channel, stamp, value)
+            gap = self._profile.add_message(channel, stamp, value)
             self._threads.wake(self)
         return gap
 
