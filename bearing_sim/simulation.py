@@ -601,7 +601,9 @@ class Simulation:
         self._write_temperatures(rows)
         self.time += duration
         self.inputs, self._state, self._step = end, state, step
-        if self._thermal is not None and self._thermal.record_losses(self._newest, rows, duration, end.oil_temperature, end[-len(RING_TEMPERATURES) :]):
+        if self._thermal is not None and self._thermal.record_losses(
+            self._newest, rows, duration, end.oil_temperature, end[-len(RING_TEMPERATURES) :]
+        ):
             self._take_temperatures()
         self._newest = rows[-1].copy()
         return block
