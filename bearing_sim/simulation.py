@@ -29,6 +29,7 @@ from bearing_sim.scene.uncertainty import quantities
 
 if TYPE_CHECKING:
     from bearing_sim.levels.steady.table import Table
+    from bearing_sim.model.names import Block, Sample
 
 _MEASURED_COLUMNS = slice(COLUMN.inner_ring_temperature_measured, COLUMN.outer_ring_temperature_measured + 1)
 # What a workspace remembers of the past; everything else in it is found again at the next evaluation.
@@ -483,7 +484,7 @@ class Simulation:
         return Model(self._params, self._lubrication, drive, self._tolerances)
 
     @property
-    def sample(self) -> np.void:
+    def sample(self) -> "Sample":
         """The newest sample (see `bearing_sim.model.sample`)."""
         return self._newest.view(self._dtype)[0]
 
@@ -497,7 +498,7 @@ class Simulation:
         """Work done since the start."""
         return Counters(*(int(self._counts[index]) for index in COUNT))
 
-    def advance(self, duration: float | str, inputs: Inputs | None = None, samples: int = 1) -> np.ndarray:
+    def advance(self, duration: float | str, inputs: Inputs | None = None, samples: int = 1) -> "Block":
         """Advance by ``duration`` [s] while the inputs change linearly from their present values to ``inputs``.
 
         Temperatures take their new values at the start: they change slowly, and every oil property depends on that of the oil.  With a thermal
@@ -600,7 +601,9 @@ class Simulation:
         self._write_temperatures(rows)
         self.time += duration
         self.inputs, self._state, self._step = end, state, step
-        if self._thermal is not None and self._thermal.take(self._newest, rows, duration, end.oil_temperature, end[-len(RING_TEMPERATURES) :]):
+        if self._thermal is not None and self._thermal.record_losses(
+            self._newest, rows, duration, end.oil_temperature, end[-len(RING_TEMPERATURES) :]
+        ):
             self._take_temperatures()
         self._newest = rows[-1].copy()
         return block

@@ -19,7 +19,7 @@ def speed_option(name: str, parameter: str, which: str, default: float | None = 
     return option(name, parameter, f"{which} shaft speed{otherwise}.", FloatRange(1.0), default=default, metavar="RPM")
 
 
-def over_points(title, columns, rows, draw, about, shown=None, words=None, remarks=()) -> Result:
+def over_points(title, columns, rows, plot, about, shown=None, words=None, remarks=()) -> Result:
     """Return the result of a study whose rows have the columns of its table, the first of them in words; ``shown`` are its cells if others."""
     texts = [[cell if isinstance(cell, str) else number(cell) for cell in cells] for cells in shown or (row.values() for row in rows)]
-    return Result({**about, "points": rows}, lambda: print_rows(title, columns, texts, words or columns[:1]), draw, rows, remarks)
+    return Result({**about, "points": rows}, lambda: print_rows(title, columns, texts, words or columns[:1]), plot, rows, remarks)

@@ -299,12 +299,12 @@ def test_many_clouds_are_thinned_out_evenly_and_one_that_is_none_is_named(of_the
         message_type(table["rollers"].ros_type).serialize(table["rollers"].message(0, of_the_node[1][0])), table["rollers"].ros_type
     )
     for k in range(5000):
-        course.take(cloud, k)
+        course.add(cloud, k)
     kept = np.array([one.log_ns for one in course.clouds])
     assert len(kept) < 2000 and set(np.diff(kept)) == {4}
     cloud.fields = cloud.fields[3:]
     with pytest.raises(ValueError, match="without the fields x, y and z; it has inner_load"):
-        CloudCourse().take(cloud, 0)
+        CloudCourse().add(cloud, 0)
     cloud.data = cloud.data[:40]
     with pytest.raises(ValueError, match="with 40 bytes of data"):
-        CloudCourse().take(cloud, 0)
+        CloudCourse().add(cloud, 0)

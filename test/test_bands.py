@@ -99,7 +99,7 @@ def test_a_response_says_where_it_has_no_answer(response, effects, column, end):
     assert np.isnan(response.respond(beyond, np.zeros((1, 1)), effects)[0, 0, :4]).all()
     block = samples(2)
     block[("shaft_speed", "load_y", "oil_temperature")[column]][1] = beyond[0, column]
-    edges = BandEstimator(SCENE, response).take(block)
+    edges = BandEstimator(SCENE, response).estimate(block)
     assert np.isfinite(edges[0]).all() and np.isnan(edges[1, :3]).all()
 
 
@@ -177,7 +177,7 @@ def test_what_no_response_can_be_fitted_to_is_refused_with_its_cause(response, e
 
 
 def test_edges_are_the_quantiles_of_a_known_distribution(response):
-    slip, life, clearance, remaining = BandEstimator(SCENE, response).take(samples(damage=0.0))[0]
+    slip, life, clearance, remaining = BandEstimator(SCENE, response).estimate(samples(damage=0.0))[0]
     ends = np.array([0.05, 0.95]) - 0.5  # of the field's share; half of its range is its own value
     own = response.fields.fractions_of(response.nominal[None])[0, 0] - 0.5
     assert slip == pytest.approx(0.02 * FACTOR ** (ends - own), rel=0.02)
@@ -211,7 +211,7 @@ def test_clearance_has_the_band_that_ranges_of_heat_and_fits_give_it():
     )
     inputs = Inputs(2000.0, 600.0, 0.0, 393.15)
     sample = settled(scene, inputs)
-    edges = BandEstimator(scene, response_of_few_points(scene, 24, 8)).take(sample[None])[0, CLEARANCE_BAND]
+    edges = BandEstimator(scene, response_of_few_points(scene, 24, 8)).estimate(sample[None])[0, CLEARANCE_BAND]
     # A solid shaft of the ring's steel presses the raceway out by bore over raceway of its interference (Lame); rollers are as warm as the mean
     # of both rings.
     bearing, expansion = scene.bearing, scene.bearing.material.expansion
@@ -227,7 +227,7 @@ def test_clearance_has_the_band_that_ranges_of_heat_and_fits_give_it():
 
 
 def test_what_is_measured_has_no_band(response):
-    edges = BandEstimator(SCENE, response, known=[FIELD]).take(samples(damage=0.3))[0]
+    edges = BandEstimator(SCENE, response, known=[FIELD]).estimate(samples(damage=0.3))[0]
     assert edges[:3] == pytest.approx(np.array([[0.02] * 2, [400.0] * 2, [-25e-6] * 2]), rel=1e-5)
     assert edges[3] == pytest.approx([0.7 * 400.0] * 2)
 
@@ -238,7 +238,7 @@ def test_remaining_life_is_that_of_each_draw_with_its_own_damage(response):
     block = samples(4, time=np.array([0.0, 50.0, 150.0, 400.0]), modified_rating_life=np.array([400.0, 100.0, 900.0, 300.0]))
     block["damage"] = [0.2, 0.3, 0.35, 0.5]
     found = BandEstimator(scene, response)
-    edges = found.take(block)[:, QUANTITIES.index("remaining_life")]
+    edges = found.estimate(block)[:, QUANTITIES.index("remaining_life")]
     fraction = response.fields.fractions_of(prior_draws(1)) - response.fields.fractions_of(response.nominal[None])
     factor = FACTOR ** (0.2 * fraction[:, 0])  # of a draw's rate of damage: the same at all points
     mean = 1.0 / block["modified_rating_life"][0]
@@ -253,23 +253,23 @@ def test_remaining_life_is_that_of_each_draw_with_its_own_damage(response):
 def test_the_remaining_life_of_the_level_itself_goes_on_when_the_draws_change(response):
     block = samples(2, time=np.array([0.0, 10.0]), modified_rating_life=np.array([400.0, 100.0]))
     once, twice = BandEstimator(SCENE, response), BandEstimator(SCENE, response)
-    once.take(block)
-    twice.take(block[:1])
+    once.estimate(block)
+    twice.estimate(block[:1])
     twice.use(np.full((512, 1), 0.5))
-    twice.take(block[1:])
+    twice.estimate(block[1:])
     assert twice.remaining_life[0] == pytest.approx(once.remaining_life[1], rel=1e-12)
 
 
 def test_an_unloaded_bearing_lives_for_ever_within_its_band(response):
-    edges = BandEstimator(SCENE, response).take(samples(load_y=0.0, rating_life=math.inf, modified_rating_life=math.inf, damage=0.1))[0]
+    edges = BandEstimator(SCENE, response).estimate(samples(load_y=0.0, rating_life=math.inf, modified_rating_life=math.inf, damage=0.1))[0]
     assert np.isinf(edges[[1, 3]]).all() and np.isfinite(edges[[0, 2]]).all()
 
 
 def test_samples_taken_together_have_the_bands_that_they_have_one_by_one(response):
     block = samples(5, time=np.arange(5.0), shaft_speed=np.array([3000.0, 3000.0, 2000.0, -2500.0, 0.0]), damage=0.1)
     single = BandEstimator(SCENE, response)
-    apart = np.concatenate([single.take(block[k : k + 1]) for k in range(5)])
-    assert BandEstimator(SCENE, response).take(block) == pytest.approx(apart, rel=1e-7, nan_ok=True)
+    apart = np.concatenate([single.estimate(block[k : k + 1]) for k in range(5)])
+    assert BandEstimator(SCENE, response).estimate(block) == pytest.approx(apart, rel=1e-7, nan_ok=True)
 
 
 def test_quantiles_are_numpys_and_unknown_where_a_value_is():

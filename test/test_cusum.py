@@ -19,7 +19,7 @@ def correlated(lot, count, correlation):
 def first_alarm(cusum, numbers):
     """Return how many numbers it took."""
     for k, number in enumerate(numbers):
-        if cusum.take(number):
+        if cusum.accumulate(number):
             return k + 1
     raise AssertionError("no alarm at all")
 
@@ -48,7 +48,7 @@ def test_a_run_between_false_alarms_of_next_to_nothing_is_refused():
 def test_whitened_noise_is_standard_normal_and_independent_whatever_its_mean_scatter_and_correlation(correlation):
     noise = 3.0 + 0.02 * correlated(np.random.default_rng(2), 20_000, correlation)
     whitener = Whitener(1e-9)
-    numbers = np.array([whitener.take(value) for value in noise])[1000:]
+    numbers = np.array([whitener.whiten(value) for value in noise])[1000:]
     assert kstest(numbers, "norm").statistic < 0.02
     assert abs(np.mean(numbers[1:] * numbers[:-1])) < 0.05 and abs(np.mean(numbers[3:] * numbers[:-3])) < 0.05
     assert whitener.correlation == pytest.approx(correlation, abs=0.03)
@@ -59,7 +59,7 @@ def test_a_number_is_as_rare_as_it_should_be_even_when_little_is_known_before_it
     numbers = []
     for course in np.random.default_rng(8).normal(size=(4000, 9)):
         whitener = Whitener(1e-9)
-        numbers.append([whitener.take(value) for value in course][-1])
+        numbers.append([whitener.whiten(value) for value in course][-1])
     assert np.mean(np.abs(numbers) > 3.0) < 0.008
 
 
@@ -70,8 +70,8 @@ def test_correlated_noise_alarms_no_more_often_than_asked_for(correlation):
         whitener, cusum = Whitener(1e-9), Cusum(threshold_for(wanted))
         noise = iter(correlated(lot, learning + 10_000, correlation))
         for _ in range(learning):
-            whitener.take(next(noise))
-        lengths.append(first_alarm(cusum, (whitener.take(value) for value in noise)))
+            whitener.whiten(next(noise))
+        lengths.append(first_alarm(cusum, (whitener.whiten(value) for value in noise)))
     assert np.mean(lengths) > 0.7 * wanted, "a tenth of standard error, and what is left of the correlation"
 
 
@@ -90,14 +90,14 @@ def test_a_change_is_found_on_its_side_and_over_when_it_is_gone():
         lasted = cusum.rising_for if side > 0 else cusum.falling_for
         assert lasted == pytest.approx(found, abs=5)
         for number in lot.normal(size=100):
-            cusum.take(number)
+            cusum.accumulate(number)
         assert cusum.side == 0
 
 
 def test_wild_readings_are_no_change_and_do_not_become_usual():
     lot, whitener, cusum = np.random.default_rng(5), Whitener(1e-9), Cusum(threshold_for(1e5))
     for k, value in enumerate(lot.normal(size=5000)):
-        cusum.take(whitener.take(value if k % 200 or k < 200 else 1e6))
+        cusum.accumulate(whitener.whiten(value if k % 200 or k < 200 else 1e6))
         assert cusum.side == 0
     assert abs(whitener.mean) < 0.2
 
@@ -107,16 +107,16 @@ def test_a_change_within_the_tolerance_is_no_change_and_a_larger_one_is():
     for change, expected in ((0.9, 0), (2.5, 1), (-2.5, -1)):
         whitener, cusum = Whitener(tolerance=1.0), Cusum(threshold_for(3.6e6))
         for value in 1e-3 * lot.normal(size=300):
-            whitener.take(value)
+            whitener.whiten(value)
         for value in change + 1e-3 * lot.normal(size=2000):
-            cusum.take(whitener.take(value, learn=False))
+            cusum.accumulate(whitener.whiten(value, learn=False))
         assert cusum.side == expected
 
 
 def test_what_is_not_a_number_changes_nothing():
     cusum = Cusum(5.0)
-    cusum.take(3.0)
-    assert cusum.take(math.nan) == 0 and cusum.up == 2.5
+    cusum.accumulate(3.0)
+    assert cusum.accumulate(math.nan) == 0 and cusum.up == 2.5
 
 
 @pytest.mark.parametrize(("batches", "correlation"), [(20, 0.9), (40, 0.9)])
@@ -126,6 +126,6 @@ def test_the_correlation_of_a_short_course_is_more_often_over_than_underestimate
     for _ in range(600):
         whitener = Whitener(1e-9)
         for value in correlated(lot, batches, correlation):
-            whitener.take(value)
+            whitener.whiten(value)
         above += whitener.correlation >= correlation
     assert above / 600 > 0.58

@@ -37,9 +37,9 @@ def advanced(simulation, seconds, scheduler):
         left = left[len(due) :]
         for message in by_channels(due, shuffled):
             value = message.values[0] if len(message.values) == 1 else message.values
-            profile.add(message.channel, message.stamp_ns, value)
+            profile.add_message(message.channel, message.stamp_ns, value)
         clock = START_NS + round(now * 1e9)
-        while (segment := profile.take(profile.known_until(clock, clock, []))) is not None:
+        while (segment := profile.claim(profile.known_until(clock, clock, []))) is not None:
             for item in walk.advance_segment(segment):
                 if isinstance(item, Output):
                     samples.append(item.block)

@@ -98,7 +98,7 @@ class Told:
             self.published += 50 - round(50 * fraction)
             self.second += 1
             for part in range(5):
-                self.count.take(self.second + 0.2 * part, self.published, self.left_out)
+                self.count.update(self.second + 0.2 * part, self.published, self.left_out)
         return self.count.is_raised
 
 

@@ -197,7 +197,7 @@ def words_in(monkeypatch, designed):
     """Return all texts of the picture of a design."""
     figures = []
     monkeypatch.setattr(studied, "new_figure", lambda *size: figures.append(new_figure(*size)) or figures[-1])
-    studied.draw(io.BytesIO(), designed)
+    studied.plot_design(io.BytesIO(), designed)
     texts = [text.get_text().replace("\n", " ") for text in figures[0].findobj(matplotlib.text.Text)]
     return " | ".join(text for text in texts if text)
 

@@ -10,7 +10,7 @@ import pytest
 import yaml
 from aggregator import ERROR, OK, STALE, WARN, Aggregator, statuses_of
 
-from bearing_sim.messages.diagnostics import SUBJECTS, UNUSED, WHOLE, events_of, news, report, subject_of
+from bearing_sim.messages.diagnostics import SUBJECTS, UNUSED, WHOLE, event_report, events_of, report, subject_of
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.runtime.health import not_running
 
@@ -159,7 +159,8 @@ def test_events_of_one_subject_share_its_status_the_worst_first_and_can_be_read_
     assert events_of(2.0, speed) == [events[1], events[0]]
     assert events_of(2.0, status(made, "inner_ring_temperature")) == events[2:]
     assert events_of(2.0, status(made, WHOLE)) == events_of(2.0, status(made, "slip")) == []
-    assert [event for each in news(0, events[0])["status"] for event in events_of(2.0, status({"status": [each]}, "shaft_speed"))] == events[:1]
+    statuses = event_report(0, events[0])["status"]
+    assert [event for each in statuses for event in events_of(2.0, status({"status": [each]}, "shaft_speed"))] == events[:1]
 
 
 def test_statuses_of_earlier_versions_and_of_other_programs_are_read_as_events():

@@ -81,7 +81,7 @@ class Rig:
             readings[self.random.random(10) < wild] = -0.8
             for time, reading, ideal in zip(times, readings, block["ideal_cage_speed"]):
                 estimator.measure(float(time), float((1.0 - reading) * ideal))
-            estimator.take(block)
+            estimator.update(block)
             self.now += 1.0
             if math.isnan(told) and any(event.kind == "calibration.change" for event in estimator.events(self.now)):
                 told = self.now
@@ -129,7 +129,7 @@ def test_a_ring_temperature_that_follows_the_quantity_of_oil_tells_it_from_the_t
     block["inner_ring_temperature_uncorrected"] = 380.0
     block["inner_ring_temperature_measured"] = 380.0 + warm - usual + 0.5 * rig.random.normal(size=600)
     for first in range(0, 600, 10):
-        estimator.take(block[first : first + 10])
+        estimator.update(block[first : first + 10])
     after = widths(estimator)
     assert after[QUANTITY] < 0.5 * before[QUANTITY]
     for found, truth in zip(estimator.estimates(), response.fields.values_of(rig.scores)):

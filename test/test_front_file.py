@@ -13,8 +13,9 @@ from click.testing import CliRunner
 from bearing_sim import SceneError, load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.files.kept import with_checksum
+from bearing_sim.runtime.governor import settings_to_fall
 from bearing_sim.scene import measured_tradeoffs
-from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml
+from bearing_sim.scene.loader import measured_of, scene_from_yaml, scene_to_yaml
 from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting, add_to_front, complete_overrides, digest_of, keep, read_front
 from bearing_sim.studies.trade import Errors
 
@@ -81,6 +82,24 @@ def test_a_scene_that_is_recorded_after_the_choice_needs_no_front(folder):
     found = load_scene(folder / "rig.yaml")
     (folder / "rig.front.json").unlink()
     assert scene_from_yaml(scene_to_yaml(found)) == found and found.front is None
+
+
+def test_the_governor_falls_along_the_front_that_the_scene_names_alone_and_also_beside_a_level_of_its_own(folder):
+    fine = setting("planar", 1.5, 0.01, overrides=["integration.relative_tolerance=0.001"])
+    front = written(folder, HERE, *SETTINGS, fine)
+    keep(HERE, course(setting("slip", 20.0, 0.0001), fine))  # by this machine, which counts nothing beside a front that is named
+
+    def fallen(*overrides):
+        scene = load_scene(folder / "rig.yaml", [*fine.overrides, *overrides])
+        measured = measured_of(folder / "rig.yaml", overrides, False, scene)
+        return measured.name, [one.level for one in settings_to_fall(scene, measured) if not math.isnan(one.errors["slip"])]
+
+    assert fallen("level=planar") == (front.name, ["planar", "planar", "slip"])
+    assert fallen("level=planar", "front=null")[1] == ["planar", "slip"]
+    assert fallen("level=planar", "bearing=NU 212")[1] == [], "it does not fit"
+    front.path.write_bytes(b"damaged")
+    with pytest.raises(ValueError, match="overwritten"):
+        fallen("level=planar")
 
 
 def test_a_kept_front_that_decided_is_said_by_name(folder):
@@ -242,6 +261,9 @@ def test_trade_refuses_before_it_measures_a_front_of_something_else(folder, monk
     assert result.exit_code == 2 and "was measured on another bearing" in result.output and path.read_bytes() == before
     path.write_bytes(b"notes of mine")
     assert trade(monkeypatch, folder, "--front", path).exit_code == 2 and path.read_bytes() == b"notes of mine"
+    result = trade(monkeypatch, folder, "--front", folder / "new.json", "--against", "slip")
+    assert result.exit_code == 2 and "new.json: errors against level slip say nothing of what it leaves out" in result.output
+    assert "there is no folder" in trade(monkeypatch, folder, "--front", folder / "absent" / "new.json").output
     assert "--quick measures too little" in trade(monkeypatch, folder, "--front", folder / "new.json", "--quick").output
 
 
@@ -266,8 +288,9 @@ def test_trade_writes_no_setting_where_nothing_is_chosen_by_or_none_is_good_enou
 
 def test_what_trade_has_measured_is_told_also_where_front_and_chosen_setting_cannot_be_written(folder, monkeypatch):
     front, out = folder / "other.json", folder / "chosen.yaml"
-    result = trade(monkeypatch, folder, "--front", front, "--json", reference_level="slip")
-    assert result.exit_code == 1 and f"{front} is not written: errors against level slip say nothing" in result.stderr and not front.exists()
+    monkeypatch.setattr(measured_tradeoffs, "replaced", Mock(side_effect=OSError("the disk is full")))
+    result = trade(monkeypatch, folder, "--front", front, "--json", "--no-keep")
+    assert result.exit_code == 1 and f"{front} is not written: the disk is full" in result.stderr and not front.exists()
     assert len(json.loads(result.stdout)["settings"]) == len(SETTINGS)
     result = trade(monkeypatch, folder, "--chosen", out, "--error", 1e-9, "--no-keep")
     assert "tolerances x 3" in result.stdout

@@ -191,8 +191,8 @@ def test_a_first_oil_temperature_counts_from_the_start_if_it_comes_within_ten_st
 def test_a_run_that_expects_an_oil_temperature_waits_for_it_ten_stale_times_and_no_longer():
     profile = OnlineInputProfile(100.0, LIMITS, 300.0)  # stale after 1 s
     for stamp in (T0, T0 + 60 * SECOND):
-        profile.add("shaft_speed", stamp, 100.0)
-        profile.add("radial_load", stamp, (800.0, 0.0))
+        profile.add_message("shaft_speed", stamp, 100.0)
+        profile.add_message("radial_load", stamp, (800.0, 0.0))
     clock = T0 + 60 * SECOND
     assert profile.known_until(clock, T0 + 10 * SECOND, ["oil_temperature"]) == -1 and profile.awaited(T0 + 10 * SECOND, ["oil_temperature"]) == [
         "oil_temperature"
@@ -204,13 +204,13 @@ def test_a_run_that_expects_an_oil_temperature_waits_for_it_ten_stale_times_and_
 def test_a_set_of_the_oil_temperature_is_nothing_to_wait_for_and_acts_from_its_instant_or_where_the_model_is():
     profile = OnlineInputProfile(10.0, LIMITS, 300.0)
     for stamp in (T0, T0 + 2 * SECOND):
-        profile.add("shaft_speed", stamp, 100.0)
-        profile.add("radial_load", stamp, (800.0, 0.0))
+        profile.add_message("shaft_speed", stamp, 100.0)
+        profile.add_message("radial_load", stamp, (800.0, 0.0))
     profile.set_oil_temperature(T0 + SECOND // 2, 310.0)
     assert profile.known_until(T0 + 2 * SECOND, T0, []) == T0 + 2 * SECOND
-    first = profile.take(T0 + SECOND)
+    first = profile.claim(T0 + SECOND)
     profile.set_oil_temperature(T0 + SECOND // 2, 320.0)
-    second = profile.take(T0 + 2 * SECOND)
+    second = profile.claim(T0 + 2 * SECOND)
     assert first.inputs[:, 3].tolist() == [300.0] * 6 + [310.0] * 5 and set(second.inputs[:, 3]) == {320.0}
     assert sum(map(len, (first.arrived, second.arrived))) == 5, "start, the temperature before the first set, two sets, end"
 
@@ -243,11 +243,11 @@ def test_a_run_under_way_has_the_measured_temperatures_of_the_whole_log_however_
     profile = OnlineInputProfile(2.0, LIMITS, 300.0, channels)
     for channel, found in sent.items():
         for stamp, value in found:
-            profile.add(channel, stamp, value)
+            profile.add_message(channel, stamp, value)
     taken, until = [], T0
     while until < T0 + 60 * SECOND:
         until = min(until + whole.randrange(1, 5 * SECOND), T0 + 60 * SECOND)
-        while (part := profile.take(until)) is not None:
+        while (part := profile.claim(until)) is not None:
             taken.append(part)
     instants, found = np.concatenate([part.instants for part in taken]), np.concatenate([part.inputs for part in taken])
     expected = inputs_at(instants, Messages(stamps, values), LIMITS, 300.0)

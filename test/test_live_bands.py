@@ -134,9 +134,9 @@ def test_edges_of_rounded_operating_points_are_off_by_little_of_their_width(resp
     # widths change by a factor of e^2 over each range of the operating points
     weights[-columns:, :, 1] += np.linalg.inv(response.metrics).sum(axis=2).T
     varied = response._replace(weights=weights)
-    rounded = BandEstimator(SCENE, varied).take(block)[:, 0]
+    rounded = BandEstimator(SCENE, varied).estimate(block)[:, 0]
     monkeypatch.setattr(bands, "cells", lambda conditions, domain: conditions)
-    exact = BandEstimator(SCENE, varied).take(block)[:, 0]
+    exact = BandEstimator(SCENE, varied).estimate(block)[:, 0]
     widths = np.ptp(exact, axis=1, keepdims=True)
     off = np.abs(rounded - exact) / widths
     assert widths.max() > 10.0 * widths.min() and 0.0 < off.max() < 0.03
@@ -146,9 +146,9 @@ def test_bands_of_a_sample_do_not_depend_on_those_that_come_with_it(response, mo
     block = anywhere(response, 60)
     monkeypatch.setattr(bands, "_CELLS_KEPT", 50)
     together, singly = (BandEstimator(SCENE, response) for _ in range(2))
-    each = np.concatenate([singly.take(block[k : k + 1]) for k in range(60)])
-    np.testing.assert_allclose(together.take(block), each, rtol=1e-10)
-    np.testing.assert_allclose(together.take(block)[:, :3], each[:, :3], rtol=1e-10)
+    each = np.concatenate([singly.estimate(block[k : k + 1]) for k in range(60)])
+    np.testing.assert_allclose(together.estimate(block), each, rtol=1e-10)
+    np.testing.assert_allclose(together.estimate(block)[:, :3], each[:, :3], rtol=1e-10)
 
 
 def test_rounded_operating_points_stay_in_the_domain_of_the_response(response):
@@ -192,7 +192,7 @@ def test_a_band_lies_about_the_value_of_the_sample_as_the_field_moves_it(respons
 def test_the_life_that_remains_is_what_damage_has_left_of_the_modified_life(response):
     bands, block = BandEstimator(SCENE, response), synthetic_block(SCENE, [0.1], slips=(0.02, 0.02))
     block["damage"] = 0.25
-    bands.take(block)
+    bands.estimate(block)
     assert np.allclose(bands.remaining_life, 0.75 * block["modified_rating_life"])
 
 

@@ -66,7 +66,7 @@ def test_results_settle_as_a_crowned_roller_is_cut_finer():
 def test_the_picture_says_what_each_curve_is_drawn_over(found, tmp_path, monkeypatch):
     figure = new_figure(14, 8)
     monkeypatch.setattr(misaligned_rings, "new_figure", lambda width, height: figure)
-    misaligned_rings.draw(tmp_path / "m.svg", "misalignment", list(found.values()))
+    misaligned_rings.plot_misalignment(tmp_path / "m.svg", "misalignment", list(found.values()))
     *over, along = figure.axes
     assert {axes.get_xlabel() for axes in over} == {"misalignment of the inner ring [mrad]"}
     assert along.get_xlabel() == "along the roller, x [mm]"

@@ -34,7 +34,7 @@ def told(monitor, block, size=1):
     """Return (time, code, level) of each event when it begins, feeding ``size`` samples at a time."""
     found, holding = [], set()
     for k in range(0, len(block), size):
-        monitor.take(block[k : k + size])
+        monitor.judge(block[k : k + size])
         now = float(block["time"][k : k + size][-1])
         events = {(event.kind, event.level) for event in monitor.events(now)}
         found += [(round(now, 6), *event) for event in sorted(events - holding)]
@@ -82,7 +82,7 @@ def test_a_short_life_is_a_warning_with_hours_in_its_text_and_an_error_where_ask
 
 def test_remaining_life_is_what_damage_leaves_at_the_present_rate():
     one = monitor("thresholds.remaining_life_memory=1 ms")
-    one.take(course(1, modified_rating_life=2000.0, damage=0.75))
+    one.judge(course(1, modified_rating_life=2000.0, damage=0.75))
     assert one.values(0.0)["remaining life [h]"] == pytest.approx(500.0)
     assert [event[1] for event in told(one, course(30, modified_rating_life=1000.0, damage=0.75))] == ["bearing.remaining_life"]
 
@@ -96,9 +96,9 @@ def test_the_rate_of_damage_is_a_mean_of_rates_not_of_lives():
 
 def test_a_bearing_that_rests_lives_for_ever_and_a_used_up_one_is_told():
     one = monitor()
-    one.take(course(1, modified_rating_life=math.inf))
+    one.judge(course(1, modified_rating_life=math.inf))
     assert one.values(0.0)["remaining life [h]"] == math.inf
-    one.take(course(1, modified_rating_life=1e4, damage=1.2))
+    one.judge(course(1, modified_rating_life=1e4, damage=1.2))
     assert [(event.kind, event.level) for event in one.events(1.0)] == [("bearing.life_used", Level.ERROR)]
     assert one.values(0.0)["remaining life [h]"] == 0.0
 
@@ -203,7 +203,7 @@ def test_blocks_judged_together_leave_the_same_events_and_numbers_as_one_by_one(
         samples = [block[k : k + 1].copy() for k in range(begin, min(begin + size, count))]
         together.see(joined(samples))
         for sample in samples:
-            single.take(sample)
+            single.judge(sample)
         now = float(samples[-1]["time"][0])
         # Of a film that is told ten times a second, the instant of telling depends on where the blocks begin.
         assert [event for event in together.events(now) if event.kind != "bearing.lambda"] == [
@@ -223,7 +223,7 @@ def test_a_running_clearance_below_its_limit_is_a_warning_on_either_side_of_prel
     block = course(150, running_clearance=1e-6 * np.repeat(clearances, 50))
     assert told(one, block) == [(5.6, "bearing.clearance", Level.WARN)]
     assert not one.events(15.0), "it is over once the clearance has been back for long enough"
-    one.take(course(1, running_clearance=1e-6 * clearances[1]))
+    one.judge(course(1, running_clearance=1e-6 * clearances[1]))
 
 
 def test_a_preload_flickers_around_its_limit_in_one_event_and_an_error_outranks_the_warning():

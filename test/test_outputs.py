@@ -133,7 +133,7 @@ def drawing(fails):
     @picture_option("Draw it")
     @json_option
     def found():
-        def draw(draft):
+        def plot(draft):
             if fails:
                 raise OSError(errno.EIO, "the disk has failed")
             draft.write_bytes(b"drawn")
@@ -141,7 +141,7 @@ def drawing(fails):
         return Result(
             {"slip": 0.5, "picture": None, "files": None, "kept": None},
             lambda: click.echo("slip 0.5"),
-            draw,
+            plot,
             [{"slip": 0.5}],
             files=["own.txt"],
             warnings=["outside of its range"],

@@ -11,10 +11,10 @@ from matplotlib.colors import LogNorm, to_rgb
 
 from bearing_sim.cli.main import main
 from bearing_sim.scene.loader import load_bearing
-from bearing_sim.studies.bearing_facts import draw as draw_bearing
+from bearing_sim.studies.bearing_facts import plot_bearing
 from bearing_sim.studies.uncertainty_propagation import Indices
 from bearing_sim.sweep import pictures
-from bearing_sim.sweep.pictures import as_shown, draw, draw_map, is_spaced_logarithmically, new_figure, ticks, value_text
+from bearing_sim.sweep.pictures import as_shown, draw_map, is_spaced_logarithmically, new_figure, plot_table, ticks, value_text
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, life_column
 
@@ -92,7 +92,7 @@ def test_cells_without_a_result_are_grey_and_named_and_a_life_without_load_is_a_
     holed.rows[5] |= {"status": "failed", "reason": "no", "rating_life": math.nan, "modified_rating_life": math.nan, "cage_slip": math.nan}
     complete.rows[7] |= {"rating_life": math.inf, "modified_rating_life": math.inf}
     for table in (complete, holed):
-        draw(tmp_path / "a.png", table)
+        plot_table(tmp_path / "a.png", table)
     assert not figures[0].legends and [text.get_text() for text in figures[1].legends[0].get_texts()] == ["no result"]
     assert "1 of 48 points have no result" in figures[1].get_suptitle()
     life_of = [figure.axes[1].collections[0].get_array() for figure in figures]
@@ -128,7 +128,7 @@ def test_a_sweep_shows_the_modified_life_where_oil_or_reliability_have_a_factor_
     for factor, name in ((0.5, "modified_rating_life"), (1.0, "rating_life")):
         table = swept(factor)
         assert life_column(table) == name
-        draw(tmp_path / "a.png", table)
+        plot_table(tmp_path / "a.png", table)
         assert f"{name.replace('_', ' ')} [h]" in [axes.get_ylabel() for axes in figures[-1].axes]
     table = swept(0.5)
     table.rows[:] = [row | {"rating_life": math.nan, "modified_rating_life": math.nan} for row in table.rows]
@@ -138,7 +138,7 @@ def test_a_sweep_shows_the_modified_life_where_oil_or_reliability_have_a_factor_
 def test_titles_and_legends_write_numbers_as_people_do(tmp_path, monkeypatch):
     figures = []
     monkeypatch.setattr(pictures, "new_figure", lambda *size: figures.append(new_figure(*size)) or figures[-1])
-    draw(tmp_path / "a.png", swept(radial_load=LOADS["even"], shaft_speed=[20_000.0, 45_000.0]))
+    plot_table(tmp_path / "a.png", swept(radial_load=LOADS["even"], shaft_speed=[20_000.0, 45_000.0]))
     assert [text.get_text() for text in figures[0].legends[0].get_texts()] == ["shaft speed 20,000 rpm", "shaft speed 45,000 rpm"]
     assert figures[0].get_suptitle() == "motor at level steady"
     figures[0].draw_without_rendering()
@@ -192,7 +192,7 @@ def test_every_estimate_of_a_drawn_bearing_is_marked(tmp_path, monkeypatch, desi
     figures = []
     monkeypatch.setattr("bearing_sim.sweep.pictures.new_figure", lambda *size: figures.append(new_figure(*size)) or figures[-1])
     bearing = load_bearing(designation)
-    draw_bearing(tmp_path / "a.png", bearing)
+    plot_bearing(tmp_path / "a.png", bearing)
     texts = [text.get_text() for axes in figures[0].axes for text in (*axes.texts, axes.title)]
     estimated = {each.field for each in bearing.estimated}
     for field, words in (("roller.count", " rollers\n"), ("roller.length", "L "), ("cage.mass", "cage: ")):

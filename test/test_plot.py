@@ -20,10 +20,10 @@ from bearing_sim.studies import run_plot
 from bearing_sim.studies.run_plot import (
     SlipBand,
     course_of,
-    draw_over_load,
-    draw_over_time,
-    draw_table_over_load,
     minimum_loads,
+    plot_over_load,
+    plot_over_time,
+    plot_table_over_load,
     recorded_bands,
     thinned,
 )
@@ -106,19 +106,19 @@ RUNS = {
 @pytest.mark.parametrize("name", ["reverse", "constant", "at rest", "one sample", "tiny and huge", "days"])
 def test_no_label_lies_on_another_over_time_and_over_load_whatever_the_run(tmp_path, name):
     shown = course(RUNS[name])
-    assert_readable(draw_over_time(tmp_path / "time.png", [shown], f"{name}: " + 20 * "a long title "))
+    assert_readable(plot_over_time(tmp_path / "time.png", [shown], f"{name}: " + 20 * "a long title "))
     if name in ("reverse", "one sample", "tiny and huge"):
-        assert_readable(draw_over_load(tmp_path / "load.png", [shown], name))
+        assert_readable(plot_over_load(tmp_path / "load.png", [shown], name))
 
 
 def test_no_label_lies_on_another_in_comparisons_with_long_names_and_all_panels(tmp_path):
     runs = [course(block, f"{name}_{'with_a_very_long_name_' * 4}.mcap", list(run_plot.PANELS)) for name, block in RUNS.items()]
-    assert_readable(draw_over_time(tmp_path / "time.png", runs, "compared"))
-    assert_readable(draw_over_load(tmp_path / "load.png", runs[:3], "compared"))
+    assert_readable(plot_over_time(tmp_path / "time.png", runs, "compared"))
+    assert_readable(plot_over_load(tmp_path / "load.png", runs[:3], "compared"))
 
 
 def test_units_are_those_that_users_say(tmp_path):
-    figure = draw_over_time(tmp_path / "a.png", [course(RUNS["usual"])])
+    figure = plot_over_time(tmp_path / "a.png", [course(RUNS["usual"])])
     labels = [axes.get_ylabel() for axes in figure.axes]
     assert labels == [
         "shaft speed [rpm]",
@@ -147,15 +147,15 @@ def test_the_power_is_what_is_lost_without_the_state_from_which_the_solver_start
 
 def test_axes_of_lives_name_the_life_of_the_scene_and_runs_that_differ_name_their_own(tmp_path):
     basic, modified = (course(RUNS["usual"], f"{name}.mcap", ("life",), scene) for name, scene in (("a", SCENE), ("b", MODIFIED)))
-    labels = [draw_over_time(tmp_path / "a.png", runs).axes[0].get_ylabel() for runs in ([basic], [modified], [basic, modified])]
+    labels = [plot_over_time(tmp_path / "a.png", runs).axes[0].get_ylabel() for runs in ([basic], [modified], [basic, modified])]
     assert labels == [f"rating life {SCENE.life.symbols[0]} [h]", f"modified rating life {MODIFIED.life.symbols[1]} [h]", "life [h]"]
-    names = [text.get_text() for text in draw_over_time(tmp_path / "a.png", [basic, modified]).legends[0].get_texts()]
+    names = [text.get_text() for text in plot_over_time(tmp_path / "a.png", [basic, modified]).legends[0].get_texts()]
     assert "a.mcap: rating life" in names[0] and "b.mcap: modified rating life" in names[1]
 
 
 def test_where_colours_tell_runs_apart_no_two_lines_of_a_panel_look_alike(tmp_path):
     warm = run_of(LINEAR, roller_temperature=400.0, housing_temperature=350.0, inner_ring_temperature_measured=401.0)
-    axes = draw_over_time(tmp_path / "a.png", [course(warm, name, ("temperature",)) for name in ("a", "b")]).axes[0]
+    axes = plot_over_time(tmp_path / "a.png", [course(warm, name, ("temperature",)) for name in ("a", "b")]).axes[0]
     drawn = [(line.get_color(), line._dash_pattern[1] and tuple(line._dash_pattern[1])) for line in axes.lines]
     assert len(set(drawn)) == len(drawn) == 12
     assert len({line.get_color() for line in axes.get_legend().get_lines()}) == 1, "the legend of quantities has no colour of a run"
@@ -163,7 +163,7 @@ def test_where_colours_tell_runs_apart_no_two_lines_of_a_panel_look_alike(tmp_pa
 
 @pytest.mark.parametrize("seconds, unit, last", [(100, "s", 100), (1000, "min", 1000 / 60), (36000, "h", 10), (31 * 86400, "d", 31)])
 def test_the_time_axis_has_the_unit_of_its_length(tmp_path, seconds, unit, last):
-    figure = draw_over_time(tmp_path / "a.png", [course(run_of(seconds * LINEAR), panels=("speed",))])
+    figure = plot_over_time(tmp_path / "a.png", [course(run_of(seconds * LINEAR), panels=("speed",))])
     assert figure.axes[-1].get_xlabel().endswith(f"[{unit}]") and figure.axes[0].lines[0].get_xdata()[-1] == pytest.approx(last)
 
 
@@ -196,16 +196,16 @@ def test_slip_near_rest_has_no_meaning_and_does_not_spoil_the_axis(tmp_path):
     block = run_of(LINEAR, shaft_speed=speeds, cage_slip=np.where(LINEAR < 0.9, 0.1 * LINEAR, -1e3 / speeds))
     shown = course(block)
     assert 9.0 <= np.nanmax(np.abs(shown.lines["slip", 0][1])) < 1e4 and np.isnan(shown.lines["slip", 0][1][-1])
-    assert draw_over_time(tmp_path / "a.png", [shown]).axes[2].get_ylim()[0] > -1e4
+    assert plot_over_time(tmp_path / "a.png", [shown]).axes[2].get_ylim()[0] > -1e4
     assert np.isfinite(shown.lines["speed", 0][1]).all() and np.nanmax(np.abs(shown.loaded[:, 2])) < 1e4
 
 
 def test_a_band_is_drawn_only_where_there_is_one(tmp_path):
     shown = course(RUNS["usual"], panels=("speed", "load", "slip"))
-    figure = draw_over_time(tmp_path / "a.png", [shown])
+    figure = plot_over_time(tmp_path / "a.png", [shown])
     assert not figure.axes[2].collections and not figure.legends
     shown.band = SlipBand(np.array([0.0, 0.5, 1.0]), np.array([0.0, 0.1, 0.2]), np.array([0.1, 0.3, 0.5]))
-    figure = draw_over_time(tmp_path / "b.png", [shown])
+    figure = plot_over_time(tmp_path / "b.png", [shown])
     assert len(figure.axes[2].collections) == 1 and len(figure.axes[2].collections[0].get_paths()) == 1, "one area, without seams"
     assert "5 to 95 %" in figure.legends[0].get_texts()[0].get_text()
     assert figure.axes[2].get_ylim()[1] >= 50.0
@@ -221,17 +221,17 @@ def test_bands_that_a_run_published_are_shaded_but_not_at_rest_and_dashed_where_
     shown.recorded = recorded_bands(published, shown.lines, SCENE)
     slip, clearance = shown.recorded["slip"], shown.recorded["clearance"]
     assert np.isnan(slip.high[slip.times < 0.5]).all() and slip.high[-1] == pytest.approx(5.0) and clearance.low[0] == pytest.approx(26.0)
-    figure = draw_over_time(tmp_path / "a.png", [shown])
+    figure = plot_over_time(tmp_path / "a.png", [shown])
     assert [len(axes.collections) for axes in figure.axes] == [1, 1, 1] and [len(axes.lines) for axes in figure.axes] == [1, 1, 1]
     low, high = figure.axes[1].get_ylim()
     assert low <= 500.0 and high >= 7000.0, "the band of the life lies on its axis"
     assert "as the run published it" in figure.legends[0].get_texts()[0].get_text()
     shown.recorded = recorded_bands([*published, Bands(ESTIMATES, ("x",), ("",), LINEAR[:1], np.ones((1, 1, 3)))], shown.lines, SCENE)
-    figure = draw_over_time(tmp_path / "b.png", [shown])
+    figure = plot_over_time(tmp_path / "b.png", [shown])
     assert [len(axes.lines) for axes in figure.axes] == [2, 2, 2] and "dashed: as measurements" in figure.legends[0].get_texts()[0].get_text()
     assert_readable(figure)
     shown.recorded = recorded_bands(published, shown.lines, MODIFIED)
-    figure = draw_over_time(tmp_path / "c.png", [shown])
+    figure = plot_over_time(tmp_path / "c.png", [shown])
     assert [len(axes.lines) for axes in figure.axes] == [1, 2, 1], "the line is the modified life, the band is about the basic one"
     assert figure.axes[1].lines[1].get_ydata()[-1] == 2000.0 and SCENE.life.symbols[0] in figure.legends[0].get_texts()[0].get_text()
     assert_readable(figure)
@@ -244,7 +244,7 @@ def test_the_minimum_load_is_the_makers_at_the_speed_of_the_run(tmp_path):
     by_hand = 150.0 * (6 + 4 * np.array([3000.0, 1000.0, 3000.0]) / 5000) * (scene.bearing.pitch_diameter / 0.1) ** 2
     assert minimum_loads(scene, np.array([3000.0, 1000.0, -3000.0])) == pytest.approx(by_hand)
     turning = run_of(LINEAR, shaft_speed=np.array([0.0, *np.linspace(1000, 3000, 299)]) * math.pi / 30)
-    figure = draw_over_load(tmp_path / "a.png", [course(turning, scene=scene)])
+    figure = plot_over_load(tmp_path / "a.png", [course(turning, scene=scene)])
     marks = [line for line in figure.axes[0].lines if line.get_linestyle() == "--"]
     assert marks[0].get_xdata()[0] == pytest.approx(by_hand[0])
     assert "1,000 to 3,000 rpm" in figure.legends[0].get_texts()[0].get_text()
@@ -257,7 +257,7 @@ def test_a_sweep_over_load_has_a_line_for_each_speed_and_the_minimum_load(tmp_pa
         for load in (100.0, 300.0, 1000.0, 3000.0)
     ]
     points[0]["slip"], points[1]["life"] = math.nan, math.inf
-    figure = draw_table_over_load(tmp_path / "a.png", points, SCENE, "a sweep", "rating life [h]")
+    figure = plot_table_over_load(tmp_path / "a.png", points, SCENE, "a sweep", "rating life [h]")
     assert_readable(figure)
     assert len(figure.axes[0].lines) == 3 and figure.axes[1].get_yscale() == "log" and figure.axes[0].get_xlabel() == "radial load [kN]"
 
@@ -308,7 +308,7 @@ def test_options_that_do_not_fit_are_refused_in_words(recording, tmp_path, optio
 
 def test_a_band_is_computed_from_the_ranges_of_the_scene_where_it_is_asked_for(recording, tmp_path, monkeypatch):
     drawn = []
-    monkeypatch.setattr(run_plot, "draw_over_time", lambda path, courses, title: drawn.extend(courses))
+    monkeypatch.setattr(run_plot, "plot_over_time", lambda path, courses, title: drawn.extend(courses))
     assert plotted(recording, "--band", "8", "-o", tmp_path / "a.png").exit_code == 0
     band = drawn[0].band
     assert len(band.times) == len(drawn[0].conditions) > 1 and np.all(band.low < band.high) and np.all((0 < band.low) & (band.high < 0.3))

@@ -11,7 +11,7 @@ def watched(values, publishers=2):
     conflict = PublisherConflict("shaft_speed")
     conflict.publishers = publishers
     for value in values:
-        conflict.take((value,))
+        conflict.receive((value,))
     return conflict
 
 
@@ -42,7 +42,7 @@ def test_loads_that_differ_in_direction_alone_disagree():
     conflict = PublisherConflict("radial_load")
     conflict.publishers = 2
     for values in [(800.0, 0.0), (0.0, 800.0)] * 10:
-        conflict.take(values)
+        conflict.receive(values)
     assert "radial_load: 2 publishers" in conflict.event(0.0).text and conflict.values == {"radial_load jumps between": "0 N and 800 N"}
 
 

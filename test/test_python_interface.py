@@ -2,15 +2,18 @@
 """The Python interface: settled states, sweeps, operating points and inputs with units, copies of simulations, and types."""
 
 import copy
+import dataclasses
 import inspect
 import math
 import os
 import pickle
+import re
 import subprocess
 import sys
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -19,7 +22,10 @@ from scipy.optimize import brentq
 
 import bearing_sim
 from bearing_sim import Inputs, SceneError, Settled, Simulation, load_scene, run_sweep, settle
-from bearing_sim.scene.scene import OPERATING_POINT
+from bearing_sim.scene.fidelity import WANTS, WantName
+from bearing_sim.scene.fields import blocks
+from bearing_sim.scene.requirements import MEASURED
+from bearing_sim.scene.scene import OPERATING_POINT, WantedError
 from bearing_sim.simulation import scene_inputs
 from bearing_sim.studies.uncertainty_propagation import UncertaintyError, study
 from bearing_sim.sweep.grid import FieldError, axis, read_axis
@@ -31,8 +37,9 @@ PUBLIC = sorted(
     "FieldError Inputs IntegrationError Level OBSERVABLES PartialRecording Recording RecordingError Scene SceneError Settled Simulation Table "
     "UncertaintyError load_scene run_sweep scene_fields settle to_pandas to_xarray".split()
 )
-# What a type checker accepts, and lines each of which it refuses with these words.
+# What a type checker accepts, lines each of which it refuses with these words, and what it knows of the types of expressions.
 ACCEPTED = """
+import numpy as np
 from bearing_sim import Inputs, Level, Recording, Scene, Settled, Simulation, Table, load_scene, run_sweep, settle, to_pandas
 
 scene: Scene = load_scene("deng2017_table1", ["level=steady"])
@@ -48,6 +55,9 @@ table = run_sweep(scene, [{"radial_load": 100.0, "bearing.clearance": "C3"}], {"
 temperature: float = result.sample["oil_temperature"]
 for item in Recording("run.mcap"):
     print(item)
+for name in ("cage_slip", "inner_load"):
+    print(block[name].mean(), np.concatenate([block, block])[name])
+again = Simulation(scene, start=block[-1])
 """
 REFUSED = {
     "result.cage_slp": 'has no attribute "cage_slp"',
@@ -70,6 +80,33 @@ REFUSED = {
     "run_sweep(scene, 3)": 'incompatible type "int"',
     "table.to_panda()": 'has no attribute "to_panda"',
     "import bearing_sim; bearing_sim.settl": 'has no attribute "settl"',
+    "scene.bearing.roller.diameter.mm": '"float" has no attribute "mm"',
+    'scene.bearing.cage.guide_radius + "1 mm"': "Unsupported",
+    "scene.operating.radial_load.upper()": '"float" has no attribute "upper"',
+    'result.verdict == "setled"': "Non-overlapping equality check",
+    "result.sample.cage_slip": 'has no attribute "cage_slip"',
+    "block[0].at": 'has no attribute "at"',
+}
+REVEALED = {
+    "scene.operating.shaft_speed": "float",
+    "scene.bearing.roller.count": "int",
+    "scene.bearing.cage.guide_radius": "float | None",
+    "scene.lubricant.temperature": "float",
+    "scene.table.correction": "Literal['none'] | Literal['planar']",
+    "result.cage_slip": "float",
+    "result.settled": "bool",
+    "result.start": "Literal['rolling'] | Literal['skid'] | Literal['nearby']",
+    'result.bands["cage_slip"].low': "float",
+    'result.sample["oil_temperature"]': "numpy.float64",
+    'result.sample["inner_load"]': "ndarray",
+    "result.window": "Block",
+    "block[0]": "Sample",
+    "block[1:]": "Block",
+    'block["cage_slip"]': "numpy.float64",
+    "table.rows[0]": "dict[str, Any]",
+    "table.columns[0].unit": "str",
+    'Recording("run.mcap").scene': "Scene",
+    'next(iter(Recording("run.mcap")))': "Block | ",
 }
 MOTOR = {
     "name": "motor",
@@ -356,17 +393,33 @@ def test_type_checkers_see_the_names_that_the_package_exports():
     assert (ROOT / "bearing_sim/py.typed").is_file() and '"py.typed"' in packed and '"__init__.pyi"' in packed and '"model/names.pyi"' in packed
 
 
+def fields_of_a_scene() -> list[str]:
+    """Return all fields of the records of a scene, as expressions."""
+    records = dict.fromkeys(block.record for block in blocks(bearing_sim.Scene))
+    return [f"{record.__module__}.{record.__name__}.{field.name}" for record in records for field in dataclasses.fields(record)]
+
+
 @pytest.mark.long
-def test_a_type_checker_accepts_what_runs_and_refuses_each_mistake_in_its_line(tmp_path):
+def test_a_type_checker_accepts_what_runs_knows_types_and_refuses_each_mistake_in_its_line(tmp_path):
     pytest.importorskip("mypy", reason="pip install 'bearing_sim[test]' brings mypy")
-    (tmp_path / "program.py").write_text("\n".join([ACCEPTED.strip(), *REFUSED]))
-    command = [sys.executable, "-m", "mypy", "--follow-imports=silent", "--cache-dir", str(tmp_path / "cache"), str(tmp_path / "program.py")]
-    found = subprocess.run(command, capture_output=True, text=True, timeout=400, cwd=tmp_path, env={**os.environ, "MYPYPATH": str(ROOT)})
-    errors = [line.partition("program.py:")[2].partition(": error: ") for line in found.stdout.splitlines() if ": error: " in line]
-    first = ACCEPTED.strip().count("\n") + 2
-    by_line = {int(number) - first: words for number, _, words in errors}
-    assert [words for place, words in by_line.items() if place < 0] == []
-    assert [text for place, (text, words) in enumerate(REFUSED.items()) if words not in by_line.get(place, "")] == [], found.stdout
+    fields, accepted = fields_of_a_scene(), ACCEPTED.strip().splitlines()
+    modules = sorted({each.rsplit(".", 2)[0] for each in fields})
+    program = [*accepted, *REFUSED, *(f"import {each}" for each in modules), *(f"reveal_type({each})" for each in (*REVEALED, *fields))]
+    (tmp_path / "program.py").write_text("\n".join(program))
+    command = [sys.executable, "-m", "mypy", "--follow-imports=silent", "--strict-equality", "--cache-dir", str(tmp_path / "cache"), "program.py"]
+    found = subprocess.run(command, capture_output=True, text=True, timeout=400, cwd=tmp_path, env={**os.environ, "MYPYPATH": str(ROOT)}).stdout
+    said = {"error": {}, "note": {}}
+    for number, kind, words in re.findall(r"^program.py:(\d+): (error|note): (.*)$", found, re.MULTILINE):
+        said[kind][program[int(number) - 1]] = words
+    assert [text for text in said["error"] if text not in REFUSED] == [] and "bearing_sim/" not in found, found
+    assert [text for text, words in REFUSED.items() if words not in said["error"].get(text, "absent")] == [], found
+    types = {text.removeprefix("reveal_type(")[:-1]: words.partition('"')[2][:-1] for text, words in said["note"].items() if "Revealed" in words}
+    assert {text: types[text] for text, kind in REVEALED.items() if kind not in types[text]} == {}
+    assert {text: types[text] for text in fields if re.search(r"\bAny\b", types[text])} == {}
+
+
+def test_names_that_are_written_for_type_checkers_are_those_of_their_tables():
+    assert get_args(WantName) == tuple(WANTS) and get_args(WantedError.__annotations__["want"]) == tuple(MEASURED)
 
 
 @pytest.mark.parametrize(

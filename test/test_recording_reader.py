@@ -146,7 +146,7 @@ def test_arrays_of_earlier_versions_lack_their_last_rows_and_others_are_refused(
         samples = _Samples(load_scene("deng2017_table1"), 0)
         for topic, data in (("/operating_point", _array_message(label, numbers)), ("/roller_loads", _array_message("ring", np.ones(36)))):
             assert not list(samples.blocks_with(topic, Message(1, 0, 10, 10, data)))
-        return samples.take()[0]
+        return samples.pop_block()[0]
 
     found = read("load y, z, oil temperature, land eccentricity", [1.0, 2.0, 300.0, 0.5])
     assert [found[name] for name in ("load_y", "load_z", "oil_temperature", "land_eccentricity")] == [1.0, 2.0, 300.0, 0.5]

@@ -29,7 +29,7 @@ def feed(one, seconds, residual, start, lot, correlation=0.0, predicted=0.05):
     told = math.nan
     for k, wobble in enumerate(noise.tolist()):
         now = start + (k + 1) / RATE
-        one.take(now, SPEED, predicted + residual + wobble, predicted)
+        one.compare(now, SPEED, predicted + residual + wobble, predicted)
         if math.isnan(told) and one.events(now):
             told = now - start
     return told, start + seconds
@@ -50,7 +50,7 @@ def test_false_alarms_come_as_often_as_stated():
     """Of an hour's noise where one false alarm in 100 s is asked for: the detector is no deaf one."""
     one, lot, alarms, before = monitor(false_alarm_time=100.0, tolerance=1e-6), np.random.default_rng(7), 0, False
     for k, wobble in enumerate((READING * lot.normal(size=200_000)).tolist()):
-        one.take(k / RATE, SPEED, wobble, 0.0)
+        one.compare(k / RATE, SPEED, wobble, 0.0)
         alarms, before = alarms + (bool(one.events(0.0)) and not before), bool(one.events(0.0))
     assert 0.5 < 20_000 / alarms / 100.0 < 2.5, "an alarm lasts for a while, in which there is no other"
 
@@ -107,14 +107,14 @@ def test_rest_start_up_and_changes_of_speed_are_not_judged():
     for _ in range(20):  # starts and stops, where sensor and model disagree as they like
         for _ in range(50):
             now += 1 / RATE
-            one.take(now, 0.0, math.nan, math.nan)
+            one.compare(now, 0.0, math.nan, math.nan)
         assert one.verdict(now).startswith("not judged")
         for k in range(50):
             now += 1 / RATE
-            one.take(now, SPEED * (k + 1) / 50, lot.uniform(-0.5, 0.5), 0.05)
+            one.compare(now, SPEED * (k + 1) / 50, lot.uniform(-0.5, 0.5), 0.05)
         for _ in range(30):  # and while the bearing settles after the ramp
             now += 1 / RATE
-            one.take(now, SPEED, lot.uniform(-0.5, 0.5), 0.05)
+            one.compare(now, SPEED, lot.uniform(-0.5, 0.5), 0.05)
         now += 2.0
         told, now = feed(one, 30.0, 0.0, now, lot)
         assert math.isnan(told)
@@ -143,7 +143,7 @@ def test_verdicts_before_during_and_after_a_measurement():
 def test_measurements_rarer_than_batches_are_judged_one_by_one():
     one, lot = monitor(), np.random.default_rng(16)
     for k in range(400):
-        one.take(2.0 * k, SPEED, READING * lot.normal() + (0.02 if k > 300 else 0.0), 0.0)
+        one.compare(2.0 * k, SPEED, READING * lot.normal() + (0.02 if k > 300 else 0.0), 0.0)
     assert one.verdict(799.0) == "slips more than predicted"
 
 

@@ -2,6 +2,7 @@
 """Claims about runs that follow a clock: the same as a replay of the same messages, whatever the clock and the order of topics do."""
 
 import random
+import time
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from bearing_sim.levels.steady import table_builder as store
 from bearing_sim.messages import topics
 from bearing_sim.messages.events import Level
 from bearing_sim.recording.writer import McapSink
+from bearing_sim.runtime.health import Phase
 from bearing_sim.runtime.replay import replay
 from bearing_sim.runtime.sim_time import SimClock, SimTimeModel, Step
 from bearing_sim.scene.loader import load_scene
@@ -141,6 +143,23 @@ def test_a_pause_of_the_clock_and_of_the_model_and_a_machine_that_lags_change_no
     run.model.solver.pause(False)
     run.player.play(rest, ticks(SECONDS, 0.05, 0.9))
     assert_same_samples(run.finish().samples, expected.samples)
+
+
+def test_a_reset_in_a_pause_acts_at_once_and_does_not_end_the_pause(make, manoeuvre):
+    simulation = FakeReset()
+    simulation.seconds_per_tick = 0.02
+    run = make(simulation)
+    solver, computed = run.model.solver, simulation.calls
+    run.model.note_publishers("oil_temperature", 1)
+    run.player.play(manoeuvre[0], ticks(SECONDS, 0.3))
+    run.player.until(lambda: len(computed) > 3, "the model is amid a segment")
+    assert solver.hold() and solver.busy_for == 0.0
+    held = len(computed)
+    assert run.model.reset() and len(simulation.resets) == 3, "at first, at the start of the profile, and now"
+    time.sleep(0.1)
+    assert solver.phase is Phase.PAUSED and len(computed) == held
+    solver.pause(False)
+    assert len(run.finish().samples) == 59, "none is lost, and none computed twice"
 
 
 def test_level_steady_goes_its_course_through_operating_points_as_in_a_replay(make, tmp_path, monkeypatch):

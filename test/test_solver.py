@@ -36,9 +36,9 @@ class Rig:
         deadline = time.monotonic() + seconds
         while not until(self):
             assert time.monotonic() < deadline, f"waited {seconds} s in vain; phase {self.solver.phase}"
-            self.items += self.solver.take()
+            self.items += self.solver.drain()
             time.sleep(0.005)
-        self.items += self.solver.take()
+        self.items += self.solver.drain()
 
     @property
     def blocks(self):
@@ -128,7 +128,7 @@ def test_a_queue_that_nobody_empties_loses_the_oldest_and_counts_them(rig):
         time.sleep(0.01)
     one.solver.pause()
     time.sleep(0.1)
-    blocks = one.solver.take()
+    blocks = one.solver.drain()
     assert len(blocks) == 10
     assert one.solver.dropped == 1 + len(one.simulation.calls) - 10  # the first block is the state at the start
     assert blocks[-1]["time"][-1] == one.solver.newest["time"]

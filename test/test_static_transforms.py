@@ -25,7 +25,7 @@ def test_roll_pitch_and_yaw_turn_about_the_fixed_axes_in_this_order(angles):
 def test_a_load_of_a_machine_turned_by_a_quarter_points_where_it_did():
     """The housing's z is the bearing's -y where the bearing is rolled by +90 degrees: y' = z, z' = -y."""
     transforms = StaticTransforms()
-    assert transforms.take([Transform("housing", "bearing", (0.1, 0.0, 0.0), quaternion((math.pi / 2, 0.0, 0.0)))]) == []
+    assert transforms.receive([Transform("housing", "bearing", (0.1, 0.0, 0.0), quaternion((math.pi / 2, 0.0, 0.0)))]) == []
     np.testing.assert_allclose(transforms.rotation("housing", "bearing") @ (5.0, 0.0, -800.0), (5.0, -800.0, 0.0), atol=1e-12)
     np.testing.assert_allclose(transforms.rotation("bearing", "housing") @ (5.0, -800.0, 0.0), (5.0, 0.0, -800.0), atol=1e-12)
 
@@ -35,11 +35,11 @@ def test_chains_are_followed_up_and_down_and_the_newest_transform_of_a_frame_cou
     turns = {child: Rotation.random(random_state=rng) for child in ("gearbox", "rear", "dyno", "cell")}
     parents = {"gearbox": "base", "rear": "gearbox", "dyno": "base", "cell": "dyno"}
     transforms = StaticTransforms()
-    transforms.take(Transform(f"/{parents[child]}", child, orientation=tuple(turn.as_quat())) for child, turn in turns.items())
+    transforms.receive(Transform(f"/{parents[child]}", child, orientation=tuple(turn.as_quat())) for child, turn in turns.items())
     force = np.array([10.0, -700.0, 300.0])
     in_base = turns["dyno"].apply(turns["cell"].apply(force))
     np.testing.assert_allclose(transforms.rotation("cell", "rear") @ force, (turns["gearbox"] * turns["rear"]).inv().apply(in_base), atol=1e-11)
-    transforms.take([Transform("gearbox", "rear")])
+    transforms.receive([Transform("gearbox", "rear")])
     np.testing.assert_allclose(transforms.rotation("cell", "rear") @ force, turns["gearbox"].inv().apply(in_base), atol=1e-11)
 
 
@@ -47,7 +47,7 @@ def test_frames_that_nothing_joins_are_named_and_loops_end():
     transforms = StaticTransforms()
     with pytest.raises(LookupError, match="no static transforms join 'dyno' and 'bearing'; /tf_static has none"):
         transforms.rotation("dyno", "bearing")
-    transforms.take([Transform("a", "b"), Transform("b", "a"), Transform("base", "bearing")])
+    transforms.receive([Transform("a", "b"), Transform("b", "a"), Transform("base", "bearing")])
     with pytest.raises(LookupError, match="join 'a' and 'bearing'; /tf_static has 'a', 'b', 'base', 'bearing'"):
         transforms.rotation("a", "bearing")
     with pytest.raises(LookupError, match="tf2_msgs"):
@@ -66,7 +66,7 @@ def test_frames_that_nothing_joins_are_named_and_loops_end():
 )
 def test_a_transform_that_is_none_is_left_out_and_named(transform, reason):
     transforms = StaticTransforms()
-    (text,) = transforms.take([transform])
+    (text,) = transforms.receive([transform])
     assert reason in text and "'bearing'" in text
     with pytest.raises(LookupError):
         transforms.rotation("base", "bearing")

@@ -71,7 +71,7 @@ def test_stretches_are_the_union_of_what_was_added_in_any_order():
     chance = np.random.default_rng(5)
     covered, seen = Covered(), np.zeros(400, bool)
     for begin, length in zip(chance.integers(0, 380, 60).tolist(), chance.integers(1, 20, 60).tolist()):
-        covered.add(begin * SECOND, (begin + length) * SECOND)
+        covered.cover(begin * SECOND, (begin + length) * SECOND)
         seen[begin : begin + length] = True
         assert covered.seconds == pytest.approx(seen.sum()) and covered == Covered(covered.stretches)
         edges = np.arange(0, 401, 7)
@@ -84,7 +84,7 @@ def test_the_number_of_stretches_is_bounded_and_the_shortest_gap_goes_first():
     for number in range(MOST + 1):
         gap = 2 if number == 100 else 5
         begin = number * 100 - (5 - gap)
-        covered.add(begin * SECOND, (number * 100 + 95) * SECOND)
+        covered.cover(begin * SECOND, (number * 100 + 95) * SECOND)
     assert len(covered) == MOST
     assert not any(begin == (100 * 100 - 3) * SECOND for begin, _ in covered.stretches), "the gap of two seconds is closed"
 
@@ -99,7 +99,7 @@ def test_the_life_used_does_not_depend_on_how_samples_are_divided_and_no_time_co
         counter, found = LifeCounter(0.25, covered), []
         for part in np.array_split(np.arange(200), parts):
             block = samples(times[part], damage[part])
-            counter.take(block, times_ns[part], seconds[part])
+            counter.count(block, times_ns[part], seconds[part])
             found += block["damage"].tolist()
         return np.array(found)
 
@@ -123,7 +123,7 @@ def test_totals_agree_with_a_plain_count_sample_by_sample():
     times_ns = MIDNIGHT - 100 * SECOND + np.rint(block["time"] * 1e9).astype(np.int64)
     by = Criteria(1000.0, 20.0, 20e3)
     for part in np.array_split(np.arange(n), 11):
-        state.take(block[part], times_ns[part], np.full(len(part), 0.1), by)
+        state.accumulate(block[part], times_ns[part], np.full(len(part), 0.1), by)
     found, turns = state.totals, speed > 0.0
     assert found.damage == block["damage"][-1] and found.starts == 3
     assert found.revolutions == pytest.approx(sum(each * 0.1 / (2 * math.pi) for each in speed))
@@ -150,7 +150,7 @@ def test_a_machine_that_is_made_to_turn_slower_than_slip_counts_runs_without_a_s
     n = 100
     block = samples(np.arange(1, n + 1) * 1.0, np.zeros(n), np.full(n, 1.0), np.full(n, 0.2), np.ones(n), np.ones(n), np.ones(n))
     state, times_ns = StoredState("A1", {}), np.arange(1, n + 1) * SECOND
-    state.take(block, times_ns, np.ones(n), Criteria(1.2, 20.0, 20e3))
+    state.accumulate(block, times_ns, np.ones(n), Criteria(1.2, 20.0, 20e3))
     assert state.totals.running_seconds == 100.0 and state.totals.slip_seconds == [0.0, 0.0, 0.0, 100.0] and state.totals.largest_slip is None
 
 
@@ -445,7 +445,7 @@ def test_another_bearing_begins_anew_and_the_state_of_the_first_is_kept(tmp_path
         kept.append(run.keeper.retire(into_archive=True))
         return StateKeeper(tmp_path / "a.json", SCENE, "B2")
 
-    run.live.replace_bearing("state", change)
+    run.live.replace_bearing(change)
     first, run.damages = run.damages, []
     run.feed(0.2)
     run.live.close()
@@ -599,13 +599,13 @@ def test_what_a_residual_monitor_has_learned_goes_on_as_if_there_had_been_no_res
     readings = 0.02 + 0.001 * chance.normal(size=len(times))
     for time_, reading in zip(times.tolist(), readings.tolist()):
         for monitor in (whole, first):
-            monitor.take(time_, 1000.0, reading, 0.01)
+            monitor.compare(time_, 1000.0, reading, 0.01)
     second = ResidualMonitor(detection, 20.0)
     second.restore(json.loads(json.dumps(first.learned)))
     whole.interrupt(float(times[-1]))
     for time_, reading in zip(times.tolist(), readings[::-1].tolist()):
-        whole.take(times[-1] + 1.0 + time_, 1000.0, reading + 0.02, 0.01)
-        second.take(time_, 1000.0, reading + 0.02, 0.01)
+        whole.compare(times[-1] + 1.0 + time_, 1000.0, reading + 0.02, 0.01)
+        second.compare(time_, 1000.0, reading + 0.02, 0.01)
     assert second.learned["changes"] == pytest.approx(whole.learned["changes"]) and second.learned["changes"]["side"] == 1
     assert second.learned["batches"] == pytest.approx(whole.learned["batches"])
     other = ResidualMonitor(dataclasses.replace(detection, batch=2.0 * detection.batch), 20.0)

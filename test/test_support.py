@@ -11,7 +11,7 @@ from complex_step import complex_step_jacobian
 from reference_planar import Reference
 from reference_spatial import SpatialReference
 from reference_support import Carried
-from response_over_speed.responses import draw, relative_damage, respond
+from response_over_speed.responses import plot_responses, relative_damage, respond
 from scipy.integrate import quad, solve_ivp
 
 from bearing_sim import Inputs, Simulation, load_scene
@@ -320,7 +320,7 @@ def test_support_with_damping_ends_the_resonance_of_the_ring_on_its_contacts(tmp
     assert damage[still.model, still.shaft_speed] == 1.0 < 1.2 < damage[held.model, held.shaft_speed]
     assert damage[carried.model, carried.shaft_speed] == pytest.approx(1.0, abs=0.03)
     assert still.support_power == held.support_power == 0.0 < carried.support_power and held.outer_swing == 0.0 < carried.outer_swing
-    draw(tmp_path / "response.png", "response", found)
+    plot_responses(tmp_path / "response.png", "response", found)
     assert (tmp_path / "response.png").stat().st_size > 1000
 
 

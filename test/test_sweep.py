@@ -21,7 +21,7 @@ from bearing_sim.model.sample import OBSERVABLES, new_block
 from bearing_sim.simulation import Counters
 from bearing_sim.sweep import point
 from bearing_sim.sweep.grid import FieldError, axis, read_axis, run_sweep
-from bearing_sim.sweep.pictures import NotDrawable, draw, new_figure, set_limits
+from bearing_sim.sweep.pictures import NotDrawable, new_figure, plot_table, set_limits
 from bearing_sim.sweep.point import RESULTS, point_row
 from bearing_sim.sweep.settling import Outcome
 from bearing_sim.sweep.table import read_table, write_table
@@ -197,13 +197,13 @@ def test_pictures_are_lines_over_one_variable_maps_over_two_and_refused_over_thr
     two = swept(f"{LOW}=34.86mm:34.865mm:4", f"{SPEED}=20000rpm:50000rpm:4", overrides=["level=steady"])
     family = swept(f"{LOW}=34.86mm:34.865mm:4", "level=steady,slip")
     for name, table in (("one", one), ("two", two), ("family", family)):
-        draw(tmp_path / f"{name}.svg", table)
+        plot_table(tmp_path / f"{name}.svg", table)
     assert [(tmp_path / f"{name}.svg").read_text().count("QuadMesh") > 0 for name in ("one", "two", "family")] == [False, True, False]
     three = swept(f"{LOW}=34.86mm,34.865mm", f"{SPEED}=20000rpm,50000rpm", "operating.radial_load=100N,200N", overrides=["level=steady"])
     with pytest.raises(NotDrawable, match="this sweep has 3"):
-        draw(tmp_path / "three.png", three)
+        plot_table(tmp_path / "three.png", three)
     with pytest.raises(NotDrawable, match="reason: not a quantity"):
-        draw(tmp_path / "one.png", one, ["reason"])
+        plot_table(tmp_path / "one.png", one, ["reason"])
 
 
 COMMAND = ["sweep", "deng2017_table1", "--vary", f"{LOW}=34.86mm:34.8675mm:31", "--level", "slip"]

@@ -51,7 +51,7 @@ class Fed:
     def feed(self, found, speed=SPEED, spacing=LENGTH / RATE):
         for block in found:
             self.now += spacing
-            self.events += self.meter.take(block, self.now, speed)
+            self.events += self.meter.receive(block, self.now, speed)
 
     @property
     def kinds(self):
@@ -124,7 +124,7 @@ def test_windows_that_come_faster_than_they_are_analysed_are_left_out_and_said(f
     ],
 )
 def test_a_block_that_cannot_be_used_is_refused_with_what_was_expected(fed, block, speed, reason):
-    (event,) = fed.meter.take(block, 1.0, speed)
+    (event,) = fed.meter.receive(block, 1.0, speed)
     assert event.kind == "vibration.refused" and reason in event.text and fed.meter.values(0.0)["vibration: blocks refused"] == 1
 
 
@@ -146,7 +146,7 @@ def test_the_process_finds_the_cage_in_a_window_and_says_that_noise_has_no_line(
     found = []
     for samples in (synthetic.vibration.samples, np.random.default_rng(4).normal(size=51_200)):
         before = meter.values(0.0)["vibration: windows"]
-        assert meter.take(Block(samples, 25_600.0), 0.0, 314.0) == []
+        assert meter.receive(Block(samples, 25_600.0), 0.0, 314.0) == []
         until(lambda: found.extend(meter.readings(314.0)) or meter.values(0.0)["vibration: windows"] > before)
     assert meter.values(0.0)["vibration: windows without a claim"] == 1 and "no line of this bearing" in meter.last, meter.values(0.0)
     ((speed, error),) = found

@@ -92,7 +92,7 @@ def test_a_watcher_sees_single_samples_also_where_a_replay_computes_and_judges_m
     monkeypatch.setitem(registry.WATCHERS, "seen", f"{__name__}:Seen")
     quiet = [f"thresholds.{name}=0" for name in ("life_warning", "remaining_life_warning", "lambda_warning")]
     judged_at_once = []
-    monkeypatch.setattr(Monitor, "take_calm", lambda self, block: judged_at_once.append(len(block)))
+    monkeypatch.setattr(Monitor, "judge_calm", lambda self, block: judged_at_once.append(len(block)))
     for watched in (False, True):
         scene = load_scene("deng2017_table1", [*quiet, *(["watchers=[seen]"] if watched else [])])
         sink = replay_of(write(tmp_path / f"{watched}.mcap", course(3.0)), scene, rate=500.0, model=Profiling)
@@ -139,7 +139,9 @@ class Gathering(Watcher):
         raise ZeroDivisionError("on purpose")
 
 
-@pytest.mark.parametrize("act", [lambda watchers: watchers.hear("cage_speed_measured", 0.0, 1.0), lambda watchers: watchers.serve("accept_change")])
+@pytest.mark.parametrize(
+    "act", [lambda watchers: watchers.hear("cage_speed_measured", 0.0, 1.0), lambda watchers: watchers.serve("accept_change")[0]]
+)
 def test_a_watcher_that_fails_while_samples_wait_for_it_is_named_once(act, monkeypatch):
     monkeypatch.setitem(registry.WATCHERS, "gathering", f"{__name__}:Gathering")
     scene = load_scene("deng2017_table1", ["watchers=[gathering]"])

@@ -137,13 +137,13 @@ def _cells(row) -> tuple[str, ...]:
 
 def _show(designation: str, picture) -> Result:
     from bearing_sim.scene.loader import load_bearing
-    from bearing_sim.studies.bearing_facts import draw, facts, rows
+    from bearing_sim.studies.bearing_facts import facts, plot_bearing, rows
 
     bearing = load_bearing(designation)
     return Result(
         {**facts(bearing), "picture": None},
         lambda: print_table(bearing.designation or bearing.name, rows(bearing)),
-        lambda draft: draw(draft, bearing),
+        lambda draft: plot_bearing(draft, bearing),
         remarks=[] if picture else ["--picture bearing.png draws it; bearing-sim new writes a scene with it"],
     )
 
@@ -309,17 +309,17 @@ def loads(scene_name, overrides, slices, verbose):
         found = statics(scene, slices)
     warnings = graded(scene, outside(scene, found.sample), found.sample[0])
 
-    def draw(draft):
+    def plot(draft):
         from bearing_sim.scene.display import quantity_text
-        from bearing_sim.studies.statics import draw
+        from bearing_sim.studies.statics import plot_statics
 
         operating = (quantity_text(name, getattr(scene.operating, name)) for name in ("radial_load", "shaft_speed"))
-        draw(draft, f"{scene.name}: {' at '.join(operating)}", found)
+        plot_statics(draft, f"{scene.name}: {' at '.join(operating)}", found)
 
     return Result(
         {**_report_loads(scene, slices, found), **warnings_report(scene, warnings), "picture": None},
         lambda: _print_loads(scene, slices, found),
-        draw,
+        plot,
         after=lambda: warn_of_limits(scene, warnings, verbose),
     )
 
@@ -443,7 +443,7 @@ def machine(
     The ring is thin and elastic, computed by the Fourier series of the pressure.  The high points are where it was pressed; without
     --arc-turn a low point is at 0 deg.  Pressures of turned arcs are rescaled until their resultant vanishes.
     """
-    from bearing_sim.studies.machining import Pressing, RingSection, contour_text, draw, machine
+    from bearing_sim.studies.machining import Pressing, RingSection, contour_text, machine, plot_machined
 
     if low_radius is not None and ground_radius is not None:
         raise UsageError("--low-radius and --ground-radius determine the same radius; give one of them")
@@ -462,7 +462,7 @@ def machine(
     return Result(
         {**report, "out": out and str(out), "picture": None},
         lambda: _print_machine(report),
-        lambda draft: draw(draft, section, pressing, machined),
+        lambda draft: plot_machined(draft, section, pressing, machined),
         files=[out.path] if out is not None else [],
         after=(lambda: note(lobes)) if len(machined.lows) != arcs else None,
     )

@@ -54,7 +54,7 @@ def calibrate(log, scene_name, overrides, fields, batch, confidence, out, cage, 
     warn_of_scene(scene, before_results=False)
     measured, lines, unknown = _measured(log, scene, reading, cage, cage_joint)
     announce_compilation(scene)
-    from bearing_sim.studies.calibration import block_length, calibrate, cut, draw
+    from bearing_sim.studies.calibration import block_length, calibrate, cut, plot_calibration
 
     length = batch or block_length(measured.times[-1] - measured.times[0])
     blocks = cut(measured, scene.bearing.diameter_ratio, scene.thresholds.slip_from_speed, length)
@@ -64,7 +64,11 @@ def calibrate(log, scene_name, overrides, fields, batch, confidence, out, cage, 
     if out is not None:
         _write(out, log, found)
     title = f"{scene.name} calibrated by {log.name}"
-    return Result({**_report(log, scene, found), **unknown}, lambda: _print(title, scene, found, lines, out), lambda draft: draw(draft, title, found))
+    return Result(
+        {**_report(log, scene, found), **unknown},
+        lambda: _print(title, scene, found, lines, out),
+        lambda draft: plot_calibration(draft, title, found),
+    )
 
 
 def _scene(log, scene_name, overrides):

@@ -112,7 +112,7 @@ def design(
     return Result(
         report,
         lambda: _print_design(report),
-        lambda draft: studied.draw(draft, designed),
+        lambda draft: studied.plot_design(draft, designed),
         files=studied.write_design(out.path, designed),
         warnings=report["warnings"],
     )

@@ -68,7 +68,7 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
         raise UsageError("no logs; give files or folders, or --bearings TABLE.csv")
     if scene_name is None and bearings_path is None:
         raise UsageError("no bearing; give --scene, or --bearings TABLE.csv with a column scene")
-    longest_gap, reading = reading.longest_gap, _reading(mapping_name, reading)
+    reading = _reading(mapping_name, reading)
     asked = [str(path.absolute()) for path in (*paths, *([bearings_path] if bearings_path is not None else []))]
     rows = read_bearings(bearings_path) if bearings_path is not None else []
     if not paths:
@@ -80,14 +80,13 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     rows = [row | {"log": str(Path(row["log"]).absolute()) if Path(row["log"]).exists() else row["log"]} for row in rows]
     bearings = bearings_of(logs, rows, scene_name, overrides, reading, str(bearings_path or ""))
     _require_a_scene(bearings)
-    study = study_digest("fleet", asked, sorted({repr(bearing.scene) for bearing in bearings}), by, reading, longest_gap)
+    study = study_digest("fleet", asked, sorted({repr(bearing.scene) for bearing in bearings}), by, reading)
     announce_compilation()
     reading_bar, replay_bar = Points("reading", len(bearings)), Points("replay", len(bearings))
     bars = {"reading": reading_bar, "replay": replay_bar}
     with resumed(out, study, reading_bar, replay_bar) as journal:
         table = replay_fleet(
             bearings,
-            longest_gap,
             Execution(journal, workers, dask),
             lambda act, *counts: bars[act].update(*counts),
             build_with_progress,
@@ -114,12 +113,9 @@ def _reading(mapping_name, given):
     from bearing_sim.scene.loader import read_named
     from bearing_sim.studies.fleet_logs import Reading, mapping_of
 
-    constants = tuple(given.constants.items())
-    overrides = tuple(f"{name}={_constant_field(name, value)}" for name, value in constants)
+    overrides = tuple(f"{name}={_constant_field(name, value)}" for name, value in given.constants.items())
     text = read_named(mapping_name, "catalog/mappings", "mapping")[0] if mapping_name else ""
-    reading = Reading(
-        text, overrides, mapping_name or "", sources=tuple(given.sources.items()), joint=given.joint, stamps=given.stamps, constants=constants
-    )
+    reading = Reading(text, overrides, mapping_name or "", given)
     if mapping_name:
         mapping_of(reading)
     return reading

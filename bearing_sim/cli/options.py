@@ -6,7 +6,6 @@ import inspect
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 import click
 from click import Choice, FloatRange, IntRange
@@ -162,28 +161,6 @@ scene_options = together(scene_argument, set_option)
 """The scene, and overrides of its fields, ``overrides``."""
 
 
-class LogReading(NamedTuple):
-    """What the options of `log_options` say of a log."""
-
-    sources: dict[str, object]  # of channels in a recording, by channel
-    constants: dict[str, float]  # values [SI] of channels that are constant; a channel that no option concerns is in neither
-    joint: str  # of the shaft
-    stamps: str  # header or log
-    longest_gap: float | None  # [s]
-    speed_unit: str | None
-
-    @property
-    def is_given(self) -> bool:
-        """Whether an option concerns a channel."""
-        return bool(self.sources or self.constants)
-
-    def read(self, *paths: Path, **more):
-        """Return the input log of recordings; further parameters as of `bearing_sim.inputs.log.read_input_log`."""
-        from bearing_sim.inputs.log import read_input_log
-
-        return read_input_log(paths, self.sources, self.joint, self.stamps, constants=self.constants, **more)
-
-
 def _log_reading(
     speed,
     load,
@@ -196,9 +173,9 @@ def _log_reading(
     joint,
     stamps,
     longest_gap,
-) -> LogReading:
-    """Return what the texts of `log_options` say."""
-    from bearing_sim.inputs.log import constant, is_constant, source
+):
+    """Return what the texts of `log_options` say as a `bearing_sim.inputs.log.LogReading`."""
+    from bearing_sim.inputs.log import LogReading, constant, is_constant, source
 
     given = (
         ("shaft_speed", speed, speed_unit),
@@ -263,7 +240,7 @@ log_options = gathered(
         metavar="S",
     ),
 )
-"""The options that say where a log holds what: topics, units, constants, stamps and gaps; the command gets them as a `LogReading`."""
+"""The options that say where a log holds what: topics, constants, stamps and gaps; the command gets a `bearing_sim.inputs.log.LogReading`."""
 
 
 executor_options = together(

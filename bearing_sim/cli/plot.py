@@ -42,15 +42,15 @@ def plot(paths, picture, over, panels, band, quantities):
             raise UsageError("--panel and --band are for recordings; a table has --quantity")
         if over == "time":
             raise UsageError("--over time is for recordings; a sweep is drawn over what was varied, or --over load")
-        draw = _of_table(tables[0], over, quantities)
+        write = _of_table(tables[0], over, quantities)
     else:
         if quantities:
             raise UsageError("--quantity is for tables of sweeps; a recording has --panel")
         if over == "load" and (panels or band):
             raise UsageError("--panel and --band go with a picture over time")
-        draw = _of_recordings(paths, over, panels, band)
+        write = _of_recordings(paths, over, panels, band)
     with picture.draft() as draft:
-        draw(draft)
+        write(draft)
     return Result({}, files=[picture.path])
 
 
@@ -58,7 +58,7 @@ def _of_recordings(paths, over, panels, band):
     """Return what draws recordings into a file."""
     from bearing_sim.recording.reader import Recording
     from bearing_sim.scene.loader import did_you_mean
-    from bearing_sim.studies.run_plot import DEFAULT_PANELS, PANELS, SlipBand, draw_over_load, draw_over_time, read_course
+    from bearing_sim.studies.run_plot import DEFAULT_PANELS, PANELS, SlipBand, plot_over_load, plot_over_time, read_course
 
     for panel in panels:
         if panel not in PANELS:
@@ -76,7 +76,7 @@ def _of_recordings(paths, over, panels, band):
     for course in courses:
         simulated.setdefault(f"{course.scene.name} at level {course.scene.level}", []).append(course.name)
     title = "; ".join(f"{scene}: {', '.join(names)}" for scene, names in simulated.items())
-    return lambda draft: (draw_over_load if over == "load" else draw_over_time)(draft, courses, title)
+    return lambda draft: (plot_over_load if over == "load" else plot_over_time)(draft, courses, title)
 
 
 def _band_of(course, samples):
@@ -110,7 +110,7 @@ def _band_of(course, samples):
 
 def _of_table(path, over, quantities):
     """Return what draws a table into a file."""
-    from bearing_sim.sweep.pictures import draw
+    from bearing_sim.sweep.pictures import plot_table
     from bearing_sim.sweep.table import read_any_table, written_by_us
 
     with as_usage_error(ValueError), written_by_us(path):
@@ -125,11 +125,11 @@ def _of_table(path, over, quantities):
         kind = table.about.get("kind", "unknown")
         raise UsageError(f"{path}: the table of another study ({kind}), not of a sweep; `bearing-sim report` shows it")
 
-    def draw_sweep(draft):
+    def plot_sweep(draft):
         with as_usage_error(ValueError), written_by_us(path):
-            draw(draft, table, quantities)
+            plot_table(draft, table, quantities)
 
-    return draw_sweep
+    return plot_sweep
 
 
 _LOAD, _SPEED = "operating.radial_load", "operating.shaft_speed"
@@ -139,7 +139,7 @@ def _over_load(path, table):
     """Return what draws slip and life of a table over its column of loads into a file."""
     from bearing_sim.scene.display import heading
     from bearing_sim.scene.loader import SceneError, scene_from_yaml
-    from bearing_sim.studies.run_plot import draw_table_over_load
+    from bearing_sim.studies.run_plot import plot_table_over_load
     from bearing_sim.sweep.pictures import condition_title, value_text
     from bearing_sim.sweep.table import life_column
 
@@ -172,7 +172,7 @@ def _over_load(path, table):
     ]
     about = table.about
     where = condition_title(about) if "scene" in about else path.name
-    return lambda draft: draw_table_over_load(draft, points, scene, where, heading(life))
+    return lambda draft: plot_table_over_load(draft, points, scene, where, heading(life))
 
 
 @command("report")

@@ -24,7 +24,7 @@ class Result(NamedTuple):
 
     report: Mapping  # the one object that --json prints
     show: Callable[[], None] = lambda: None  # prints it for people
-    draw: Callable[[Path], None] | None = None  # draws it into a file
+    plot: Callable[[Path], None] | None = None  # draws it into a file
     rows: Sequence[Mapping] | None = None  # of the table
     remarks: Sequence[str] = ()  # printed after it for people
     warnings: Sequence[str] = ()  # printed on stderr after it
@@ -43,9 +43,9 @@ class Result(NamedTuple):
             if table is not None and self.rows is not None:
                 write_csv(table, self.rows)
                 written.append(str(table))
-            if picture is not None and self.draw is not None:
+            if picture is not None and self.plot is not None:
                 with picture.draft() as draft:
-                    self.draw(draft)
+                    self.plot(draft)
                 written.append(drawn := str(picture))
         finally:
             if as_json:

@@ -173,7 +173,7 @@ def _advance(simulation, plan, sinks, progress, estimation):
     """Advance to the end block by block; return how the run ended."""
     from bearing_sim.sweep.settling import advance_in_calls, advance_until_settled
 
-    def take(block):
+    def write(block):
         for sink in sinks:
             sink.write(block)
         for bands in estimation.see(block) if estimation is not None else ():
@@ -183,7 +183,7 @@ def _advance(simulation, plan, sinks, progress, estimation):
 
     def advance(seconds):
         count = plan.samples or _BLOCK * math.ceil(seconds / (_BLOCK * plan.interval) * (1.0 - 1e-9))  # whole calls, so that they can be repeated
-        return advance_in_calls(simulation, plan.interval, count, _BLOCK, take)
+        return advance_in_calls(simulation, plan.interval, count, _BLOCK, write)
 
     return advance_until_settled(simulation, plan.shortest, plan.longest, advance)
 

@@ -101,7 +101,7 @@ def spectrum(scene_name, data, overrides, level, duration, classes, reading, out
     return Result(
         report | {"points": result.table.rows},
         lambda: _print(scene, report, result),
-        lambda draft: studied.draw(draft, result.table),
+        lambda draft: studied.plot_spectrum(draft, result.table),
         files=files,
         warnings=report["warnings"],
     )

@@ -147,7 +147,7 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out):
     scene = scene_of(scene_name, overrides)
     warn_of_scene(scene)
     announce_compilation()
-    from bearing_sim.studies.clearance_map import LOAD, SPEED, draw, in_words, map_clearance
+    from bearing_sim.studies.clearance_map import LOAD, SPEED, in_words, map_clearance, plot_clearance_map
     from bearing_sim.sweep.table import require_same_study, study_digest, write_table
 
     operating = scene.operating
@@ -169,7 +169,7 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out):
     return Result(
         {"scene": scene.name, "heat": scene.heat.law, "found": words, "losses": losses, "points": found.table.rows},
         lambda: print_points(f"{scene.name}: running clearance, heat.law {scene.heat.law}", found.table, _CLEARANCE_SHOWN, keys=2),
-        lambda draft: draw(draft, _title(scene, overrides), found),
+        lambda draft: plot_clearance_map(draft, _title(scene, overrides), found),
         remarks=words,
         files=files,
     )
@@ -371,7 +371,7 @@ def extremes(scene_name, overrides, samples, seed, journal, workers):
     cages, narrow and wide pockets and lands, under steady inputs, starts, stops, reversals, steps and ripples. Every variant runs for at
     least 50 turns of its cage, or until it settles; then its books of energy are checked. Exit code 1 if any run fails.
     """
-    from bearing_sim.studies.extremes import counts, draw, run_extremes, table_rows, variants
+    from bearing_sim.studies.extremes import counts, plot_extremes, run_extremes, table_rows, variants
     from bearing_sim.sweep.tasks import Execution, Journal
 
     announce_compilation()
@@ -395,7 +395,7 @@ def extremes(scene_name, overrides, samples, seed, journal, workers):
     return Result(
         {"scene": scene_name, **found, "books": worst and {"case": worst.case.name, "off": worst.books}, "others": cases},
         show,
-        lambda draft: draw(draft, title, outcomes),
+        lambda draft: plot_extremes(draft, title, outcomes),
         table_rows(outcomes),
         ending=FailedRun(f"{found['failed']} of {samples} variants failed") if found["failed"] else None,
     )

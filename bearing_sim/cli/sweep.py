@@ -50,7 +50,7 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
     varied = [read_axis(text, written=True) for text in axes]
     count = point_count(varied)
     _check_sweep(varied, level)
-    from bearing_sim.sweep.pictures import draw, require_drawable
+    from bearing_sim.sweep.pictures import plot_table, require_drawable
 
     require_drawable([axis.values for axis in varied]) if picture is not None else None
     with suppress(SceneError):  # what varies may be what makes the scene valid
@@ -70,7 +70,7 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
     return Result(
         report | {"points": table.rows},
         lambda: _print_sweep(table, report),
-        lambda draft: draw(draft, table),
+        lambda draft: plot_table(draft, table),
         remarks=[f"{points.computed} points computed, {points.kept} kept from before"],
         files=files,
         warnings=report["warnings"],

@@ -116,10 +116,12 @@ def trade(
     scene = scene_of(scene_name, overrides)  # fails before anything is compiled
     is_asked = factor is not None or error is not None
     _require_use(scene, front, chosen, is_asked, quick)
+    from bearing_sim.studies.trade import able_levels, has_all, plot_trade, recommend, trade
+
+    if front is not None and against and not has_all(against, able_levels(scene_name, overrides)[1]):
+        raise UsageError(f"--front {front}: {_why_incomplete(against)}")
     course = _course(course_name, scene, mapping_name, reading, windows, window_turns, quick)
     announce_compilation()
-    from bearing_sim.studies.trade import draw, recommend, trade
-
     with Points("trade", 0) as points, as_usage_error(ValueError):
         try:
             found = trade(scene_name, overrides, levels, quick, points.update, against, course, journal and journal.path, workers)
@@ -144,7 +146,7 @@ def trade(
         _print_advice(found, factor, error, best)
 
     report = _report(found) | {"recommended": best and best.setting.name, "kept": kept and str(kept.path), "front": written and str(front)}
-    return Result(report, show, lambda draft: draw(draft, scene_name, found), rows_of(found), remarks, ending=ending)
+    return Result(report, show, lambda draft: plot_trade(draft, scene_name, found), rows_of(found), remarks, ending=ending)
 
 
 def _require_use(scene, front, chosen, is_asked, quick) -> None:
@@ -166,8 +168,8 @@ def _courses_in(front) -> str:
     return ", ".join(dict.fromkeys(course.name for course in front.courses))
 
 
-def _why_incomplete(found) -> str:
-    return f"errors against level {found.reference_level} say nothing of what it leaves out; leave out --against, or give planar"
+def _why_incomplete(level: str) -> str:
+    return f"errors against level {level} say nothing of what it leaves out; leave out --against, or give planar"
 
 
 def _keep(scene, found):
@@ -176,7 +178,7 @@ def _keep(scene, found):
     from bearing_sim.studies.trade import measured_course
 
     if not found.is_complete:
-        note(f"not kept: {_why_incomplete(found)}")
+        note(f"not kept: {_why_incomplete(found.reference_level)}")
         return None
     try:
         return keep(scene, measured_course(found))
@@ -190,8 +192,6 @@ def _add_to_front(path: Path, scene, found):
     from bearing_sim.scene.measured_tradeoffs import add_to_front
     from bearing_sim.studies.trade import measured_course
 
-    if not found.is_complete:
-        raise FailedRun(f"{path} is not written: {_why_incomplete(found)}")
     try:
         return add_to_front(path, scene, measured_course(found))
     except (ValueError, OSError) as failure:

@@ -63,17 +63,17 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
             note_points(journal, digest, table.path)
     name = scene.name if log is None else f"{scene.name} under {log.name}"
 
-    def draw(draft):
+    def plot(draft):
         from bearing_sim.studies.run_plot import life_label
-        from bearing_sim.studies.uncertainty_propagation import draw
+        from bearing_sim.studies.uncertainty_propagation import plot_uncertainty
 
         title = f"{name}: {len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
-        draw(draft, title, found, life_label([scene]), course and course.middles)
+        plot_uncertainty(draft, title, found, life_label([scene]), course and course.middles)
 
     return Result(
         {"scene": scene.name, "log": log and log.name, **report, **unknown},
         lambda: print_bands(name, report),
-        draw,
+        plot,
         files=[table.path] if table is not None else [],
     )
 

@@ -142,13 +142,13 @@ def vibration(
     found = analyse(record, geometry, speed, tolerance, _band(band, record.rate), not no_shaft_lines, parts)
     rows = [_row(part) for part in found.parts]
 
-    def draw(draft):
-        from bearing_sim.watchers.vibration.picture import draw
+    def plot(draft):
+        from bearing_sim.watchers.vibration.picture import plot_vibration
 
-        draw(draft, record, geometry, found)
+        plot_vibration(draft, record, geometry, found)
 
     report = {"file": data.name, **_report(found, record, geometry), "parts": rows}
-    return Result(report, lambda: _print(data.name, record, geometry, found), draw, rows)
+    return Result(report, lambda: _print(data.name, record, geometry, found), plot, rows)
 
 
 def _largest_slip(scene_name, shaft_speed, record) -> float:

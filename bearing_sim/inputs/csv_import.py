@@ -53,7 +53,7 @@ from bearing_sim.messages import topics
 from bearing_sim.recording.writer import McapFile
 from bearing_sim.scene.field_errors import invalid_fields
 from bearing_sim.scene.loader import InvalidField, SceneError, read_named, yaml_mapping
-from bearing_sim.scene.quantity import check, quantity, record, to_si
+from bearing_sim.scene.quantity import Quantity, check, record, to_si
 from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
@@ -89,9 +89,9 @@ def _column(si_unit: str, meaning: str) -> type:
         column: str = ""  # heading in the table
         # of the cells, such as rpm, kN, degC, or '% of 1500 rpm'; by default the one in the heading, as in Speed [rpm]
         unit: str | None = None
-        scale: quantity(si_unit, f"{meaning} for a cell of 1, instead of a unit") | None = None
-        offset: quantity(si_unit, f"{meaning} for a cell of 0, with a scale") | None = None
-        constant: quantity(si_unit, f"{meaning} throughout, instead of a column") | None = None
+        scale: Annotated[float, Quantity(si_unit, f"{meaning} for a cell of 1, instead of a unit")] | None = None
+        offset: Annotated[float, Quantity(si_unit, f"{meaning} for a cell of 0, with a scale")] | None = None
+        constant: Annotated[float, Quantity(si_unit, f"{meaning} throughout, instead of a column")] | None = None
 
         @check
         def _converts(self) -> list[str]:
@@ -165,7 +165,7 @@ class TimeColumn:
     format: str | None = None  # of timestamps: iso, or a format of Python's strptime, such as %d.%m.%Y %H:%M:%S
     zone: str = "UTC"  # of timestamps that do not name theirs, such as Europe/Berlin or +01:00; of times told twice in autumn the rising one
     epoch: datetime.datetime | datetime.date | str | None = None  # date and time of the number 0 [1970-01-01]
-    longest_step: quantity("s", "spacing of rows above which there is a gap", 0.0) | None = None
+    longest_step: Annotated[float, Quantity("s", "spacing of rows above which there is a gap", 0.0)] | None = None
 
     @check
     def _reads_one_way(self) -> list[str]:
@@ -266,7 +266,7 @@ class MassTimesAcceleration:
     """Load along +y: a supported mass times the Euclidean norm of the accelerations."""
 
     law: Literal["mass_times_acceleration"] = "mass_times_acceleration"
-    mass: quantity("kg", "mass that the bearing supports", 1e-6, 1e6)
+    mass: Annotated[float, Quantity("kg", "mass that the bearing supports", 1e-6, 1e6)]
     accelerations: tuple[AccelerationColumn, ...]  # columns
 
     @property
@@ -291,12 +291,12 @@ class GearForce:
     law: Literal["gear_force"] = "gear_force"
     power: PowerColumn | None = None  # column of the power that the gear transmits
     torque: TorqueColumn | None = None  # or column of the torque at the gear
-    efficiency: quantity("", "power that is measured over power through the gear; with power only", 0.01, 1.0) | None = None
-    pitch_diameter: quantity("m", "pitch diameter of the gear, d", 1e-3, 100.0, "mm")
-    pressure_angle: quantity("rad", "normal pressure angle of the teeth, alpha_n", 0.0, 0.8, "deg") = 0.0
-    helix_angle: quantity("rad", "helix angle of the teeth, beta", -1.2, 1.2, "deg") = 0.0
-    share: quantity("", "part of the mesh force that this bearing carries", 0.0, 10.0) = 1.0
-    dead_weight: quantity("N", "weight on this bearing, across the mesh force", 0.0, 1e7) = 0.0
+    efficiency: Annotated[float, Quantity("", "power that is measured over power through the gear; with power only", 0.01, 1.0)] | None = None
+    pitch_diameter: Annotated[float, Quantity("m", "pitch diameter of the gear, d", 1e-3, 100.0, "mm")]
+    pressure_angle: Annotated[float, Quantity("rad", "normal pressure angle of the teeth, alpha_n", 0.0, 0.8, "deg")] = 0.0
+    helix_angle: Annotated[float, Quantity("rad", "helix angle of the teeth, beta", -1.2, 1.2, "deg")] = 0.0
+    share: Annotated[float, Quantity("", "part of the mesh force that this bearing carries", 0.0, 10.0)] = 1.0
+    dead_weight: Annotated[float, Quantity("N", "weight on this bearing, across the mesh force", 0.0, 1e7)] = 0.0
 
     @check
     def _knows_its_torque(self) -> list[str]:
@@ -331,7 +331,7 @@ class ConstantLoad:
     """Load along +y: one value throughout, where no load was measured."""
 
     law: Literal["constant"] = "constant"
-    value: quantity("N", "radial load throughout", 0.0, 1e8)
+    value: Annotated[float, Quantity("N", "radial load throughout", 0.0, 1e8)]
 
     @property
     def columns(self) -> tuple:
@@ -524,7 +524,7 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
     row_reader.has_rounded_times = row_reader.repeat_their_times(first)
     lines = array("q")
     for line, cells in itertools.chain(first, rows):
-        if cells and row_reader.take(line, cells):  # an empty line is no row
+        if cells and row_reader.accept(line, cells):  # an empty line is no row
             times.append(row_reader.newest)
             lines.append(line)
             table.tally.used += table.faulty_line != line
@@ -692,7 +692,7 @@ class _RowReader:
     def _is_wanted(self, cells: list[str]) -> bool:
         return all(cells[column].strip() == text for column, text in self._only)
 
-    def take(self, line: int, cells: list[str]) -> bool:
+    def accept(self, line: int, cells: list[str]) -> bool:
         """Add one row; return whether its time is good."""
         if len(cells) == self._width and not self._is_wanted(cells):
             self._table.left_out += 1

@@ -122,16 +122,16 @@ class Coverage:
         self.bounds: list[str] = []
         self.is_overloaded = False
 
-    def take_good(self, channel: str, time: float) -> None:
-        """Take a good message of a channel."""
+    def note_good(self, channel: str, time: float) -> None:
+        """Note a good message of a channel."""
         self._good[channel] = time
         if channel in self._unknown:
             self._spans.append((self._unknown.pop(channel), time))
             if len(self._spans) > _SPANS_KEPT:
                 self._settle(max(min(*self._good.values(), *self._unknown.values()), self._spans[_SPANS_KEPT // 2][1]))
 
-    def take_refused(self, channel: str, time: float, kind: str) -> None:
-        """Take a refused message of a channel; ``kind`` is that of its event."""
+    def note_refused(self, channel: str, time: float, kind: str) -> None:
+        """Note a refused message of a channel; ``kind`` is that of its event."""
         if kind in OLD or channel in MEASURED_CHANNELS or channel in RING_TEMPERATURES:  # the model predicts what these measure
             return
         self._unknown.setdefault(channel, max(self._good.get(channel, time), self._settled))
@@ -281,7 +281,7 @@ class InputGate:
             state.returned = received
         state.arrival = max(state.arrival, received)
         self.accepted[channel] += 1
-        self.coverage.take_good(channel, received)
+        self.coverage.note_good(channel, received)
         if channel in MEASURED_CHANNELS:
             self._measured[channel] = (float(values[0]), float(values[1]) if len(values) == 2 else math.nan)
             return None
@@ -313,7 +313,7 @@ class InputGate:
         self.held = self.held._replace(**dict.fromkeys(stale, math.nan))
         return bool(stale)
 
-    def take_returned(self) -> list[Event]:
+    def drain_returned(self) -> list[Event]:
         """Return the events since the last call of temperatures that are measured again after `expire` gave them up."""
         returned, self._returned = self._returned, []
         return returned
@@ -326,7 +326,7 @@ class InputGate:
         """Count a refused message and return its event; for errors that only the caller can see, such as a missing joint."""
         self.refused[kind] += 1
         self._channels[channel].refused = time
-        self.coverage.take_refused(channel, time, kind)
+        self.coverage.note_refused(channel, time, kind)
         return Event(time, level, kind, channel, reason, f"message refused, {self._used_instead(channel)}")
 
     def latest(self, channel: str) -> float | tuple[float, float]:
@@ -607,8 +607,8 @@ class PublisherConflict:
         self._disagreed_at = -math.inf
         self.publishers = 1
 
-    def take(self, values: tuple[float, ...]) -> None:
-        """Take the values of an accepted message; of a force its components."""
+    def receive(self, values: tuple[float, ...]) -> None:
+        """Receive the values of an accepted message; of a force its components."""
         self._values.append(values)
 
     @property

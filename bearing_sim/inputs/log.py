@@ -254,6 +254,35 @@ def read_input_log(
     return InputLog(together, wanted.found, lost)
 
 
+class LogReading(NamedTuple):
+    """How recordings are read: where they hold what.
+
+    Attributes
+    ----------
+    sources : by channel, where it is not called by its own name.
+    constants : by channel, values in SI that were not measured.
+    joint, stamps : as of `read_input_log`.
+    longest_gap : between messages that is simulated [s]; None: as of `bearing_sim.inputs.profile.judge`.
+    speed_unit : of speeds that are fields; None: rad/s.
+    """
+
+    sources: dict[str, Source]
+    constants: dict[str, float]
+    joint: str
+    stamps: str
+    longest_gap: float | None
+    speed_unit: str | None
+
+    @property
+    def is_given(self) -> bool:
+        """Whether something is said of a channel."""
+        return bool(self.sources or self.constants)
+
+    def read(self, *paths: Path, **more) -> InputLog:
+        """Return the input log of recordings; further parameters and errors as of `read_input_log`."""
+        return read_input_log(paths, self.sources, self.joint, self.stamps, constants=self.constants, **more)
+
+
 class _Wanted(NamedTuple):
     """What to look for, and what was found; of topics that no channel has, the first message, from which fields are suggested."""
 

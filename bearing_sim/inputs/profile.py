@@ -355,8 +355,8 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
             for event in gate.onsets(time):
                 events.add(event)
         refusal = gate.offer(channel, time, given)
-        old.take(channel, stamp, log_ns, "" if refusal is None else refusal.kind)
-        for event in gate.take_returned():
+        old.receive(channel, stamp, log_ns, "" if refusal is None else refusal.kind)
+        for event in gate.drain_returned():
             events.add(event)
         if refusal is None or gate.coverage.is_unknown(channel):
             first, last = seen.get(channel, (time, time))
@@ -413,8 +413,8 @@ class _OldStamps:
         self._runs: dict[str, list[int]] = {}  # by channel, of the refused messages since then: first and last log time [ns], number
         self._spans: list[tuple[int, int]] = []
 
-    def take(self, channel: str, stamp: int, log_ns: int, refusal: str) -> None:
-        """Take a message with its stamp and log time [ns]; ``refusal`` is the kind of its event, ``""`` if it is good."""
+    def receive(self, channel: str, stamp: int, log_ns: int, refusal: str) -> None:
+        """Receive a message with its stamp and log time [ns]; ``refusal`` is the kind of its event, ``""`` if it is good."""
         if refusal in OLD:
             self.channels.add(channel)
             run = self._runs.setdefault(channel, [log_ns, log_ns, 0])
@@ -565,7 +565,7 @@ class OnlineInputProfile:
         self.start: int | None = None
         self.claimed = self._reached = -1
 
-    def add(self, channel: str, stamp: int, value) -> tuple[int, int] | None:
+    def add_message(self, channel: str, stamp: int, value) -> tuple[int, int] | None:
         """Add a good message, stamped [ns since the epoch] later than the last one of its channel, with its value in SI.
 
         Returns
@@ -655,7 +655,7 @@ class OnlineInputProfile:
             return max(self._newest[channel], settled)
         return settled if self.start is not None and settled > self.start + patience_ns(self._limits) else -1
 
-    def take(self, known_until: int) -> Segment | None:
+    def claim(self, known_until: int) -> Segment | None:
         """Return the next segment, up to ``known_until`` [ns since the epoch] or a second long, or None if there is none yet."""
         if known_until <= self.claimed or known_until < 0:
             return None
@@ -663,12 +663,12 @@ class OnlineInputProfile:
         after = start - 1 if self.claimed < 0 else self._reached
         until = min(known_until, self._end_of_gap(max(after, start) + _SEGMENT, after))
         gaps = [(begin - start, end - start) for begin, end in self._gaps]
-        taken = segment(self._messages(after, until), gaps, after - start, until - start, self._rate, self._limits, self._temperature)
+        found = segment(self._messages(after, until), gaps, after - start, until - start, self._rate, self._limits, self._temperature)
         self.claimed = until
-        if len(taken.instants):
-            self._reached = start + int(taken.instants[-1])
+        if len(found.instants):
+            self._reached = start + int(found.instants[-1])
             self._forget()
-        return taken
+        return found
 
     def _end_of_gap(self, until: int, after: int) -> int:
         """Return ``until``, or the end of a gap that contains it or that it would cut."""

@@ -85,8 +85,8 @@ class StaticTransforms:
         self._parents: dict[str, tuple[str, np.ndarray]] = {}  # by child: parent, and rotation into it
         self._between: dict[tuple[str, str], np.ndarray] = {}
 
-    def take(self, transforms: Iterable[Transform]) -> list[str]:
-        """Take transforms; return a text for each one that cannot be used and is left out."""
+    def receive(self, transforms: Iterable[Transform]) -> list[str]:
+        """Receive transforms; return a text for each one that cannot be used and is left out."""
         refused = []
         for transform in transforms:
             parent, child = _plain(transform.parent), _plain(transform.child)

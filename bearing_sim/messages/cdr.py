@@ -85,7 +85,7 @@ class Cursor:
     def __init__(self, data: bytes, at: int, order: str, base: int, items: int):
         self.data, self.at, self.order, self.base, self.items = data, at, order, base, items
 
-    def take(self, size: int, count: int = 1) -> int:
+    def consume(self, size: int, count: int = 1) -> int:
         """Return where numbers of a size [byte] begin, and go behind them."""
         begin = self.at
         if self.base >= 0:
@@ -103,7 +103,7 @@ class Cursor:
 
     def length(self) -> int:
         """Return the length of a text or a sequence, which comes before it."""
-        (length,) = struct.unpack_from(self.order + "I", self.data, self.take(4))
+        (length,) = struct.unpack_from(self.order + "I", self.data, self.consume(4))
         return length
 
 
@@ -185,11 +185,11 @@ class CdrLayout:
         cursor.make_item()
         if kind in NUMBERS:
             dtype = _dtype(cursor.order + NUMBERS[kind])
-            begin = cursor.take(dtype.itemsize, count) if count else cursor.at
+            begin = cursor.consume(dtype.itemsize, count) if count else cursor.at
         else:
             dtype, length = None, cursor.length()
             begin = cursor.at - 4
-            cursor.take(1, length)
+            cursor.consume(1, length)
         self.fields.append(Field(path, dtype, begin, count, cursor.at))
 
 

@@ -244,7 +244,7 @@ class _Readers:
         def read(cursor: Cursor) -> SimpleNamespace:
             cursor.make_item()
             if pads:
-                cursor.take(1)
+                cursor.consume(1)
             return SimpleNamespace(**{field: part(cursor) for field, part in parts})
 
         self._made[name] = read
@@ -294,12 +294,12 @@ class _Readers:
         size, fixed = dtypes["<"].itemsize, kind.count
         if fixed is None:
             unpack = {order: struct.Struct(order + _CODES[form]).unpack_from for order in "<>"}
-            return lambda cursor: unpack[cursor.order](cursor.data, cursor.take(size))[0]
+            return lambda cursor: unpack[cursor.order](cursor.data, cursor.consume(size))[0]
 
         def read(cursor: Cursor) -> np.ndarray:
             cursor.make_item()
             count = cursor.length() if fixed < 0 else fixed
-            begin = cursor.take(size, count) if count else cursor.at
+            begin = cursor.consume(size, count) if count else cursor.at
             return np.frombuffer(cursor.data, dtypes[cursor.order], count, begin)
 
         return read
@@ -307,7 +307,7 @@ class _Readers:
     def _text(self, cursor: Cursor) -> str:
         cursor.make_item()
         length = cursor.length()
-        begin = cursor.take(1, length)
+        begin = cursor.consume(1, length)
         end = cursor.at if self._is_ros1 else max(cursor.at - 1, begin)
         try:
             return cursor.data[begin:end].decode()

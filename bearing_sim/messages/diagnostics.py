@@ -129,7 +129,7 @@ def report(
     return {"header": header(stamp_ns), "status": status}
 
 
-def news(stamp_ns: int, event: Event, component: str = "bearing_sim", hardware_id: str = "") -> dict:
+def event_report(stamp_ns: int, event: Event, component: str = "bearing_sim", hardware_id: str = "") -> dict:
     """Return diagnostic_msgs/DiagnosticArray with one event, in the status of its subject; a recording has one at the time of each event."""
     values = {"events": 1, **_event_values([event])}
     return {"header": header(stamp_ns), "status": [_status(component, subject_of(event), hardware_id, [event], values, "")]}

@@ -1,13 +1,14 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 # Written by test/generate_names.py from the observables of a sample and the results of a sweep.
-from typing import Literal
+from collections.abc import Iterator
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bearing_sim.simulation import Counters
 
-ObservableName = Literal[
+BearingObservable = Literal[
     "time",
     "shaft_angle",
     "shaft_speed",
@@ -92,6 +93,8 @@ ObservableName = Literal[
     "heat_to_ambient",
     "inner_ring_temperature_uncorrected",
     "outer_ring_temperature_uncorrected",
+]
+RollerObservable = Literal[
     "roller_angle",
     "roller_radius",
     "roller_spin",
@@ -103,10 +106,38 @@ ObservableName = Literal[
     "roller_tilt",
     "roller_skew",
 ]
+ObservableName = BearingObservable | RollerObservable
+Verdict = Literal[
+    "settled",
+    "drifting",
+    "limit cycle",
+    "wandering",
+    "too short",
+    "no steady state",
+]
+
+class Sample(np.void):  # type: ignore[misc]
+    @overload  # type: ignore[override]
+    def __getitem__(self, key: BearingObservable) -> np.float64: ...
+    @overload
+    def __getitem__(self, key: RollerObservable) -> NDArray[np.float64]: ...
+    @overload
+    def __getitem__(self, key: str) -> Any: ...
+
+class Block(np.ndarray[tuple[int], np.dtype[np.void]]):
+    @overload  # type: ignore[override]
+    def __getitem__(self, key: str) -> NDArray[np.float64]: ...
+    @overload
+    def __getitem__(self, key: int | np.integer) -> Sample: ...
+    @overload
+    def __getitem__(self, key: slice | NDArray[np.bool_] | NDArray[np.intp]) -> Block: ...
+    @overload
+    def __getitem__(self, key: list[str]) -> np.ndarray: ...
+    def __iter__(self) -> Iterator[Sample]: ...
 
 class SettledResults:
     @property
-    def verdict(self) -> str: ...
+    def verdict(self) -> Verdict: ...
     @property
     def simulated(self) -> float: ...
     @property
@@ -116,7 +147,7 @@ class SettledResults:
     @property
     def slip(self) -> float: ...
     @property
-    def window(self) -> np.ndarray: ...
+    def window(self) -> Block: ...
     @property
     def counters(self) -> Counters: ...
     @property

@@ -55,10 +55,10 @@ class Layout(NamedTuple):
     own_column: np.ndarray  # and among what an acceleration of the border depends on through a part
     size: np.ndarray  # positions of the body that it belongs to: its speed stands so many columns further on
     body: np.ndarray  # the body
-    take_positions: Callable  # kernels for as many rows as a part has positions, see `_take` and `_products`
+    load_positions: Callable  # kernels for as many rows as a part has positions, see `_load_tuple` and `_products`
     add_positions: Callable
-    take: Callable  # and as it has speeds
-    take_shifted: Callable  # see `_shifted`
+    load_speeds: Callable  # and as it has speeds
+    load_shifted: Callable  # see `_shifted`
     add_products: Callable
 
 
@@ -91,45 +91,45 @@ def block_arrow(positions: int, speeds: int, bodies: tuple[int, ...]) -> Layout:
         block + within,
         sizes[body],
         body,
-        _take(positions),
+        _load_tuple(positions),
         _products(positions),
-        _take(speeds),
-        _take_shifted(speeds),
+        _load_tuple(speeds),
+        _load_shifted(speeds),
         _products(speeds),
     )
 
 
 @functools.cache
-def _take(count: int) -> Callable:
+def _load_tuple(count: int) -> Callable:
     """Return a kernel that loads ``count`` rows of a block of an array, from ``first`` on with a ``step``, into a tuple of lanes."""
-    last, before = count - 1, _take(count - 1) if count > 1 else None
+    last, before = count - 1, _load_tuple(count - 1) if count > 1 else None
 
     @kernel
-    def take_one(array, block, first, step):
+    def load_one(array, block, first, step):
         return (load(array, block, first),)
 
     @kernel
-    def take(array, block, first, step):
+    def load_more(array, block, first, step):
         return before(array, block, first, step) + (load(array, block, first + last * step),)
 
-    return take if last else take_one
+    return load_more if last else load_one
 
 
 @functools.cache
-def _take_shifted(count: int) -> Callable:
-    """Return a kernel that loads what a speed does to ``count`` rows within an implicit step, as `_take`."""
-    last, before = count - 1, _take_shifted(count - 1) if count > 1 else None
+def _load_shifted(count: int) -> Callable:
+    """Return a kernel that loads what a speed does to ``count`` rows within an implicit step, as `_load_tuple`."""
+    last, before = count - 1, _load_shifted(count - 1) if count > 1 else None
 
     @kernel
-    def take_one(jacobian, block, position, speed, step, s):
+    def load_one(jacobian, block, position, speed, step, s):
         return (_shifted(jacobian, block, position, speed, s),)
 
     @kernel
-    def take(jacobian, block, position, speed, step, s):
+    def load_more(jacobian, block, position, speed, step, s):
         end = last * step
         return before(jacobian, block, position, speed, step, s) + (_shifted(jacobian, block, position + end, speed + end, s),)
 
-    return take if last else take_one
+    return load_more if last else load_one
 
 
 @functools.cache
@@ -258,9 +258,9 @@ def _couplings(layout, block, jacobian, s, rows):
     """Write how a block of parts and the border act on each other."""
     speeds, local = layout.speeds, layout.local
     for m in range(layout.border):
-        given = layout.take_shifted(jacobian, block, layout.column[m], layout.column[m] + layout.size[m], local, s)
+        given = layout.load_shifted(jacobian, block, layout.column[m], layout.column[m] + layout.size[m], local, s)
         for k in range(speeds):
-            store(rows, block, layout.right + layout.border * k + m, layout.add_products(layout.take(rows, block, speeds * k, 1), given))
+            store(rows, block, layout.right + layout.border * k + m, layout.add_products(layout.load_speeds(rows, block, speeds * k, 1), given))
     for k in range(layout.border):
         for m in range(speeds):
             store(rows, block, layout.below + speeds * k + m, _by_speed(layout, jacobian, block, layout.row[k], m, s))
@@ -271,9 +271,9 @@ def _reduce(layout, block, jacobian, s, rows, sums):
     """Add what a block of parts does to the border's system, and to its derivatives by positions, behind that, where parts are held."""
     border, speeds = layout.border, layout.speeds
     for k in range(border):
-        below = layout.take(rows, block, layout.below + speeds * k, 1)
+        below = layout.load_speeds(rows, block, layout.below + speeds * k, 1)
         for m in range(border):
-            through = layout.add_products(below, layout.take(rows, block, layout.right + m, border))
+            through = layout.add_products(below, layout.load_speeds(rows, block, layout.right + m, border))
             if layout.body[k] == layout.body[m]:
                 column = layout.row[k] + layout.own_column[m]
                 d_position = load(jacobian, block, column)
@@ -322,20 +322,20 @@ def factor(layout, jacobian, own, s, factored):
 def _eliminate(layout, block, jacobian, s, x, factored):
     """Reduce a block's right side to speeds, solve for them without the border, and take what they do to it from its own."""
     rows, right, reduced, border, speeds = factored.rows, factored.right, factored.block, layout.border, layout.speeds
-    known = layout.take_positions(right, block, 0, 1)
+    known = layout.load_positions(right, block, 0, 1)
     for k in range(speeds):
         first = k * layout.local
-        value = layout.add_positions(layout.take_positions(jacobian, block, first, 1), known)
+        value = layout.add_positions(layout.load_positions(jacobian, block, first, 1), known)
         for m in range(border):
             value += x[m] * load(jacobian, block, first + layout.column[m])
         store(reduced, 0, k, load(right, block, layout.positions + k) + s * value)
-    given = layout.take(reduced, 0, 0, 1)
+    given = layout.load_speeds(reduced, 0, 0, 1)
     for k in range(speeds):
-        store(right, block, layout.positions + k, layout.add_products(layout.take(rows, block, speeds * k, 1), given))
-    found = layout.take(right, block, layout.positions, 1)
+        store(right, block, layout.positions + k, layout.add_products(layout.load_speeds(rows, block, speeds * k, 1), given))
+    found = layout.load_speeds(right, block, layout.positions, 1)
     for k in range(border):
-        passed = s * layout.add_positions(layout.take_positions(jacobian, block, layout.row[k], 1), known)
-        x[border + k] += total(passed + layout.add_products(layout.take(rows, block, layout.below + speeds * k, 1), found))
+        passed = s * layout.add_positions(layout.load_positions(jacobian, block, layout.row[k], 1), known)
+        x[border + k] += total(passed + layout.add_products(layout.load_speeds(rows, block, layout.below + speeds * k, 1), found))
 
 
 @fused

@@ -121,7 +121,7 @@ def compare(
         if topic not in found:
             own = (tolerances or {}).get(topic, (tolerances or {}).get(topic.lstrip("/"), tolerance))
             found[topic] = _Pairing(TopicDifference(topic, ros_type, own, first_ns=first_ns))
-        found[topic].take(side, column)
+        found[topic].receive(side, column)
     differences = [found[topic].finished() for topic in sorted(found)]
     skipped |= {difference.topic for difference in differences if _is_newer(difference)}
     return [difference for difference in differences if difference.topic not in skipped], sorted(skipped)
@@ -218,7 +218,7 @@ class _Pairing:
         self._parts: dict[str, int] | None = None  # how many numbers each field has
         self._columns: dict[int, NumberColumns | None] = {}  # by length of the message
 
-    def take(self, side: int, column: _Column) -> None:
+    def receive(self, side: int, column: _Column) -> None:
         self._waiting[side].append(column)
         mine, others = self._waiting
         while mine and others:

@@ -180,7 +180,7 @@ class McapWriter:
         channel, _, log_ns, _, _ = message
         self._index.setdefault(channel, []).append(_ENTRY.pack(log_ns, self._size))
         self._counts[channel] = self._counts.get(channel, 0) + 1
-        self._put(packed_message(message), log_ns, log_ns)
+        self._append_messages(packed_message(message), log_ns, log_ns)
 
     def add_rows(self, layout: SampleRows, rows: np.ndarray, times_ns: np.ndarray, channels: Sequence[int]) -> None:
         """Add the records of some samples, filled by `SampleRows.filled` with these times and channels."""
@@ -188,7 +188,7 @@ class McapWriter:
         for start in range(0, len(rows), per_chunk):
             part, times = rows[start : start + per_chunk], times_ns[start : start + per_chunk]
             self._groups.setdefault(tuple(channels), []).append(_RowGroup(layout, times, self._size))
-            self._put(part.data, int(times.min()), int(times.max()))
+            self._append_messages(part.data, int(times.min()), int(times.max()))
 
     def add_metadata(self, name: str, metadata: Mapping[str, str]) -> None:
         """Add named pairs of text."""
@@ -292,7 +292,7 @@ class McapWriter:
                 self._index.setdefault(channel, []).append(own.tobytes())
                 self._counts[channel] = self._counts.get(channel, 0) + len(times)
 
-    def _put(self, packed: bytes | memoryview, first: int, last: int) -> None:
+    def _append_messages(self, packed: bytes | memoryview, first: int, last: int) -> None:
         """Put messages with these lowest and highest log times into the chunk in progress, and write it when it is full."""
         self._append(packed)
         self._span, self._chunk_span = widened(self._span, first, last), widened(self._chunk_span, first, last)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import yaml
@@ -42,6 +43,9 @@ from bearing_sim.recording.mcap_reader import FileIndex, McapReader, Rows, read_
 from bearing_sim.recording.writer import COMMAND, METADATA
 from bearing_sim.scene.loader import SceneError, scene_from_yaml
 from bearing_sim.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from bearing_sim.model.names import Block
 
 ROWS_PER_BLOCK = 1000
 _REPEATS_WITHIN = 2.5  # [s] a lasting trouble is reported every second, and is one event
@@ -186,7 +190,7 @@ class Recording:
         if expected is not None and ros_type != expected:
             raise RecordingError(f"{self.path}: {topic} is of type {ros_type or 'unknown'}; a recording of bearing_sim has {expected}")
 
-    def __iter__(self) -> Iterator[np.ndarray | Event]:
+    def __iter__(self) -> Iterator["Block | Event"]:
         """Yield blocks of at most `ROWS_PER_BLOCK` samples, and events, in the order of the file."""
         return self._items()
 
@@ -245,7 +249,7 @@ class Recording:
                 with _as_unreadable(topics[0]):
                     events = list(_events(_decoded(record.data, topics[0]), (record.log_time - self.start_ns) * 1e-9, reported))
                 yield from events
-        last = samples.take()
+        last = samples.pop_block()
         if len(last):
             yield last
         self._count(samples.complete, samples.incomplete)
@@ -269,14 +273,14 @@ class _Samples:
 
     Attributes
     ----------
-    complete, incomplete : samples that `take` has returned, and left out.
+    complete, incomplete : samples that `pop_block` has returned, and left out.
     """
 
     def __init__(self, scene: Scene, start_ns: int):
         self._scene, self._start_ns = scene, start_ns
         self.complete = self.incomplete = 0
         self._block = new_block(ROWS_PER_BLOCK, scene.bearing.roller.count)
-        self._count = 0  # samples begun since the last `take`
+        self._count = 0  # samples begun since the last `pop_block`
         self._log_ns: int | None = None
         self._shapes: dict[tuple, tuple[np.ndarray, np.ndarray, NumberColumns]] = {}  # see `_shape_of`
 
@@ -287,7 +291,7 @@ class _Samples:
         columns, numbers = self._numbers_of((topic,), (0,), np.frombuffer(message.data, np.uint8)[None])
         if message.log_time != self._log_ns:
             if self._count == ROWS_PER_BLOCK:
-                yield self.take()
+                yield self.pop_block()
             self._begin(np.array([message.log_time], np.uint64))
         flat(self._block)[self._count - 1, columns] = numbers[0]
 
@@ -306,7 +310,7 @@ class _Samples:
         columns, numbers = found
         while len(first):
             if self._count == ROWS_PER_BLOCK:
-                yield self.take()
+                yield self.pop_block()
             room = ROWS_PER_BLOCK - self._count
             self._begin(first[:room])[:, columns] = numbers[:room]
             first, numbers = first[room:], numbers[room:]
@@ -367,7 +371,7 @@ class _Samples:
         self._count += len(log_ns)
         return numbers
 
-    def take(self) -> np.ndarray:
+    def pop_block(self) -> np.ndarray:
         """Return the samples so far, without one that a kill cut short: its loads, written last, are missing."""
         block, self._count = self._block[: self._count], 0
         is_complete = ~np.isnan(block["inner_load"]).all(axis=1)

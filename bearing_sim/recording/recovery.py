@@ -179,7 +179,7 @@ def recover(source: str | Path, target: str | Path | Output, progress: Callable[
     reader = McapReader(source)  # before a draft is made
     with output.draft() as draft, open(draft, "wb") as stream:
         copy = _Copy(stream)
-        found = _walk(reader, progress, copy.take)
+        found = _walk(reader, progress, copy.write)
         if not found.messages and not found.metadata:
             raise RecordingError(f"{source}: nothing complete in its {found.size} bytes, so there is nothing to recover")
         if bag := _bag_record(found, output.path.name):
@@ -204,7 +204,7 @@ class _Copy:
             self._writer = McapWriter(self._stream, library="")
         return self._writer
 
-    def take(self, record) -> None:
+    def write(self, record) -> None:
         if isinstance(record, Header):
             self._writer = self._writer or McapWriter(self._stream, record.profile, record.library)
         elif isinstance(record, Message):
@@ -221,8 +221,8 @@ class _Copy:
             self.writer.add_attachment(record)
 
 
-def _walk(reader: McapReader, progress: Callable[[float], None], take: Callable) -> Contents:
-    """Hand every record that can be read and understood to ``take``; return what there is."""
+def _walk(reader: McapReader, progress: Callable[[float], None], receive: Callable) -> Contents:
+    """Hand every record that can be read and understood to ``receive``; return what there is."""
     found = Contents(reader.path, reader.size)
     orphans = 0
     for record in reader:
@@ -241,7 +241,7 @@ def _walk(reader: McapReader, progress: Callable[[float], None], take: Callable)
             found.metadata[record.name] = record.metadata
         elif isinstance(record, Attachment):
             found.attachments += 1
-        take(record)
+        receive(record)
         progress(reader.read / max(reader.size, 1))
     found.damaged, found.damage = reader.damaged + orphans, list(reader.damage)
     if orphans:

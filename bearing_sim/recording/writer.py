@@ -505,7 +505,7 @@ class McapSink(AbstractContextManager):
             case Start(block):
                 self._write_samples(block)
             case Event(time):
-                self._write_diagnostics(diagnostics.news, time, record)
+                self._write_diagnostics(diagnostics.event_report, time, record)
             case Report(time, events, values):
                 self._write_diagnostics(diagnostics.report, time, events, values)
             case ReceivedInputs(time, inputs, channels, origin):
@@ -519,7 +519,7 @@ class McapSink(AbstractContextManager):
             case Bands():
                 times_ns = [self._time_ns(time) for time in record.times.tolist()]
                 for time_ns, message in zip(times_ns, self._messages.of_bands(record, times_ns, self._frame)):
-                    self._put(topics.ESTIMATED[record.topic], time_ns, message)
+                    self._write_message(topics.ESTIMATED[record.topic], time_ns, message)
             case Received(topic, ros_type, log_ns, publish_ns, data):
                 self._files.current.write_cdr(topic, ros_type, log_ns, data, publish_ns)
 
@@ -547,13 +547,13 @@ class McapSink(AbstractContextManager):
     def _write_input(self, topic: topics.Topic, time: float, source, origin: topics.Origin | None) -> None:
         received_ns = self._time_ns(time)
         sent_ns = received_ns if origin is None or origin.stamp_ns is None else origin.stamp_ns
-        self._put(topic, received_ns, self._messages.serialized(topic, sent_ns, source, None if origin is None else origin.frame_id))
+        self._write_message(topic, received_ns, self._messages.serialized(topic, sent_ns, source, None if origin is None else origin.frame_id))
 
     def _write_diagnostics(self, message: Callable[..., dict], time: float, *contents) -> None:
         (name, ros_type), time_ns = topics.DIAGNOSTICS, self._time_ns(time)
         self._files.current.write(f"/{name}", ros_type, time_ns, message(time_ns, *contents, **self._status_names))
 
-    def _put(self, topic: topics.Topic, time_ns: int, message: bytes) -> None:
+    def _write_message(self, topic: topics.Topic, time_ns: int, message: bytes) -> None:
         self._files.current.write_cdr(f"/{topic.name}", topic.ros_type, time_ns, message)
 
     def news(self) -> list[tuple[Level, str, str]]:

@@ -41,16 +41,15 @@ from bearing_sim.runtime.health import Condition, Phase, not_running
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
 from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene.fidelity import hint
-from bearing_sim.scene.loader import load_scene
-from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting, read_kept_tradeoffs
+from bearing_sim.scene.loader import load_scene, measured_of
+from bearing_sim.scene.measured_tradeoffs import Setting, Tradeoffs
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import messages, with_values
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.view.viewer import stream_url, viewer_command
-from bearing_sim.watchers.monitoring.watchers import Watcher, kind_of, resources
+from bearing_sim.watchers.monitoring.watchers import MEMORY, SERVICES, Watcher, kind_of, resources
 
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
-_STATE = "state"  # the watcher that remembers the bearing
 _SCALAR = "std_msgs/msg/Float64"
 
 
@@ -257,14 +256,14 @@ class BearingInterface:
         self._profiles = profiles(node.parameters, entities_of_bearing(self.scene, self._full_name, follows_clock(node)))
         self._given: dict[str, object] = {}  # to watchers: the state of the bearing, and what takes long to read
         if (state := self._open_state(settings.serial)) is not None:
-            self._given[_STATE] = state
+            self._given[MEMORY] = state
         self.live: LiveModel | SimTimeModel | None = None
         self._wanted_serial = settings.serial  # in use from ~/replace_bearing on
         self.error = ""  # why the model cannot run; reported until the next configure
         self._simulation: Simulation | None = None
         self._governor: Governor | None = None
         self._settings: list[Setting] = []  # measured ones, along which the governor falls
-        self._courses: tuple[MeasuredCourse, ...] = ()  # that these were measured on
+        self._front: Tradeoffs | None = None  # that has them, where the scene operates
         self._wants_governor = False
         self._new_governor: Governor | None = None  # made on the warm-up thread, taken over at the next review
         self._compiling: subprocess.Popen | None = None
@@ -281,12 +280,11 @@ class BearingInterface:
             node.create_service(kind, self._service_name(name), self._served(act))
             for kind, name, act in (
                 (Trigger, "reset", self._reset),
-                (Trigger, "get_stored_state", self._get_stored_state),
                 (Trigger, "replace_bearing", self._replace_bearing),
-                (Trigger, "accept_change", self._accept_change),
                 (Trigger, "start_recording", self._begin_recording),
                 (Trigger, "stop_recording", self._stop_recording),
                 (SetBool, "pause", self._pause),
+                *((Trigger, name, lambda _, name=name: self.live.watchers.serve(name)) for name in SERVICES),
             )
         ]
         self._log(f"scene {self.scene.name!r}, bearing {self.scene.bearing.name!r}, level {self.scene.level!r}: warming up")
@@ -312,14 +310,23 @@ class BearingInterface:
             self._given |= resources(self.scene)
             simulation = warmed_up(self.scene)
             governs = self._shared.governor and not follows_clock(self._node)  # with sim time no time is skipped
-            kept = read_kept_tradeoffs(self.scene)
-            self._settings, self._courses = settings_to_fall(self.scene, kept), () if kept is None else kept.at(self.scene).courses
+            self._read_front()
             self._wants_governor = governs  # made once the run has begun, which does not wait for the code of other levels
             self._simulation = simulation
         except IntegrationError as error:
             self.error = f"the scene's own operating conditions cannot be computed: {error}"
         except Exception as error:  # a programming error: reported by the node, where users look
             self.error = f"the model could not be made: {error!r}"
+
+    def _read_front(self) -> None:
+        """Find the measured settings along which the governor falls, by the front of the scene alone if it names one."""
+        settings = self.settings
+        try:
+            front = measured_of(settings.scene, settings.scene_overrides, settings.allow_outside, self.scene)
+            self._front = front and front.at(self.scene)
+        except ValueError as error:
+            self._logger.warning(f"the governor falls along levels only; the front that the scene names cannot be read: {error}")
+        self._settings = settings_to_fall(self.scene, self._front)
 
     def open(self) -> None:
         """Start a run: open recordings and subscriptions.  Run time 0 is now, or the first input with sim time.
@@ -375,8 +382,9 @@ class BearingInterface:
             self._subscribe_to_vibration()
         self._log(f"publishing {', '.join(self._outputs.topic_names)}")
         self._log(f"ready: listening to {', '.join(subscription.topic_name for subscription in self._subscriptions.values())}")
-        if self._settings and shared.governor and not follows_clock(self._node):
-            self._log(f"the governor falls along measured settings: {'; '.join(setting.name for setting in self._settings)}")
+        if self._front is not None and shared.governor and not follows_clock(self._node):
+            found = "; ".join(setting.name for setting in self._settings) or "none for this bearing where it operates, so it falls along levels"
+            self._log(f"the governor falls along measured settings of {self._front.name}: {found}")
 
     def tick(self, now_ns: int) -> None:
         """Pass on a reading of /clock, if the model follows it."""
@@ -395,8 +403,8 @@ class BearingInterface:
         self._subscriptions, self._found = {}, {}
         live, self.live = self.live, None
         stopped = live.close() if live is not None else True
-        if live is not None and (state := live.watchers.get(_STATE)) is not None:
-            self._given[_STATE] = state
+        if live is not None and (state := live.watchers.get(MEMORY)) is not None:
+            self._given[MEMORY] = state
         if not stopped:
             self._simulation = self._governor = None
         return stopped
@@ -404,7 +412,7 @@ class BearingInterface:
     def destroy(self) -> bool:
         """End the run and destroy topics and services.  Returns whether the solver's thread ended."""
         stopped = self.close()
-        if (state := self._given.pop(_STATE, None)) is not None:
+        if (state := self._given.pop(MEMORY, None)) is not None:
             state.leave()
         if self._compiling is not None:
             self._compiling.kill()
@@ -516,7 +524,7 @@ class BearingInterface:
 
     def _open_state(self, serial: str) -> Watcher | None:
         """Return what keeps the state of a bearing, None if nothing is to be remembered; raise OSError if it cannot be used."""
-        keeper = kind_of(_STATE).of_bearing(self.scene, serial, self.settings.state_file.strip(), follows_clock(self._node))
+        keeper = kind_of(MEMORY).of_bearing(self.scene, serial, self.settings.state_file.strip(), follows_clock(self._node))
         if keeper is not None:
             self._log(f"state of the bearing: {keeper.path}")
         return keeper
@@ -640,7 +648,7 @@ class BearingInterface:
         if self._simulation is None:  # the run has ended, and its thread has not
             return
         try:
-            self._new_governor = governor_of(self._simulation, self._settings, self._courses)
+            self._new_governor = governor_of(self._simulation, self._settings, self._front.courses if self._front else ())
         except IntegrationError as error:
             self._logger.warning(f"the governor has no level of lower fidelity to use: {error}")
 
@@ -755,18 +763,9 @@ class BearingInterface:
             return True, "state and damage are reset" if is_new else "the model is reset; the totals of the bearing continue"
         return False, "not done within two seconds; the reset follows after the running tick"
 
-    def _accept_change(self, _) -> tuple[bool, str]:
-        """Take the machine as it is since a change that the calibration has found for the new normal."""
-        return self.live.watchers.serve("accept_change") or (False, "there is no change to accept: no calibration.change is reported")
-
-    def _get_stored_state(self, _) -> tuple[bool, str]:
-        """Answer with the stored state of the bearing as JSON: totals, calibration, temperatures."""
-        nothing = False, "nothing is remembered: set serial or state_file, and configure the node"
-        return self.live.watchers.serve("get_stored_state") or nothing
-
     def _replace_bearing(self, _) -> tuple[bool, str]:
         """End the stored state of the bearing, which is kept, and begin that of the bearing whose serial number was set before."""
-        before, serial = self.live.watchers.get(_STATE), kind_of(_STATE).checked(self._wanted_serial)
+        before, serial = self.live.watchers.get(MEMORY), kind_of(MEMORY).checked(self._wanted_serial)
         number = before.serial if before is not None else ""
         if not serial or serial == number:
             return False, f"set serial to the number of the new bearing first; it is {serial or 'empty'!r}, and the bearing in service is {number!r}"
@@ -790,12 +789,12 @@ class BearingInterface:
             return other or self._open_state(serial)
 
         try:
-            self.live.replace_bearing(_STATE, change)
+            self.live.replace_bearing(change)
             self.settings = dataclasses.replace(self.settings, serial=serial)
         finally:
             if recording:
                 self._start_recording(self._recording_path)
-        state = self.live.watchers.get(_STATE)
+        state = self.live.watchers.get(MEMORY)
         ended = f"; the state of {number!r} is kept in {kept[0]}" if kept else ""
         return True, f"serial number {serial}: {100.0 * state.used:.6g} % of life used, in {state.path}{ended}"
 

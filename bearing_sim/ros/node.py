@@ -431,12 +431,12 @@ class BearingNode(LifecycleNode):
                 self.get_logger().error(worker.loss)
                 self._next_report_ns = 0
             if failure is not None:
-                self._take_failure(CannotRun(failure.text, failure.exit_code))
+                self._handle_failure(CannotRun(failure.text, failure.exit_code))
                 return
         if self.manages_itself and all(worker.errors for worker in self.workers):
             self._end(CannotRun("\n".join(error for worker in self.workers for error in worker.errors), exit_code=1))
 
-    def _take_failure(self, failure: CannotRun) -> None:
+    def _handle_failure(self, failure: CannotRun) -> None:
         """End a node that manages itself; deactivate one that somebody else manages."""
         if self.manages_itself:
             self._end(failure)
@@ -465,7 +465,7 @@ class BearingNode(LifecycleNode):
             if self._state == "active":
                 self._open_warm_bearings()
         except OSError as error:
-            self._take_failure(CannotRun(str(error)))
+            self._handle_failure(CannotRun(str(error)))
             return
         if self.bearings and self.manages_itself and all(bearing.error for bearing in self.bearings):
             self._end(CannotRun("\n".join(bearing.error for bearing in self.bearings), exit_code=1))

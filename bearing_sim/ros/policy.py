@@ -12,8 +12,9 @@ from xml.sax.saxutils import escape, quoteattr
 import click
 
 from bearing_sim.messages import topics
+from bearing_sim.watchers.monitoring import watchers
 
-SERVICES = ("reset", "get_stored_state", "replace_bearing", "accept_change", "start_recording", "stop_recording", "pause")
+SERVICES = ("reset", "replace_bearing", "start_recording", "stop_recording", "pause", *watchers.SERVICES)
 """Of each bearing, below the node: in a node with several below the bearing's name there."""
 
 _LIFECYCLE = ("change_state", "get_state", "get_available_states", "get_available_transitions", "get_transition_graph")

@@ -56,7 +56,7 @@ class TransformInterface:
         if errors := _errors(own, kind is not None):
             raise SettingsError(errors)
         self.transforms = StaticTransforms("" if kind is not None else _LACKS)
-        self.transforms.take(own)
+        self.transforms.receive(own)
         if kind is None:
             return
         name = node.resolve_topic_name(_TOPIC)
@@ -78,7 +78,7 @@ class TransformInterface:
     def _receive(self, cdr: bytes) -> None:
         try:
             received = typestore().deserialize_cdr(cdr, _TYPE).transforms
-            refused = self.transforms.take(map(_transform, received))
+            refused = self.transforms.receive(map(_transform, received))
         except Exception as error:  # its type depends on what is wrong with the bytes
             refused = [f"{len(cdr)} bytes are not a {_TYPE}: {error}"]
         for text in refused:

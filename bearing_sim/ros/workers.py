@@ -155,7 +155,7 @@ class Worker:
                 return ""
             if not self._has_news(max(end - self._clock(), 0.0)):
                 return f"the process of {self.named} does not answer; try again"
-            self._take()
+            self._receive()
         return self._answers.pop(self._questions)
 
     def review(self) -> Ended | None:
@@ -163,7 +163,7 @@ class Worker:
         if self._process is None and self._clock() >= self._start_at:
             self._start()
         while self._has_news(0.0):
-            self._take()
+            self._receive()
         ended, self._ended = self._ended, None
         return ended
 
@@ -208,7 +208,7 @@ class Worker:
     def _has_news(self, wait: float) -> bool:
         return self._connection is not None and self._connection.poll(wait)
 
-    def _take(self) -> None:
+    def _receive(self) -> None:
         try:
             kind, *rest = self._connection.recv()
         except (EOFError, OSError):
@@ -303,13 +303,13 @@ class NodeLink:
         except OSError:  # it has ended, which `listen` finds
             pass
 
-    def listen(self, take: Callable[[tuple], None], ended: Callable[[], None]) -> None:
-        """Pass every message to ``take`` and the end of the node to ``ended``, on a thread of its own."""
+    def listen(self, receive: Callable[[tuple], None], ended: Callable[[], None]) -> None:
+        """Pass every message to ``receive`` and the end of the node to ``ended``, on a thread of its own."""
 
         def work() -> None:
             while True:
                 try:
-                    take(self._connection.recv())
+                    receive(self._connection.recv())
                 except (EOFError, OSError):
                     ended()
                     return

@@ -1,10 +1,10 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Keep real time by reducing fidelity: change to a faster setting when the solver is too slow, and back when it is fast enough.
 
-Settings are levels, or those that `bearing-sim trade` has measured on the bearing and this machine, from accurate to fast
-(`bearing_sim.scene.measured_tradeoffs`); then the errors of the one that runs are known.  The criterion is the recent cost of ticks, simulated over
-wall seconds.  The ratio of costs between a setting and the one above was measured when the upper one last ran, so the cost of the present one
-predicts whether the upper one would keep real time.
+Settings are levels, or those that `bearing-sim trade` has measured on the bearing, from accurate to fast: by the front that the scene names, else
+by what this machine has kept (`bearing_sim.scene.loader.measured_of`); then the errors of the one that runs are known.  The criterion is the recent
+cost of ticks, simulated over wall seconds.  The ratio of costs between a setting and the one above was measured when the upper one last ran, so the
+cost of the present one predicts whether the upper one would keep real time.
 
 Bearings that share threads can be too slow together although each alone is fast enough.  What counts then is the time from the instant at which a
 tick could have begun, of the bearing that waits longest; the governors change one after the other, so that no more of them fall than must.
@@ -223,8 +223,8 @@ class Governor:
         self._left_at = math.nan
 
 
-def settings_to_fall(scene: Scene, kept: Tradeoffs | None) -> list[Setting]:
-    """Return the settings from that of a scene to the fastest on the kept front of its bearing; empty where nothing is kept for where it operates.
+def settings_to_fall(scene: Scene, front: Tradeoffs | None) -> list[Setting]:
+    """Return the settings from that of a scene to the fastest on the front of its bearing; empty where the front does not fit it where it operates.
 
     Each is faster than the one before by a quarter at least, and on the front of the settings that the governor can use: at the scene's own level
     or a lower one that has everything the scene asks for; without a fixed step; and with a corrected table only where it is on
@@ -235,9 +235,9 @@ def settings_to_fall(scene: Scene, kept: Tradeoffs | None) -> list[Setting]:
     Parameters
     ----------
     scene : that runs.
-    kept : what is kept for its bearing (see `bearing_sim.scene.measured_tradeoffs.read_kept_tradeoffs`), or None.
+    front : what was measured of its bearing (see `bearing_sim.scene.loader.measured_of`), or None.
     """
-    if kept is None or not (front := kept.at(scene)).courses:
+    if front is None or not front.fits(scene) or not (front := front.at(scene)).courses:
         return []
     unknown = dict.fromkeys(front.courses[0].own_errors, math.nan)
     overrides, usable = complete_overrides(scene), (scene.level, *lower_levels(scene))

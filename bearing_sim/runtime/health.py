@@ -65,7 +65,7 @@ class Health:
         self._seen_at: dict[tuple[str, str], float] = {}
         self._shown_for: dict[tuple[str, str], float] = {}
         self._said: dict[tuple[str, str], dict[str, float]] = {}  # when each text, without its numbers, came last while its event is shown
-        self._holding: set[tuple[tuple[str, str], Level]] = set()
+        self._lasting = Changes()
         self._lost, self._dropped = 0.0, 0
         self._news: list[Event] = []
 
@@ -113,11 +113,8 @@ class Health:
 
     def news(self, events: Iterable[Event]) -> list[Event]:
         """Return the events noted since the last call, and those lasting ``events`` that did not hold then."""
-        lasting = {(event.key, event.level): event for event in events if event.key not in self._momentary}
-        begun = [event for key, event in lasting.items() if key not in self._holding]
-        self._holding = set(lasting)
         noted, self._news = self._news, []
-        return noted + begun
+        return noted + self._lasting.begun(event for event in events if event.key not in self._momentary)
 
     def _note_losses(self, now: float, solver: SolverState) -> None:
         """Turn growing loss counters into momentary events."""
@@ -146,10 +143,14 @@ class Changes:
     def __init__(self):
         self.holding: dict[tuple[str, str], Event] = {}
 
-    def take(self, now: float, events: Iterable[Event]) -> list[Event]:
-        """Take all events that hold at ``now`` [s] and return the changes since the last call."""
+    def begun(self, events: Iterable[Event]) -> list[Event]:
+        """Return those of all events that hold now that did not at the last call, or with another level."""
         before, self.holding = self.holding, {event.key: event for event in events}
-        begun = [event for key, event in self.holding.items() if key not in before or before[key].level != event.level]
+        return [event for key, event in self.holding.items() if key not in before or before[key].level != event.level]
+
+    def update(self, now: float, events: Iterable[Event]) -> list[Event]:
+        """Return the changes since the last call; ``events`` are all that hold at ``now`` [s]."""
+        before, begun = self.holding, self.begun(events)
         over = sorted(before.keys() - self.holding.keys())
         return begun + [Event(now, Level.OK, kind, subject, "back within its limits") for kind, subject in over]
 

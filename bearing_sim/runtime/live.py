@@ -35,7 +35,7 @@ from bearing_sim.scene.loader import with_setting
 from bearing_sim.scene.measured_tradeoffs import MeasuredCourse, Setting
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import IntegrationError, Simulation
-from bearing_sim.watchers.monitoring.watchers import NOTHING, Run, Watcher, Watchers
+from bearing_sim.watchers.monitoring.watchers import MEMORY, NOTHING, Run, Watcher, Watchers
 
 _REPLACED_WITHIN = 10.0  # [s] for the reset of a model that is held
 _CLOCKS = 3  # times 0 by clocks before the present one under which a recording may have its stamps
@@ -213,13 +213,12 @@ class Model(Run):
         self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
         self.watchers.adjust(thresholds)
 
-    def replace_bearing(self, name: str, change: Callable[[], Watcher]) -> None:
+    def replace_bearing(self, change: Callable[[], Watcher]) -> None:
         """Continue with another bearing of the same scene, in ideal rolling at the present inputs.
 
         Parameters
         ----------
-        name : of the watcher that remembers bearings.
-        change : ends that of the present bearing, which by then has seen all its samples, and returns that of the other one.
+        change : ends the watcher that remembers the present bearing, which by then has seen all its samples, and returns that of the other one.
 
         Raises
         ------
@@ -230,8 +229,8 @@ class Model(Run):
         try:
             if not self.solver.hold():
                 raise OSError("the model is busy and did not stop within two seconds; call the service again")
-            self._take(self.solver.take(), 0.0 if self.solver.newest is None else float(self.solver.newest["time"]))
-            self.watchers.replace(name, change())
+            self._pass_on(self.solver.drain(), 0.0 if self.solver.newest is None else float(self.solver.newest["time"]))
+            self.watchers.replace(MEMORY, change())
             self.solver.continue_from(self.watchers.memory.life_used)
             self.solver.reset(_REPLACED_WITHIN)
             self.watchers.begin()
@@ -304,7 +303,7 @@ class Model(Run):
         """Pass results of the solver to sinks and monitors and review the health.  Returns the events that are new."""
         self.tick(now_ns)
         now = self.run_time(now_ns)
-        self._take(self.solver.take(), now)
+        self._pass_on(self.solver.drain(), now)
         for event in (*self.sinks.news(now), *self.watchers.news(now)):
             self._note(event)
         events = self._events(now)
@@ -354,7 +353,7 @@ class Model(Run):
         Whether the solver's thread ended within ``timeout`` [s].
         """
         stopped = self.solver.stop(timeout)
-        self._take(self.solver.take(), 0.0)
+        self._pass_on(self.solver.drain(), 0.0)
         self.watchers.close()
         self.sinks.close(0.0)
         return stopped
@@ -372,7 +371,7 @@ class Model(Run):
         """Return the setting that runs and its measured errors for diagnostics; NaN where they were not measured, as at other speeds or loads."""
         return {"setting": self._running_setting or "not measured", **dict.fromkeys(SETTING_ERRORS, math.nan)}
 
-    def _take(self, items: Iterable, now: float) -> None:
+    def _pass_on(self, items: Iterable, now: float) -> None:
         """Pass results of the solver on at run time ``now`` [s]."""
         raise NotImplementedError
 
@@ -543,15 +542,13 @@ class LiveModel(Model):
         if event is not None:
             self._note(event)
             return event
-        for returned in self.gate.take_returned():
+        for returned in self.gate.drain_returned():
             self._note(returned)
-        self._conflicts[channel].take(values[:1] if channel in topics.MEASURED_CHANNELS else values)
+        self._conflicts[channel].receive(values[:1] if channel in topics.MEASURED_CHANNELS else values)
         if channel in topics.MEASURED_CHANNELS:
             reading, origin = self.gate.latest(channel), topics.Origin(stamp_ns, frame_id)
-            if channel == topics.MEASURED_CLEARANCE:
-                self.write(MeasuredClearance(now, *reading, origin), now)
             for record in self.watchers.hear(channel, now, *reading):
-                self.write(record._replace(origin=origin) if isinstance(record, Measurement) else record, now)
+                self.write(record._replace(origin=origin) if isinstance(record, (Measurement, MeasuredClearance)) else record, now)
         # Speed starts the model: the scene has sensible values of load and temperature, but a wrong speed would be a false jolt.
         elif self.gate.accepted["shaft_speed"]:
             self.solver.post(self.gate.held)
@@ -578,7 +575,7 @@ class LiveModel(Model):
             self.solver.post(self.gate.held)
         for channel, values in self.watchers.measured():
             self.offer(channel, values, None, now_ns)
-        self._output_count.take(self.run_time(now_ns), self._publish_decimator.picked, self._publish_decimator.left_out)
+        self._output_count.update(self.run_time(now_ns), self._publish_decimator.picked, self._publish_decimator.left_out)
         return super().collect(now_ns)
 
     def publish_at(self, rate: float) -> None:
@@ -625,7 +622,7 @@ class LiveModel(Model):
         """Name of the measured setting that runs; empty where none is known."""
         return self._running_setting
 
-    def _take(self, items: Iterable, now: float) -> None:
+    def _pass_on(self, items: Iterable, now: float) -> None:
         blocks, seen = [], 0
         for item in items:
             if isinstance(item, Event):

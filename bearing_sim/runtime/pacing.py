@@ -190,8 +190,8 @@ class OutputCount:
         self._seconds: deque[tuple[int, int]] = deque(maxlen=_SECONDS)  # left out and due in each of the last
         self.is_raised = False
 
-    def take(self, now: float, published: int, left_out: int) -> None:
-        """Take the numbers since the start at an instant [s]; to be called several times a second."""
+    def update(self, now: float, published: int, left_out: int) -> None:
+        """Count with the numbers since the start at an instant [s]; to be called several times a second."""
         if not now - self._began < 1.0:
             if not math.isnan(self._began):
                 left = left_out - self._before[1]

@@ -15,7 +15,7 @@ import numpy as np
 from bearing_sim.inputs.profile import InputProfile
 from bearing_sim.messages.bands import BANDS, Bands
 from bearing_sim.messages.diagnostics import condition, further_condition
-from bearing_sim.messages.events import FOR_KEEPING, Event, MeasuredClearance, Record, Report
+from bearing_sim.messages.events import FOR_KEEPING, Event, Record, Report
 from bearing_sim.messages.topics import MEASURED, MEASURED_CLEARANCE
 from bearing_sim.model.sample import joined
 from bearing_sim.model.turning import SLIP_FROM_SPEED, Use, slip_statistics, slipping_seconds, turns, use_of
@@ -222,7 +222,7 @@ class _Run(Run):
         self._pending_measurements = deque(heapq.merge(*measured, key=lambda each: each[1]))
         self._changes = Changes()
         self._watched: list[np.ndarray] = []
-        self._untaken: list[Output] = []
+        self._unwritten: list[Output] = []
         self._next_report = 0.0
         self.watchers = Watchers(scene, self, given)
         self.watchers.begin()
@@ -237,11 +237,11 @@ class _Run(Run):
             moment = float(item.block["time"][-1]) if isinstance(item, Output) else item.time
             self._follow_log(moment)
             if isinstance(item, Output):
-                self._untaken.append(item)
-                if len(self._untaken) >= together or len(item.block) > 1:
-                    self._take_outputs()
+                self._unwritten.append(item)
+                if len(self._unwritten) >= together or len(item.block) > 1:
+                    self._write_outputs()
             elif isinstance(item, Event):
-                self._take_outputs()  # they come first
+                self._write_outputs()  # they come first
                 self.write(item, moment)
             else:
                 pass_on(item, self)
@@ -253,7 +253,7 @@ class _Run(Run):
                 self._progress(moment)
         if not run.given_up:
             self._progress(self._profile.end * 1e-9)
-        self._take_outputs()
+        self._write_outputs()
         self._flush(self._profile.end * 1e-9)
         self._follow_log(math.inf)
         if self._profile.unknown_seconds:
@@ -274,9 +274,9 @@ class _Run(Run):
         put_at_start(simulation, inputs, self, is_there=True)
         return simulation
 
-    def _take_outputs(self) -> None:
+    def _write_outputs(self) -> None:
         """Write and judge the outputs since the last call."""
-        outputs, self._untaken = self._untaken, []
+        outputs, self._unwritten = self._unwritten, []
         if not outputs:
             return
         block, weights, result = joined([each.block for each in outputs]), np.concatenate([each.weights for each in outputs]), self._result
@@ -312,7 +312,7 @@ class _Run(Run):
 
     def _report(self, sample, moment: float) -> None:
         """Write a change of the bearing's condition at once, and the condition once a second."""
-        changes = self._changes.take(moment, self.watchers.events(moment, told=False))
+        changes = self._changes.update(moment, self.watchers.events(moment, told=False))
         if changes or moment >= self._next_report:
             self._flush(moment)  # their events come first
         for event in changes:
@@ -354,12 +354,10 @@ class _Run(Run):
         measurements, events = self._pending_measurements, self._pending_events
         while measurements and measurements[0][1] <= moment:
             channel, *reading = measurements.popleft()
-            if channel == MEASURED_CLEARANCE:
-                self.write(MeasuredClearance(*reading), moment)
             for record in self.watchers.hear(channel, *reading):
                 self.write(record, moment)
         while events and events[0].time <= moment:
-            self._take_outputs()  # they come first
+            self._write_outputs()  # they come first
             self.write(events.popleft(), moment)
 
 

@@ -78,7 +78,7 @@ class ReproducedBands:
         """Take bands of the recording."""
         self._enter(0, bands)
 
-    def take(self, block: np.ndarray, restarts: Collection[float] = ()) -> list[Bands]:
+    def see(self, block: np.ndarray, restarts: Collection[float] = ()) -> list[Bands]:
         """Return the bands of samples that were computed again, in order of time.
 
         Parameters

@@ -98,7 +98,7 @@ def reproduce(
             if bands is not None:
                 bands.note_recorded(item)
         elif isinstance(item, np.ndarray):
-            _write(run.take(item), run, sink, bands)
+            _write(run.compute(item), run, sink, bands)
             progress(float(item["time"][-1]) - recording.first_time)
     _write(run.rest(), run, sink, bands)
     run.finish()
@@ -113,7 +113,7 @@ def _write(block: np.ndarray, run: "_Run", sink, bands: ReproducedBands | None) 
     """Write samples that were computed again, and their bands."""
     sink.write(block)
     if bands is not None and len(block):
-        for each in bands.take(block, run.restarts):
+        for each in bands.see(block, run.restarts):
             sink.write(each)
     run.restarts.clear()
 
@@ -140,7 +140,7 @@ class _Run(Run):
         self._last: np.void | None = None
         self._waiting = new_block(0, recording.scene.bearing.roller.count)
 
-    def take(self, recorded: np.ndarray) -> np.ndarray:
+    def compute(self, recorded: np.ndarray) -> np.ndarray:
         """Return samples computed again; samples of a call that is not complete yet wait."""
         rows, done, computed = np.concatenate((self._waiting, recorded)), 0, []
         while done < len(rows):

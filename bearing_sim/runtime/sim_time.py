@@ -20,7 +20,7 @@ import numpy as np
 from bearing_sim.inputs.gate import REQUIRED, ClockJumpFilter, InputGate, Message, Verdict
 from bearing_sim.inputs.profile import OnlineInputProfile, gap_event
 from bearing_sim.messages import topics
-from bearing_sim.messages.events import Event, Level, MeasuredClearance
+from bearing_sim.messages.events import Event, Level
 from bearing_sim.runtime.advance_segment import pass_on, put_at_start
 from bearing_sim.runtime.live import Model, Published
 from bearing_sim.runtime.sink_registry import Sink
@@ -332,10 +332,10 @@ class SimTimeModel(Model):
         if event is not None:
             self._note(event)
             return event
-        for returned in self.gate.take_returned():
+        for returned in self.gate.drain_returned():
             self._note(returned)
         self._newest[channel] = stamp
-        self._conflicts[channel].take(values[:1] if channel in topics.MEASURED_CHANNELS else values)
+        self._conflicts[channel].receive(values[:1] if channel in topics.MEASURED_CHANNELS else values)
         if channel in topics.MEASURED_CHANNELS:
             if self._started:
                 self._measure(channel, self.run_time(stamp), *self.gate.latest(channel))
@@ -343,7 +343,7 @@ class SimTimeModel(Model):
                 self._measured.append((channel, stamp, self.gate.latest(channel)))
             return None
         try:
-            gap = self.solver.add(channel, stamp, self.gate.latest(channel))
+            gap = self.solver.add_message(channel, stamp, self.gate.latest(channel))
         except ValueError as error:
             self._late += 1
             self.gate.refused["input.late"] += 1
@@ -385,7 +385,7 @@ class SimTimeModel(Model):
             self._jump_filter.reach(self._clock.now)
             self.solver.see_clock(self._clock.now, self._clock.settled(self._wall()), self._expected)
 
-    def _take(self, items: Iterable, now: float) -> None:
+    def _pass_on(self, items: Iterable, now: float) -> None:
         for item in items:
             if isinstance(item, Start):
                 self._start(item.start_ns)
@@ -410,8 +410,6 @@ class SimTimeModel(Model):
 
     def _measure(self, channel: str, time: float, value: float, standard_error: float) -> None:
         """Take a measurement of one of `bearing_sim.messages.topics.MEASURED_CHANNELS` and its standard error [SI] of a run time [s]."""
-        if channel == topics.MEASURED_CLEARANCE:
-            self.write(MeasuredClearance(time, value, standard_error), time)
         for record in self.watchers.hear(channel, time, value, standard_error):
             self.write(record, time)
 

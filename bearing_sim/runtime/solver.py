@@ -10,12 +10,12 @@ import sys
 import time
 import traceback
 from collections import deque
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.inputs.profile import Arrival, OnlineInputProfile, Segment
+from bearing_sim.inputs.profile import Arrival, OnlineInputProfile
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
 from bearing_sim.runtime.governor import Governor
@@ -54,7 +54,15 @@ class Solver:
     ----------
     newest : numpy.void or None
         The newest sample; None before the first.
+    dropped : int
+        Results that were dropped because they were not collected in time.
+    failed_ticks : int
+        Ticks, or stretches of a profile, in a row, up to now, that could not be integrated.
     """
+
+    dropped = 0
+    failed_ticks: int
+    _is_running: bool  # whether the simulation has begun
 
     def __init__(
         self,
@@ -125,7 +133,7 @@ class Solver:
             self._threads.wake(self)
             return self._changed.wait_for(lambda: not self._threads.is_running(self), timeout)
 
-    def take(self) -> list[Item]:
+    def drain(self) -> list[Item]:
         """Return the results since the last call, oldest first."""
         return [self._queue.popleft() for _ in range(len(self._queue))]
 
@@ -146,21 +154,6 @@ class Solver:
     def pace(self) -> Pace:
         """Real-time factors and lost time."""
         return self._pacer.pace
-
-    @property
-    def dropped(self) -> int:
-        """Results that were dropped because they were not collected in time."""
-        return 0
-
-    @property
-    def failed_ticks(self) -> int:
-        """Ticks in a row, up to now, that could not be integrated."""
-        raise NotImplementedError
-
-    @property
-    def _is_running(self) -> bool:
-        """Whether the simulation has begun."""
-        raise NotImplementedError
 
     @property
     def _reset_reason(self) -> str:
@@ -276,11 +269,10 @@ class WallTimeSolver(Solver):
         self._schedule = self._wanted = schedule
         self._ticks = 0  # since the last sample that sinks keep
         self._queue = deque(maxlen=capacity)
-        self._dropped = 0
         self._governors: deque[Governor | None] = deque()  # to take over at the next tick
         self._latest: Inputs | None = None
-        self._begun = False
-        self._failed, self._retry_at = 0, 0.0
+        self._is_running = False
+        self.failed_ticks, self._retry_at = 0, 0.0
         self.anchors = 0
         self._origin = self._shift = 0.0  # run time = simulated time + shift
 
@@ -311,27 +303,13 @@ class WallTimeSolver(Solver):
         """
         self._governors.append(governor)
 
-    @property
-    def dropped(self) -> int:
-        """Blocks and events that were dropped because they were not collected in time."""
-        return self._dropped
-
-    @property
-    def failed_ticks(self) -> int:
-        """Ticks in a row, up to now, that could not be integrated."""
-        return self._failed
-
-    @property
-    def _is_running(self) -> bool:
-        return self._begun
-
     def _due(self) -> tuple[Callable[[], None] | None, float | None]:
         if self._latest is None:
             return None, None
         wall = self._clock()
-        if self._failed and wall < self._retry_at:
+        if self.failed_ticks and wall < self._retry_at:
             return None, self._retry_at - wall
-        if not self._begun:
+        if not self._is_running:
             return self._begin, None
         if self._ticks % self._schedule.every == 0:
             self._schedule, self._ticks = self._wanted, 0
@@ -354,7 +332,7 @@ class WallTimeSolver(Solver):
         except IntegrationError as error:
             self._fail(error)
             return
-        self._failed, self._begun = 0, True
+        self.failed_ticks, self._is_running = 0, True
         self._anchor()
         self._put(self._start_block())
 
@@ -384,9 +362,9 @@ class WallTimeSolver(Solver):
         if self._life_used:
             block["damage"] += self._life_used
         now = float(block["time"][-1])
-        if self._failed:
-            self._put(Event(now, Level.OK, "solver.recovered", "", f"time advances again after {self._failed} failed ticks"))
-            self._failed = 0
+        if self.failed_ticks:
+            self._put(Event(now, Level.OK, "solver.recovered", "", f"time advances again after {self.failed_ticks} failed ticks"))
+            self.failed_ticks = 0
         self.newest = block[-1]
         self._put(block)
         if self._advanced is not None:
@@ -415,9 +393,9 @@ class WallTimeSolver(Solver):
 
     def _fail(self, error: IntegrationError) -> None:
         """Report the first failure in a row, hold the state, and try again after the duration of a tick."""
-        self._failed += 1
+        self.failed_ticks += 1
         self._retry_at = self._clock() + self._schedule.tick / self._pacer.rate
-        if self._failed == 1:
+        if self.failed_ticks == 1:
             action = "the last good state is held and the next inputs are tried"
             self._put(Event(self._now(), Level.ERROR, "solver.failed", "", f"time could not be advanced ({error})", action))
 
@@ -428,7 +406,7 @@ class WallTimeSolver(Solver):
         elif self._life_used is not None and self.newest is not None:
             self._life_used = float(self.newest["damage"])
         self._anchor()
-        self._failed = 0
+        self.failed_ticks = 0
         self.newest = self._start_block()[0]
 
     @property
@@ -438,7 +416,7 @@ class WallTimeSolver(Solver):
         return "the model returned to ideal rolling at the present inputs; the totals of the bearing continue"
 
     def _resumed(self) -> None:
-        if self._begun:
+        if self._is_running:
             self._anchor()
 
     def _now(self) -> float:
@@ -465,7 +443,7 @@ class WallTimeSolver(Solver):
         return wall - wall % self._schedule.tick if self._threads.are_shared else wall
 
     def _put(self, item: Item) -> None:
-        self._dropped += len(self._queue) == self._queue.maxlen  # the deque drops its oldest entry
+        self.dropped += len(self._queue) == self._queue.maxlen  # the deque drops its oldest entry
         self._queue.append(item)
 
 
@@ -498,12 +476,13 @@ class SimTimeSolver(Solver):
         self._sim_clock = self._settled = -1  # readings of /clock [ns since the epoch]
         self._expected: Collection[str] = ()
         self._has_started = False
+        self._items: Iterator[Item] | None = None  # of the segment that is under way
         self._busy_since: float | None = None
 
-    def add(self, channel: str, stamp: int, value) -> tuple[int, int] | None:
-        """Add a good message to the profile (see `bearing_sim.inputs.profile.OnlineInputProfile.add`)."""
+    def add_message(self, channel: str, stamp: int, value) -> tuple[int, int] | None:
+        """Add a good message to the profile (see `bearing_sim.inputs.profile.OnlineInputProfile.add_message`)."""
         with self._changed:
-            gap = self._profile.add(channel, stamp, value)
+            gap = self._profile.add_message(channel, stamp, value)
             self._threads.wake(self)
         return gap
 
@@ -521,23 +500,23 @@ class SimTimeSolver(Solver):
     def follow(self, profile: OnlineInputProfile) -> None:
         """Leave the present profile and follow another one: state and damage return to the start."""
         with self._changed:
-            self._profile, self._run = profile, ProfileRun(self._begin)
+            self._profile, self._run, self._items = profile, ProfileRun(self._begin), None
             self._sim_clock = self._settled = -1
             self._has_started = False
             if self._reset_wanted:
                 self._reset_done()
             self._threads.wake(self)
 
-    def take(self) -> list[Item]:
+    def drain(self) -> list[Item]:
         """Return the results since the last call, oldest first, and make room for more."""
         with self._changed:
-            taken = super().take()
+            drained = super().drain()
             self._threads.wake(self)
-        return taken
+        return drained
 
     @property
     def failed_ticks(self) -> int:
-        """Stretches in a row, up to now, that could not be integrated."""
+        """See `Solver`."""
         return self._run.failures_in_a_row
 
     @property
@@ -600,52 +579,39 @@ class SimTimeSolver(Solver):
         return self._run.simulation is not None
 
     def _due(self) -> tuple[Callable[[], None] | None, float | None]:
-        segment = None if self._run.given_up else self._profile.take(self._known_until())
-        if segment is None:
-            self._busy_since = None
+        if len(self._queue) >= self._capacity:
             return None, None
+        if self._items is None:
+            segment = None if self._run.given_up else self._profile.claim(self._known_until())
+            if segment is None:
+                self._busy_since = None
+                return None, None
+            if not self._has_started and len(segment.instants):
+                self._has_started, self.newest = True, None
+                self._queue.append(Start(self._profile.start))
+            self._items = self._run.advance_segment(segment)
         if self._busy_since is None:
             self._busy_since = self._clock()
             self._pacer.anchor(self._busy_since, 0.0)
-        profile, run = self._profile, self._run
-        return lambda: self._advance(profile, run, segment), None
+        run, items = self._run, self._items
+        return lambda: self._advance(run, items), None
 
-    def _advance(self, profile: OnlineInputProfile, run: ProfileRun, segment: Segment) -> None:
-        if not self._has_started and len(segment.instants):
-            self._has_started, self.newest = True, None
-            self._put(profile, Start(profile.start))
+    def _advance(self, run: ProfileRun, items: Iterator[Item]) -> None:
+        """Advance over a segment until it ends, its profile is left, the queue is full, or a request waits; then the next step goes on."""
         simulated, began = run.simulated_ns, self._clock()
-        for item in run.advance_segment(segment):
+        for item in items:
             ended = self._clock()
             self._pacer.worked(ended, (run.simulated_ns - simulated) * 1e-9, ended - began)
-            if not self._put(profile, item):
-                return
-            if isinstance(item, Output):
-                self.newest = item.block[-1]
+            with self._changed:
+                if run is not self._run:
+                    return
+                self._queue.append(item)
+                if isinstance(item, Output):
+                    self.newest = item.block[-1]
+                if self._paused or self._reset_wanted or self._stopping or len(self._queue) >= self._capacity:
+                    return
             simulated, began = run.simulated_ns, self._clock()
-
-    def _put(self, profile: OnlineInputProfile, item: Item) -> bool:
-        """Queue an item when there is room, obeying requests; return False if its profile was left or the run has ended.
-
-        A reset in a pause does not end the pause: nothing is computed until the run continues.
-        """
-        with self._changed:
-            queued = False
-            while not (self._stopping or self._profile is not profile):
-                if self._reset_wanted:
-                    if not queued:  # the item is from before the reset
-                        self._queue.append(item)
-                        queued = True
-                    self._reset()
-                elif self._paused or len(self._queue) >= self._capacity:
-                    self._holding = self._paused
-                    self._changed.wait()
-                else:
-                    self._holding = False
-                    if not queued:
-                        self._queue.append(item)
-                    return True
-            return False
+        self._items = None
 
     def _begin(self, inputs: Inputs) -> Simulation:
         self._begin_at(self._simulation, inputs)

@@ -14,7 +14,7 @@ from bearing_sim.scene.crown import Crown, IsoLogCrown, crown_errors
 from bearing_sim.scene.flanges import Flanges, flange_errors
 from bearing_sim.scene.material import Material
 from bearing_sim.scene.mounting import CLEARANCE_GROUPS, CLEARANCE_PARTS, OTHER_CLEARANCES, clearance_limits
-from bearing_sim.scene.quantity import QuantityOrName, check, named_law, quantity, record
+from bearing_sim.scene.quantity import Quantity, QuantityOrName, check, named_law, record
 from bearing_sim.scene.ratings import Ratings
 
 _CLEARANCE = QuantityOrName(
@@ -46,8 +46,8 @@ _NO_THICKNESS = 0.005  # of it, over D_w, on both sides of the pitch circle
 class ContourPoint:
     """A low or high point of the outer raceway."""
 
-    azimuth: quantity("rad", "azimuth of the point before installation", -2 * math.pi, 2 * math.pi, "deg")
-    radius: quantity("m", "radius there", 1e-3, 2.0, "mm")
+    azimuth: Annotated[float, Quantity("rad", "azimuth of the point before installation", -2 * math.pi, 2 * math.pi, "deg")]
+    radius: Annotated[float, Quantity("m", "radius there", 1e-3, 2.0, "mm")]
 
 
 @record
@@ -61,19 +61,19 @@ class OuterRaceway:
     In the last two forms ``low_radius``, ``d_value`` and ``lobes`` follow from the points.
     """
 
-    low_radius: quantity("m", "radius at the low points, R_low", 1e-3, 2.0, "mm") | None = None
-    d_value: quantity("m", "high-point radius less low-point radius, D", 0.0, 5e-3, "mm") | None = None
+    low_radius: Annotated[float, Quantity("m", "radius at the low points, R_low", 1e-3, 2.0, "mm")] | None = None
+    d_value: Annotated[float, Quantity("m", "high-point radius less low-point radius, D", 0.0, 5e-3, "mm")] | None = None
     lobes: Annotated[int, Field(ge=1, le=12)] | None = None  # number of lobes, n
-    roundness: quantity("m", "highest less lowest of the low points, e", 0.0, 1e-3, "um") = 0.0
+    roundness: Annotated[float, Quantity("m", "highest less lowest of the low points, e", 0.0, 1e-3, "um")] = 0.0
     low_points: tuple[ContourPoint, ...] = ()
     high_points: tuple[ContourPoint, ...] = ()
     contour_file: str | None = None  # path of a CSV file of a measured turn, from the folder of the scene file
     contour: str | None = None  # text of such a file
     contour_angle_unit: str | None = None  # unit of its angles, if its header has none
     contour_radius_unit: str | None = None  # unit of its radii, if its header has none
-    installation_angle: quantity("rad", "azimuth of a low point, phi_e", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+    installation_angle: Annotated[float, Quantity("rad", "azimuth of a low point, phi_e", -2 * math.pi, 2 * math.pi, "deg")] = 0.0
     contour_slope: bool = True  # whether normal forces lean with the contour; false is Deng's form
-    outside_radius: quantity("m", "outside radius of the outer ring", 1e-3, 2.0, "mm") | None = None
+    outside_radius: Annotated[float, Quantity("m", "outside radius of the outer ring", 1e-3, 2.0, "mm")] | None = None
 
     @model_validator(mode="after")
     def _form_is_complete(self):
@@ -91,11 +91,13 @@ class OuterRaceway:
 class InnerRaceway:
     """Round inner raceway, turning with the shaft."""
 
-    radius: quantity("m", "inner raceway radius, R_i", 1e-3, 2.0, "mm")
-    ring_mass: quantity("kg", "mass of the inner ring", 1e-4, 1e3) = 0.05
-    polar_inertia: quantity("kg*m^2", "inertia of ring and shaft about the shaft axis; None: a solid cylinder", 1e-12, 1e6) | None = None
-    transverse_inertia: quantity("kg*m^2", "their inertia about a diameter; None: half of the polar one", 1e-12, 1e6) | None = None
-    bore_radius: quantity("m", "bore radius of the inner ring", 1e-3, 2.0, "mm") | None = None
+    radius: Annotated[float, Quantity("m", "inner raceway radius, R_i", 1e-3, 2.0, "mm")]
+    ring_mass: Annotated[float, Quantity("kg", "mass of the inner ring", 1e-4, 1e3)] = 0.05
+    polar_inertia: (
+        Annotated[float, Quantity("kg*m^2", "inertia of ring and shaft about the shaft axis; None: a solid cylinder", 1e-12, 1e6)] | None
+    ) = None
+    transverse_inertia: Annotated[float, Quantity("kg*m^2", "their inertia about a diameter; None: half of the polar one", 1e-12, 1e6)] | None = None
+    bore_radius: Annotated[float, Quantity("m", "bore radius of the inner ring", 1e-3, 2.0, "mm")] | None = None
 
 
 @record
@@ -106,8 +108,8 @@ class Roller:
     """
 
     count: Annotated[int, Field(ge=3, le=200)]  # number of rollers, Z
-    diameter: quantity("m", "roller diameter, D_w", 0.5e-3, 0.5, "mm")
-    length: quantity("m", "roller effective length, L", 0.5e-3, 0.5, "mm")
+    diameter: Annotated[float, Quantity("m", "roller diameter, D_w", 0.5e-3, 0.5, "mm")]
+    length: Annotated[float, Quantity("m", "roller effective length, L", 0.5e-3, 0.5, "mm")]
     crown: Crown | None = None  # profile of the rollers, see `bearing_sim.scene.crown`; None: not known, taken as that of ISO/TS 16281
     slices: Annotated[int, Field(ge=1, le=400)] | None = None  # equal ones, at level spatial; None: points of a quadrature
 
@@ -129,17 +131,17 @@ class Contact:
     """
 
     spring: Literal["palmgren", "iso"] = "palmgren"  # A_1 of the material, or c_L of ISO/TS 16281, which is for steel
-    damping: quantity("", "a [s/m]; 0.104 is a viscous ratio of 0.05 for a 7 mm roller at 500 N", 0.0, 100.0) = 0.104
-    damping_time: quantity("s", "tau, damping over stiffness; Kraemer: 2.5 to 25 us", 0.0, 1e-3, "us") = 2.5e-6
-    damping_depth: quantity("m", "h, penetration at which half of that is left", 1e-9, 1e-4, "um") = 1e-7
+    damping: Annotated[float, Quantity("", "a [s/m]; 0.104 is a viscous ratio of 0.05 for a 7 mm roller at 500 N", 0.0, 100.0)] = 0.104
+    damping_time: Annotated[float, Quantity("s", "tau, damping over stiffness; Kraemer: 2.5 to 25 us", 0.0, 1e-3, "us")] = 2.5e-6
+    damping_depth: Annotated[float, Quantity("m", "h, penetration at which half of that is left", 1e-9, 1e-4, "um")] = 1e-7
 
 
 @record
 class Roughness:
     """Root-mean-square roughness of the rolling surfaces; used only for the lambda ratio of the monitoring."""
 
-    roller: quantity("m", "roughness of the rollers, R_q", 1e-10, 1e-4, "um")
-    raceway: quantity("m", "roughness of the raceways, R_q", 1e-10, 1e-4, "um")
+    roller: Annotated[float, Quantity("m", "roughness of the rollers, R_q", 1e-10, 1e-4, "um")]
+    raceway: Annotated[float, Quantity("m", "roughness of the raceways, R_q", 1e-10, 1e-4, "um")]
 
     @property
     def composite(self) -> float:
@@ -159,31 +161,35 @@ class Cage:
     """
 
     guidance: Literal["outer_ring", "inner_ring", "roller", "full_complement"] = "outer_ring"  # what guides the cage
-    mass: quantity("kg", "cage mass", 1e-6, 1e3, "g")
-    polar_inertia: quantity("kg*m^2", "cage inertia about the shaft axis", 1e-12, 1e3) | None = None
-    transverse_inertia: quantity("kg*m^2", "cage inertia about a diameter; None: half of the polar one", 1e-12, 1e3) | None = None
-    inner_radius: quantity("m", "radius of the cage's bore", 1e-3, 2.0, "mm") | None = None
-    outer_radius: quantity("m", "radius of the cage's outer surface", 1e-3, 2.0, "mm") | None = None
-    width: quantity("m", "axial width of the cage", 1e-4, 1.0, "mm")
+    mass: Annotated[float, Quantity("kg", "cage mass", 1e-6, 1e3, "g")]
+    polar_inertia: Annotated[float, Quantity("kg*m^2", "cage inertia about the shaft axis", 1e-12, 1e3)] | None = None
+    transverse_inertia: Annotated[float, Quantity("kg*m^2", "cage inertia about a diameter; None: half of the polar one", 1e-12, 1e3)] | None = None
+    inner_radius: Annotated[float, Quantity("m", "radius of the cage's bore", 1e-3, 2.0, "mm")] | None = None
+    outer_radius: Annotated[float, Quantity("m", "radius of the cage's outer surface", 1e-3, 2.0, "mm")] | None = None
+    width: Annotated[float, Quantity("m", "axial width of the cage", 1e-4, 1.0, "mm")]
     material: Material = field(default_factory=Material)
-    guide_radius: quantity("m", "radius of the guiding ring's lands, R_g", 1e-3, 2.0, "mm") | None = None
-    guide_clearance: quantity("m", "radial clearance between cage and guide lands, c", 1e-6, 5e-3, "mm") | None = None
-    guide_land_width: quantity("m", "width of one of the two guide lands", 1e-6, 0.5, "mm") | None = None
-    guide_land_distance: quantity("m", "between the middles of both guide lands; None: at the cage's edges", 0.0, 1.0, "mm") | None = None
-    land_film: quantity("m", "film in the guide land below which surfaces touch", 0.0, 1e-4, "um") = 3e-6
-    land_friction: quantity("", "boundary friction coefficient of the guide land", 0.0, 1.0) = 0.08
+    guide_radius: Annotated[float, Quantity("m", "radius of the guiding ring's lands, R_g", 1e-3, 2.0, "mm")] | None = None
+    guide_clearance: Annotated[float, Quantity("m", "radial clearance between cage and guide lands, c", 1e-6, 5e-3, "mm")] | None = None
+    guide_land_width: Annotated[float, Quantity("m", "width of one of the two guide lands", 1e-6, 0.5, "mm")] | None = None
+    guide_land_distance: (
+        Annotated[float, Quantity("m", "between the middles of both guide lands; None: at the cage's edges", 0.0, 1.0, "mm")] | None
+    ) = None
+    land_film: Annotated[float, Quantity("m", "film in the guide land below which surfaces touch", 0.0, 1e-4, "um")] = 3e-6
+    land_friction: Annotated[float, Quantity("", "boundary friction coefficient of the guide land", 0.0, 1.0)] = 0.08
     land_vortices: bool = True  # vortices and turbulence add to the drag of the guide land; false: laminar, as Deng's form
     land_squeeze: bool = True  # the film includes the motion of the cage centre; false: Deng's form for a centre at rest
-    pocket_friction: quantity("", "friction coefficient between roller and pocket, mu_c", 0.0, 1.0) = 0.05
+    pocket_friction: Annotated[float, Quantity("", "friction coefficient between roller and pocket, mu_c", 0.0, 1.0)] = 0.05
     # Level slip models neither pocket forces nor whirl; these two fields give it their effect on the cage.
     pocket_reaction: bool = False  # at level slip, pocket friction brakes the cage as well as the rollers
-    assumed_eccentricity: quantity("", "eccentricity of the cage at level slip, a fraction of the guide clearance", 0.0, 0.999) = 0.0
-    pocket_clearance: quantity("m", "clearance between roller and pocket along the orbit, C_p", 1e-6, 5e-3, "mm") = 1e-4
-    pocket_radial_clearance: quantity("m", "radial clearance of pockets that guide the cage; None: as along the orbit", 1e-6, 5e-3, "mm") | None = (
-        None
+    assumed_eccentricity: Annotated[float, Quantity("", "eccentricity of the cage at level slip, a fraction of the guide clearance", 0.0, 0.999)] = (
+        0.0
     )
-    pocket_film_force: quantity("N", "force of the pocket's oil film when the clearance is used up", 0.0, 1e4) = 67.0
-    pocket_film_damping: quantity("", "damping of the pocket's oil film [N s/m]", 0.0, 1e4) = 5.0
+    pocket_clearance: Annotated[float, Quantity("m", "clearance between roller and pocket along the orbit, C_p", 1e-6, 5e-3, "mm")] = 1e-4
+    pocket_radial_clearance: (
+        Annotated[float, Quantity("m", "radial clearance of pockets that guide the cage; None: as along the orbit", 1e-6, 5e-3, "mm")] | None
+    ) = None
+    pocket_film_force: Annotated[float, Quantity("N", "force of the pocket's oil film when the clearance is used up", 0.0, 1e4)] = 67.0
+    pocket_film_damping: Annotated[float, Quantity("", "damping of the pocket's oil film [N s/m]", 0.0, 1e4)] = 5.0
 
     @model_validator(mode="before")
     @classmethod
@@ -273,7 +279,7 @@ class SealMoment:
     """Seals that rub on the shaft with a constant moment."""
 
     law: Literal["constant_moment"] = "constant_moment"
-    moment: quantity("N*m", "frictional moment of all seals together", 0.0, 1e4)
+    moment: Annotated[float, Quantity("N*m", "frictional moment of all seals together", 0.0, 1e4)]
 
 
 @record
@@ -284,10 +290,10 @@ class SkfSeals:
     """
 
     law: Literal["skf"] = "skf"
-    diameter: quantity("m", "diameter of the counterface, d_s; None: that of the outer raceway, E", 1e-3, 4.0, "mm") | None = None
-    exponent: quantity("", "beta", 0.0, 3.0) = 2.0
-    factor: quantity("", "K_S1", 0.0, 10.0) = 0.032
-    offset: quantity("", "K_S2 [N mm]", 0.0, 1e4) = 50.0
+    diameter: Annotated[float, Quantity("m", "diameter of the counterface, d_s; None: that of the outer raceway, E", 1e-3, 4.0, "mm")] | None = None
+    exponent: Annotated[float, Quantity("", "beta", 0.0, 3.0)] = 2.0
+    factor: Annotated[float, Quantity("", "K_S1", 0.0, 10.0)] = 0.032
+    offset: Annotated[float, Quantity("", "K_S2 [N mm]", 0.0, 1e4)] = 50.0
     count: Annotated[int, Field(ge=1, le=2)] = 2  # seals
 
 
@@ -322,7 +328,7 @@ class Bearing:
     source: str  # where its dimensions come from
     # Whether dimensions are those of the running bearing, or those on the drawing, which fits, rotation and heat change.
     dimensions_at: Literal["cold", "running"] = "cold"
-    reference_temperature: quantity("K", "temperature at which cold dimensions are valid", 150.0, 800.0, "degC") = 293.15
+    reference_temperature: Annotated[float, Quantity("K", "temperature at which cold dimensions are valid", 150.0, 800.0, "degC")] = 293.15
     # Instead of outer_raceway.low_radius; the middle of the limits is taken for a group.
     clearance: Annotated[float | str, _CLEARANCE] | None = None
     outer_raceway: OuterRaceway
@@ -333,7 +339,7 @@ class Bearing:
     contact: Contact = field(default_factory=Contact)
     roughness: Roughness | None = None  # None: the lambda ratio is neither computed nor monitored
     ratings: Ratings = field(default_factory=Ratings)  # what the maker rates the bearing for
-    width: quantity("m", "width of the bearing, B; None: estimated from the rollers' length", 1e-3, 2.0, "mm") | None = None
+    width: Annotated[float, Quantity("m", "width of the bearing, B; None: estimated from the rollers' length", 1e-3, 2.0, "mm")] | None = None
     seals: Seals = field(default_factory=NoSeals)
     flanges: Flanges = field(default_factory=Flanges)
     designation: str = ""  # of the catalogue bearing that these dimensions are of, such as NU 210 ECP/C3

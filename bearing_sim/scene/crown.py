@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field
 
 from bearing_sim.files.limits import CROWN_FILE, CROWN_POINTS, FileError
 from bearing_sim.files.reading import read_text
-from bearing_sim.scene.quantity import check, named_law, quantity, record
+from bearing_sim.scene.quantity import Quantity, check, named_law, record
 
 _TABLE_HEADER = "expected a header of two columns, position and drop, each with its unit in brackets, such as position[mm],drop[um]"
 
@@ -34,8 +34,8 @@ class StraightArcCrown:
     """Straight in the middle, then an arc: P(x) = R_c - sqrt(R_c^2 - s^2), s = |x| - straight_length/2, where s > 0."""
 
     law: Literal["straight_arc"] = "straight_arc"
-    straight_length: quantity("m", "length of the straight middle part", 0.0, 0.5, "mm")
-    crown_radius: quantity("m", "radius of the arcs on both sides of it, R_c", 1e-3, 1e3, "mm")
+    straight_length: Annotated[float, Quantity("m", "length of the straight middle part", 0.0, 0.5, "mm")]
+    crown_radius: Annotated[float, Quantity("m", "radius of the arcs on both sides of it, R_c", 1e-3, 1e3, "mm")]
 
 
 @record
@@ -43,8 +43,8 @@ class TableCrown:
     """A measured profile, linear between its points; positions are measured from the roller's middle along x."""
 
     law: Literal["table"] = "table"
-    positions: tuple[quantity("m", "position along the roller, from its middle", -0.25, 0.25, "mm"), ...]
-    drops: tuple[quantity("m", "drop from the cylinder of the largest diameter", 0.0, 5e-3, "um"), ...]
+    positions: tuple[Annotated[float, Quantity("m", "position along the roller, from its middle", -0.25, 0.25, "mm")], ...]
+    drops: tuple[Annotated[float, Quantity("m", "drop from the cylinder of the largest diameter", 0.0, 5e-3, "um")], ...]
 
     @check
     def _points_pair_up(self) -> list[str]:

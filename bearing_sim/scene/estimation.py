@@ -10,7 +10,7 @@ from typing import Annotated
 
 from pydantic import BeforeValidator
 
-from bearing_sim.scene.quantity import check, quantity, record
+from bearing_sim.scene.quantity import Quantity, check, record
 from bearing_sim.scene.uncertainty import nearest, ranges_of
 
 _LONGEST = 1e10  # s
@@ -28,8 +28,12 @@ class Drift:
     The times are assumptions: oil ages and rings wear over hundreds of hours of service.
     """
 
-    wander_time: quantity("s", "time in which a calibrated field wanders by one standard deviation of its range", 60.0, _LONGEST, "h") = 3.6e6
-    step_time: quantity("s", "mean time between sudden changes, after which a field may lie anywhere in its range", 60.0, _LONGEST, "h") = 3.6e5
+    wander_time: Annotated[
+        float, Quantity("s", "time in which a calibrated field wanders by one standard deviation of its range", 60.0, _LONGEST, "h")
+    ] = 3.6e6
+    step_time: Annotated[
+        float, Quantity("s", "mean time between sudden changes, after which a field may lie anywhere in its range", 60.0, _LONGEST, "h")
+    ] = 3.6e5
 
 
 @record
@@ -39,21 +43,25 @@ class MeasurementNoise:
     A reading that brings its own standard error, such as a cage speed out of vibration, counts by that instead.
     """
 
-    cage_speed: quantity("", "noise of a measured cage speed over the ideal cage's speed: of a reading of slip (assumption)", 1e-6, 1.0, "%") = 0.002
-    temperature: quantity("delta_degC", "noise of a measured ring temperature (assumption; as heat.filter.sensor)", 1e-3, 100.0, "K") = 0.5
-    clearance: quantity("m", "noise of a measured running clearance (assumption)", 1e-8, 1e-3, "um") = 2e-6
-    outliers: quantity("", "fraction of wild readings (assumption)", 0.0, 0.5, "%") = 0.01
+    cage_speed: Annotated[
+        float, Quantity("", "noise of a measured cage speed over the ideal cage's speed: of a reading of slip (assumption)", 1e-6, 1.0, "%")
+    ] = 0.002
+    temperature: Annotated[
+        float, Quantity("delta_degC", "noise of a measured ring temperature (assumption; as heat.filter.sensor)", 1e-3, 100.0, "K")
+    ] = 0.5
+    clearance: Annotated[float, Quantity("m", "noise of a measured running clearance (assumption)", 1e-8, 1e-3, "um")] = 2e-6
+    outliers: Annotated[float, Quantity("", "fraction of wild readings (assumption)", 0.0, 0.5, "%")] = 0.01
 
 
 @record
 class ModelError:
     """What the model errs by where all its fields are right: standard deviations, of errors that last."""
 
-    slip: quantity("", "error in cage slip (assumption; as thresholds.residual.tolerance)", 0.0, 1.0, "%") = 0.002
-    temperature: quantity("delta_degC", "error in a ring temperature (assumption; as thresholds.temperature_residual.tolerance)", 0.0, 100.0, "K") = (
-        1.0
-    )
-    clearance: quantity("m", "error in the running clearance (assumption)", 0.0, 1e-3, "um") = 1e-6
+    slip: Annotated[float, Quantity("", "error in cage slip (assumption; as thresholds.residual.tolerance)", 0.0, 1.0, "%")] = 0.002
+    temperature: Annotated[
+        float, Quantity("delta_degC", "error in a ring temperature (assumption; as thresholds.temperature_residual.tolerance)", 0.0, 100.0, "K")
+    ] = 1.0
+    clearance: Annotated[float, Quantity("m", "error in the running clearance (assumption)", 0.0, 1e-3, "um")] = 1e-6
 
 
 @record
@@ -66,10 +74,10 @@ class Estimation:
     """
 
     bands: bool = False  # whether cage slip, rating life, running clearance and remaining life get a 5 to 95 % band
-    rate: quantity("Hz", "most bands in a simulated second", 1e-4, 1000.0) = 50.0
+    rate: Annotated[float, Quantity("Hz", "most bands in a simulated second", 1e-4, 1000.0)] = 50.0
     # Fields that measurements calibrate, by dotted path, each with a range; none: no calibration.
     calibrated: Annotated[tuple[str, ...], BeforeValidator(_paths)] = ()
-    interval: quantity("s", "least time between two updates by measurements; readings in between are averaged", 0.01, 3600.0) = 1.0
+    interval: Annotated[float, Quantity("s", "least time between two updates by measurements; readings in between are averaged", 0.01, 3600.0)] = 1.0
     drift: Drift = field(default_factory=Drift)
     noise: MeasurementNoise = field(default_factory=MeasurementNoise)
     model_error: ModelError = field(default_factory=ModelError)

@@ -6,6 +6,19 @@ from typing import Any, Literal, NamedTuple, get_args
 
 Level = Literal["steady", "slip", "planar", "spatial"]
 LEVELS = get_args(Level)  # from the lowest to the highest fidelity
+WantName = Literal[
+    "slip",
+    "life",
+    "roller_loads",
+    "power",
+    "fast_transients",
+    "pocket_forces",
+    "cage_orbit",
+    "vibration",
+    "misalignment",
+    "tilt_and_skew",
+    "edge_loads",
+]
 NUMBERS = {"steady": 0, "slip": 1, "planar": 2, "spatial": 3}  # code of a level in a sample
 REDUCES_TO = {"spatial": "planar"}  # equal motion and loads, of straight rollers to round-off, unless the scene uses what only the higher level has
 
@@ -35,7 +48,7 @@ class Want(NamedTuple):
 
 
 MARCHING, WHIRLING, TILTING = ("slip", "planar", "spatial"), ("planar", "spatial"), ("spatial",)
-WANTS = {
+WANTS: dict[WantName, Want] = {
     "slip": Want(LEVELS, "which all compute it"),
     "life": Want(LEVELS, "which all compute it"),
     "roller_loads": Want(LEVELS, "which all compute them"),

@@ -11,9 +11,9 @@ corner radius of ``CORNER`` times the roller's diameter (*assumptions*; `uncerta
 """
 
 import math
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
-from bearing_sim.scene.quantity import quantity, record
+from bearing_sim.scene.quantity import Quantity, record
 
 HEIGHT = 0.18  # of the roller diameter; assumption, 0.15 to 0.25 in makers' drawings (d_1, D_1 against F, E)
 CLEARANCE = (15e-6, 0.003)  # m, and of the roller's length; assumption, half to twice as much
@@ -34,17 +34,27 @@ class Flanges:
 
     inner: Sides = "none"  # flanges of the inner ring
     outer: Sides = "none"  # flanges of the outer ring
-    inner_radius: quantity("m", "radius up to which the inner ring's flanges reach, d_1/2; None: estimated", 1e-3, 2.0, "mm") | None = None
-    outer_radius: quantity("m", "radius down to which the outer ring's flanges reach, D_1/2; None: estimated", 1e-3, 2.0, "mm") | None = None
-    end_clearance: quantity("m", "total axial play of a roller between two flanges; None: estimated", 1e-6, 2e-3, "um") | None = None
-    opening_angle: quantity("rad", "layback of a flange, by which its face opens away from the raceway", 1e-4, 0.1, "deg") = math.radians(0.5)
-    corner_radius: quantity("m", "radius between a roller's end face and its surface; None: estimated", 1e-6, 0.1, "mm") | None = None
-    end_radius: quantity("m", "radius of a roller end ground as a sphere; None: a flat end", 1e-3, 100.0, "mm") | None = None
-    film_friction: quantity("", "friction coefficient of roller end and flange on a full film; SKF: 0.02", 0.0, 1.0) = 0.02
-    guiding_load: quantity("", "axial force of a roller's end on its flange without an axial load, over its load on the inner raceway", 0.0, 0.1) = (
-        0.0
+    inner_radius: (
+        Annotated[float, Quantity("m", "radius up to which the inner ring's flanges reach, d_1/2; None: estimated", 1e-3, 2.0, "mm")] | None
+    ) = None
+    outer_radius: (
+        Annotated[float, Quantity("m", "radius down to which the outer ring's flanges reach, D_1/2; None: estimated", 1e-3, 2.0, "mm")] | None
+    ) = None
+    end_clearance: Annotated[float, Quantity("m", "total axial play of a roller between two flanges; None: estimated", 1e-6, 2e-3, "um")] | None = (
+        None
     )
-    film: quantity("m", "oil film where an axial load presses a roller's end on a flange", 1e-8, 1e-4, "um") = 1e-6
+    opening_angle: Annotated[float, Quantity("rad", "layback of a flange, by which its face opens away from the raceway", 1e-4, 0.1, "deg")] = (
+        math.radians(0.5)
+    )
+    corner_radius: Annotated[float, Quantity("m", "radius between a roller's end face and its surface; None: estimated", 1e-6, 0.1, "mm")] | None = (
+        None
+    )
+    end_radius: Annotated[float, Quantity("m", "radius of a roller end ground as a sphere; None: a flat end", 1e-3, 100.0, "mm")] | None = None
+    film_friction: Annotated[float, Quantity("", "friction coefficient of roller end and flange on a full film; SKF: 0.02", 0.0, 1.0)] = 0.02
+    guiding_load: Annotated[
+        float, Quantity("", "axial force of a roller's end on its flange without an axial load, over its load on the inner raceway", 0.0, 0.1)
+    ] = 0.0
+    film: Annotated[float, Quantity("m", "oil film where an axial load presses a roller's end on a flange", 1e-8, 1e-4, "um")] = 1e-6
 
     @property
     def present(self) -> bool:

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from bearing_sim.scene.quantity import check, quantity, record
+from bearing_sim.scene.quantity import Quantity, check, record
 
 
 @record
@@ -25,22 +25,25 @@ class GivenHeat:
     """
 
     law: Literal["given"] = "given"
-    shaft: quantity("K", "temperature of the shaft; None: the inner ring's", 220.0, 600.0, "degC") | None = None
-    inner_ring: quantity("K", "temperature of the inner ring; None: the oil's", 220.0, 600.0, "degC") | None = None
-    rollers: quantity("K", "temperature of the rollers; None: the mean of both rings", 220.0, 600.0, "degC") | None = None
-    outer_ring: quantity("K", "temperature of the outer ring; None: the oil's", 220.0, 600.0, "degC") | None = None
-    housing: quantity("K", "temperature of the housing; None: the outer ring's", 220.0, 600.0, "degC") | None = None
+    shaft: Annotated[float, Quantity("K", "temperature of the shaft; None: the inner ring's", 220.0, 600.0, "degC")] | None = None
+    inner_ring: Annotated[float, Quantity("K", "temperature of the inner ring; None: the oil's", 220.0, 600.0, "degC")] | None = None
+    rollers: Annotated[float, Quantity("K", "temperature of the rollers; None: the mean of both rings", 220.0, 600.0, "degC")] | None = None
+    outer_ring: Annotated[float, Quantity("K", "temperature of the outer ring; None: the oil's", 220.0, 600.0, "degC")] | None = None
+    housing: Annotated[float, Quantity("K", "temperature of the housing; None: the outer ring's", 220.0, 600.0, "degC")] | None = None
 
 
 @record
 class Housing:
     """The housing as it gives off heat, by default a split plummer block; its material is that of `mounting.housing`."""
 
-    height: quantity("m", "height; None: 1.25 times the outside diameter of the bearing", 1e-3, 10.0, "mm") | None = None
-    width: quantity("m", "width along the shaft; None: that of the bearing and 0.6 times its outside diameter", 1e-3, 10.0, "mm") | None = None
-    area: quantity("m^2", "surface that gives off heat; None: pi H (B + H/2) of height and width", 0.0, 1e3) | None = None
-    mass: quantity("kg", "mass; None: 3500 kg/m^3 times the cube of the bearing's outside diameter", 1e-3, 1e6) | None = None
-    emissivity: quantity("", "emissivity of the surface, 0.9: painted or cast", 0.0, 1.0) = 0.9
+    height: Annotated[float, Quantity("m", "height; None: 1.25 times the outside diameter of the bearing", 1e-3, 10.0, "mm")] | None = None
+    width: (
+        Annotated[float, Quantity("m", "width along the shaft; None: that of the bearing and 0.6 times its outside diameter", 1e-3, 10.0, "mm")]
+        | None
+    ) = None
+    area: Annotated[float, Quantity("m^2", "surface that gives off heat; None: pi H (B + H/2) of height and width", 0.0, 1e3)] | None = None
+    mass: Annotated[float, Quantity("kg", "mass; None: 3500 kg/m^3 times the cube of the bearing's outside diameter", 1e-3, 1e6)] | None = None
+    emissivity: Annotated[float, Quantity("", "emissivity of the surface, 0.9: painted or cast", 0.0, 1.0)] = 0.9
 
 
 @record
@@ -50,11 +53,16 @@ class ShaftEnds:
     A free end gives off heat only.  One of given temperature brings or takes heat: a motor's rotor, a gear, a pump's cold impeller.
     """
 
-    front: quantity("m", "length before the bearing; None: 2.5 times its bore diameter; 0: no heat leaves there", 0.0, 100.0, "mm") | None = None
-    back: quantity("m", "length behind the bearing, likewise", 0.0, 100.0, "mm") | None = None
-    front_temperature: quantity("K", "temperature that the front end is held at; None: a free end", 200.0, 600.0, "degC") | None = None
-    back_temperature: quantity("K", "temperature that the back end is held at, likewise", 200.0, 600.0, "degC") | None = None
-    emissivity: quantity("", "emissivity of its surface, 0.3: machined steel", 0.0, 1.0) = 0.3
+    front: (
+        Annotated[float, Quantity("m", "length before the bearing; None: 2.5 times its bore diameter; 0: no heat leaves there", 0.0, 100.0, "mm")]
+        | None
+    ) = None
+    back: Annotated[float, Quantity("m", "length behind the bearing, likewise", 0.0, 100.0, "mm")] | None = None
+    front_temperature: Annotated[float, Quantity("K", "temperature that the front end is held at; None: a free end", 200.0, 600.0, "degC")] | None = (
+        None
+    )
+    back_temperature: Annotated[float, Quantity("K", "temperature that the back end is held at, likewise", 200.0, 600.0, "degC")] | None = None
+    emissivity: Annotated[float, Quantity("", "emissivity of its surface, 0.3: machined steel", 0.0, 1.0)] = 0.3
 
     @check
     def _held_ends_have_a_length(self) -> list[str]:
@@ -65,27 +73,27 @@ class ShaftEnds:
         ]
 
 
-def _conductance(between: str):
-    return quantity("W/K", f"{between}; None: computed", 0.0, 1e9) | None
+def _conductance(between: str) -> Quantity:
+    return Quantity("W/K", f"{between}; None: computed", 0.0, 1e9)
 
 
 @record
 class Conductances:
     """Thermal conductances that are known; those that are left out are computed (see `bearing_sim.physics.heat`)."""
 
-    shaft_inner_ring: _conductance("shaft to inner ring, through their fit") = None
-    inner_ring_rollers: _conductance("inner ring to rollers, through their contacts") = None
-    rollers_outer_ring: _conductance("rollers to outer ring, through their contacts") = None
-    outer_ring_housing: _conductance("outer ring to housing, through their fit") = None
-    inner_ring_oil: _conductance("inner ring to the oil in the bearing") = None
-    rollers_oil: _conductance("rollers and cage to the oil in the bearing") = None
-    outer_ring_oil: _conductance("outer ring to the oil in the bearing") = None
-    housing_oil: _conductance("housing to the oil in the bearing") = None
-    oil_flow: _conductance("heat capacity of the oil that flows through, density x specific heat x flow") = None
-    housing_ambient: _conductance("housing to ambient") = None
-    shaft_ambient: _conductance("shaft to ambient, both ends") = None
-    shaft_front: _conductance("shaft to its front end, where that has a given temperature") = None
-    shaft_back: _conductance("shaft to its back end, likewise") = None
+    shaft_inner_ring: Annotated[float, _conductance("shaft to inner ring, through their fit")] | None = None
+    inner_ring_rollers: Annotated[float, _conductance("inner ring to rollers, through their contacts")] | None = None
+    rollers_outer_ring: Annotated[float, _conductance("rollers to outer ring, through their contacts")] | None = None
+    outer_ring_housing: Annotated[float, _conductance("outer ring to housing, through their fit")] | None = None
+    inner_ring_oil: Annotated[float, _conductance("inner ring to the oil in the bearing")] | None = None
+    rollers_oil: Annotated[float, _conductance("rollers and cage to the oil in the bearing")] | None = None
+    outer_ring_oil: Annotated[float, _conductance("outer ring to the oil in the bearing")] | None = None
+    housing_oil: Annotated[float, _conductance("housing to the oil in the bearing")] | None = None
+    oil_flow: Annotated[float, _conductance("heat capacity of the oil that flows through, density x specific heat x flow")] | None = None
+    housing_ambient: Annotated[float, _conductance("housing to ambient")] | None = None
+    shaft_ambient: Annotated[float, _conductance("shaft to ambient, both ends")] | None = None
+    shaft_front: Annotated[float, _conductance("shaft to its front end, where that has a given temperature")] | None = None
+    shaft_back: Annotated[float, _conductance("shaft to its back end, likewise")] | None = None
 
 
 @record
@@ -97,13 +105,13 @@ class ThermalFilter:
     held counts at each step of the network.
     """
 
-    shaft: quantity("K/s^0.5", "process noise of the shaft", 0.0, 100.0) = 0.1
-    inner_ring: quantity("K/s^0.5", "process noise of the inner ring", 0.0, 100.0) = 0.5
-    rollers: quantity("K/s^0.5", "process noise of the rollers", 0.0, 100.0) = 0.5
-    outer_ring: quantity("K/s^0.5", "process noise of the outer ring", 0.0, 100.0) = 0.5
-    housing: quantity("K/s^0.5", "process noise of the housing", 0.0, 100.0) = 0.1
-    oil: quantity("K/s^0.5", "process noise of the oil", 0.0, 100.0) = 1.0
-    sensor: quantity("delta_degC", "noise of a measured ring temperature, standard deviation of a reading", 1e-3, 100.0, "K") = 0.5
+    shaft: Annotated[float, Quantity("K/s^0.5", "process noise of the shaft", 0.0, 100.0)] = 0.1
+    inner_ring: Annotated[float, Quantity("K/s^0.5", "process noise of the inner ring", 0.0, 100.0)] = 0.5
+    rollers: Annotated[float, Quantity("K/s^0.5", "process noise of the rollers", 0.0, 100.0)] = 0.5
+    outer_ring: Annotated[float, Quantity("K/s^0.5", "process noise of the outer ring", 0.0, 100.0)] = 0.5
+    housing: Annotated[float, Quantity("K/s^0.5", "process noise of the housing", 0.0, 100.0)] = 0.1
+    oil: Annotated[float, Quantity("K/s^0.5", "process noise of the oil", 0.0, 100.0)] = 1.0
+    sensor: Annotated[float, Quantity("delta_degC", "noise of a measured ring temperature, standard deviation of a reading", 1e-3, 100.0, "K")] = 0.5
 
 
 @record
@@ -114,16 +122,21 @@ class NetworkHeat:
     """
 
     law: Literal["network"] = "network"
-    ambient_temperature: quantity("K", "temperature of the air around housing and shaft", 200.0, 500.0, "degC") = 293.15
+    ambient_temperature: Annotated[float, Quantity("K", "temperature of the air around housing and shaft", 200.0, 500.0, "degC")] = 293.15
     # Air that a running machine stirs; DIN 31652-1 counts 7 + 12 v^(1/2) W/(m^2 K) from 1.2 m/s on.  0 is still air.
-    air_speed: quantity("m/s", "speed of the air across the housing", 0.0, 100.0) = 1.2
-    oil_flow: quantity("m^3/s", "oil that flows through the bearing; None: the supply's, or of a jet 5.6e-4 m^2/s x bore", 0.0, 1.0) | None = None
-    oil_volume: quantity("m^3", "oil in the bearing; None: by the oil's fraction of its space", 1e-9, 10.0) | None = None
+    air_speed: Annotated[float, Quantity("m/s", "speed of the air across the housing", 0.0, 100.0)] = 1.2
+    oil_flow: (
+        Annotated[float, Quantity("m^3/s", "oil that flows through the bearing; None: the supply's, or of a jet 5.6e-4 m^2/s x bore", 0.0, 1.0)]
+        | None
+    ) = None
+    oil_volume: Annotated[float, Quantity("m^3", "oil in the bearing; None: by the oil's fraction of its space", 1e-9, 10.0)] | None = None
     start: Literal["oil", "ambient", "equilibrium"] = "oil"  # temperatures at time 0: all the oil's, all the air's, or those of equilibrium
-    limit: quantity("K", "highest temperature of a thermal equilibrium; beyond it the bearing runs away", 300.0, 590.0, "degC") = 573.15
-    interval: quantity("s", "least simulated time between two steps of the network", 1e-3, 100.0) = 1.0
-    convection_factor: quantity("", "factor on the convection of rings, rollers and cage to the oil", 0.0, 100.0) = 1.0
-    oil_to_housing: quantity("W/(m^2*K)", "heat transfer coefficient of the oil on the housing's inside", 0.0, 1e5) = 200.0
+    limit: Annotated[float, Quantity("K", "highest temperature of a thermal equilibrium; beyond it the bearing runs away", 300.0, 590.0, "degC")] = (
+        573.15
+    )
+    interval: Annotated[float, Quantity("s", "least simulated time between two steps of the network", 1e-3, 100.0)] = 1.0
+    convection_factor: Annotated[float, Quantity("", "factor on the convection of rings, rollers and cage to the oil", 0.0, 100.0)] = 1.0
+    oil_to_housing: Annotated[float, Quantity("W/(m^2*K)", "heat transfer coefficient of the oil on the housing's inside", 0.0, 1e5)] = 200.0
     housing: Housing = field(default_factory=Housing)
     shaft: ShaftEnds = field(default_factory=ShaftEnds)
     conductances: Conductances = field(default_factory=Conductances)

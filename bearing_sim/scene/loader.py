@@ -108,14 +108,41 @@ def load_scene(
     """
     if not isinstance(scene, (str, Path, Mapping, Scene)):
         raise TypeError(f"scene = {scene!r}: expected the name of a bundled scene, the path of a file, what a file holds as a mapping, or a Scene")
+    with allowing_outside(allow_outside):
+        return scene_from_mapping(*_given(scene, overrides))
+
+
+def _given(scene: str | Path | Mapping[str, Any] | Scene, overrides: Iterable[str] | Mapping[str, Any]) -> tuple[Mapping, str]:
+    """Return the tree of a scene that is given as to `load_scene`, with its overrides, and its name for messages."""
     overrides = override_texts(overrides)
     if isinstance(scene, Scene):
-        return scene_from_mapping(overridden(_as_mapping(scene), overrides), origin=scene.name)
+        return overridden(_as_mapping(scene), overrides), scene.name
     if isinstance(scene, Mapping):
-        return scene_from_mapping(overridden(scene, overrides), origin=str(scene.get("name", "scene")))
+        return overridden(scene, overrides), str(scene.get("name", "scene"))
     text, folder = read_named(scene, "scenes", "scene")
+    return _tree(text, overrides, str(scene), folder), str(scene)
+
+
+def measured_of(name: str, overrides: Iterable[str], allow_outside: bool, scene: Scene) -> Tradeoffs | None:
+    """Return what was measured of a scene: by the front file that it names, also beside a level of its own, else what this machine has kept.
+
+    Parameters
+    ----------
+    name, overrides, allow_outside : as of `load_scene`, which has made ``scene`` of them.
+
+    Returns
+    -------
+    None where nothing is kept.
+
+    Raises
+    ------
+    ValueError
+        The front cannot be read.
+    """
     with allowing_outside(allow_outside):
-        return scene_from_yaml(text, overrides, origin=str(scene), folder=folder)
+        tree, _ = _given(name, overrides)
+    named = tree.get("front")
+    return read_kept_tradeoffs(scene) if named is None else read_front(Path(named))
 
 
 def scene_fields(path: str = "") -> tuple[FieldFacts, ...]:
@@ -156,11 +183,16 @@ def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "sce
     Paths in the text are relative to ``folder`` and stay below it; without a folder, as in the scene of a recording, the text may name no file
     to be read.  Paths in overrides are relative to the current folder.
     """
+    return scene_from_mapping(_tree(text, overrides, origin, folder), origin)
+
+
+def _tree(text: str, overrides: Iterable[str], origin: str, folder: Path | None) -> Mapping:
+    """Return the tree of a scene's YAML text with overrides, see `scene_from_yaml`."""
     tree, refused = _with_files_in(yaml_mapping(text, origin, "bearing, lubricant, operating ..."), folder)
     tree = overridden(tree, overrides)
     if errors := [error for path, written, error in refused if at(tree, path) is written]:
         raise SceneError(origin, errors)
-    return scene_from_mapping(tree, origin)
+    return tree
 
 
 def _with_files_in(tree: dict, folder: Path | None) -> tuple[dict, list[tuple[tuple[str, ...], str, InvalidField]]]:

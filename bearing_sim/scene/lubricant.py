@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from bearing_sim.scene.quantity import check, named_law, quantity, record
+from bearing_sim.scene.quantity import Quantity, check, named_law, record
 
 BASE_OILS = Literal["mineral", "pao", "ester", "pag", "aviation"]
 """Kinds of base oil: mineral, poly-alpha-olefin, ester, polyalkylene glycol, and the esters of aviation turbine oils."""
@@ -18,7 +18,7 @@ class DoubleExponentialViscosity:
     """eta0 = scale (exp(exp(a - b ln T)) - c), T in kelvin."""
 
     law: Literal["double_exponential"] = "double_exponential"
-    scale: quantity("Pa*s", "factor", 1e-12, 1e3)
+    scale: Annotated[float, Quantity("Pa*s", "factor", 1e-12, 1e3)]
     a: float  # coefficient a
     b: float  # coefficient b
     c: float  # coefficient c
@@ -29,8 +29,8 @@ class ReferenceViscosity:
     """eta0 = viscosity exp(linear d + quadratic d^2), d = (T_ref - T)/(T_ref T)."""
 
     law: Literal["reference"] = "reference"
-    temperature: quantity("K", "reference temperature, T_ref", 150.0, 800.0, "degC")
-    viscosity: quantity("Pa*s", "viscosity at the reference temperature", 1e-6, 1e3)
+    temperature: Annotated[float, Quantity("K", "reference temperature, T_ref", 150.0, 800.0, "degC")]
+    viscosity: Annotated[float, Quantity("Pa*s", "viscosity at the reference temperature", 1e-6, 1e3)]
     linear: float  # coefficient of d [K]
     quadratic: float  # coefficient of d^2 [K^2]
 
@@ -64,10 +64,10 @@ class Oil:
     base: BASE_OILS = "aviation"  # kind of base oil; it decides which law of traction is taken unless one is given
     viscosity: Annotated[DoubleExponentialViscosity | ReferenceViscosity, Field(discriminator="law")]
     pressure_viscosity: Annotated[HyperbolicPressureViscosity | PowerPressureViscosity, Field(discriminator="law")]
-    density_temperatures: tuple[quantity("K", "temperature of a density point", 150.0, 800.0, "degC"), ...]
-    densities: tuple[quantity("kg/m^3", "density at that temperature", 100.0, 3000.0), ...]
-    thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]", 0.01, 10.0) = 0.0966
-    specific_heat: quantity("J/(kg*K)", "specific heat; None: by density and temperature (Cragoe 1929)", 100.0, 1e4) | None = None
+    density_temperatures: tuple[Annotated[float, Quantity("K", "temperature of a density point", 150.0, 800.0, "degC")], ...]
+    densities: tuple[Annotated[float, Quantity("kg/m^3", "density at that temperature", 100.0, 3000.0)], ...]
+    thermal_conductivity: Annotated[float, Quantity("", "thermal conductivity [W/(m K)]", 0.01, 10.0)] = 0.0966
+    specific_heat: Annotated[float, Quantity("J/(kg*K)", "specific heat; None: by density and temperature (Cragoe 1929)", 100.0, 1e4)] | None = None
 
     @check
     def _density_points_pair_up(self) -> list[str]:
@@ -92,16 +92,21 @@ class CustomOil:
     name: str = "custom"  # name of the oil
     source: str = ""  # where its data come from
     base: BASE_OILS = "mineral"  # kind of base oil
-    viscosity_40: quantity("m^2/s", "kinematic viscosity at 40 degC", 2e-7, 0.1, "mm^2/s")
-    viscosity_100: quantity("m^2/s", "kinematic viscosity at 100 degC; None: by the index", 2e-7, 0.1, "mm^2/s") | None = None
-    viscosity_index: quantity("", "viscosity index; None: usual of the base oil, if viscosity_100 is not given either", -60.0, 450.0) | None = None
-    density: quantity("kg/m^3", "density at 15 degC; None: by base oil and viscosity", 100.0, 3000.0) | None = None
-    expansion: quantity("1/K", "thermal expansion of the volume; None: by base oil and density", 0.0, 1e-2) | None = None
-    pressure_viscosity: (
-        quantity("1/Pa", "pressure-viscosity coefficient, alpha; None: by base oil and viscosity (Gold et al. 2001)", 1e-10, 1e-7, "1/GPa") | None
+    viscosity_40: Annotated[float, Quantity("m^2/s", "kinematic viscosity at 40 degC", 2e-7, 0.1, "mm^2/s")]
+    viscosity_100: Annotated[float, Quantity("m^2/s", "kinematic viscosity at 100 degC; None: by the index", 2e-7, 0.1, "mm^2/s")] | None = None
+    viscosity_index: (
+        Annotated[float, Quantity("", "viscosity index; None: usual of the base oil, if viscosity_100 is not given either", -60.0, 450.0)] | None
     ) = None
-    thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]; None: by base oil", 0.01, 10.0) | None = None
-    specific_heat: quantity("J/(kg*K)", "specific heat; None: by density and temperature (Cragoe 1929)", 100.0, 1e4) | None = None
+    density: Annotated[float, Quantity("kg/m^3", "density at 15 degC; None: by base oil and viscosity", 100.0, 3000.0)] | None = None
+    expansion: Annotated[float, Quantity("1/K", "thermal expansion of the volume; None: by base oil and density", 0.0, 1e-2)] | None = None
+    pressure_viscosity: (
+        Annotated[
+            float, Quantity("1/Pa", "pressure-viscosity coefficient, alpha; None: by base oil and viscosity (Gold et al. 2001)", 1e-10, 1e-7, "1/GPa")
+        ]
+        | None
+    ) = None
+    thermal_conductivity: Annotated[float, Quantity("", "thermal conductivity [W/(m K)]; None: by base oil", 0.01, 10.0)] | None = None
+    specific_heat: Annotated[float, Quantity("J/(kg*K)", "specific heat; None: by density and temperature (Cragoe 1929)", 100.0, 1e4)] | None = None
 
     @check
     def _thins_when_heated(self) -> list[str]:
@@ -145,10 +150,16 @@ class Grease:
     source: str = ""  # where its data come from
     thickener: THICKENERS = "lithium"  # what thickens the base oil
     nlgi: Annotated[Literal["000", "00", "0", "1", "1.5", "2", "2.5", "3", "4"], BeforeValidator(_as_text)] = "2"  # consistency (ASTM D217)
-    density: quantity("kg/m^3", "density at 20 degC; None: 900 kg/m^3", 500.0, 2500.0) | None = None
-    speed_factor: quantity("", "highest n d_m that the grease is for [rpm mm]; None: by base oil and NLGI class", 1e3, 5e6) | None = None
-    lowest_temperature: quantity("K", "lowest temperature that the grease is for; None: not judged", 150.0, 400.0, "degC") | None = None
-    highest_temperature: quantity("K", "highest temperature that the grease is for; None: not judged", 250.0, 600.0, "degC") | None = None
+    density: Annotated[float, Quantity("kg/m^3", "density at 20 degC; None: 900 kg/m^3", 500.0, 2500.0)] | None = None
+    speed_factor: (
+        Annotated[float, Quantity("", "highest n d_m that the grease is for [rpm mm]; None: by base oil and NLGI class", 1e3, 5e6)] | None
+    ) = None
+    lowest_temperature: (
+        Annotated[float, Quantity("K", "lowest temperature that the grease is for; None: not judged", 150.0, 400.0, "degC")] | None
+    ) = None
+    highest_temperature: (
+        Annotated[float, Quantity("K", "highest temperature that the grease is for; None: not judged", 250.0, 600.0, "degC")] | None
+    ) = None
 
     @check
     def _temperatures_span_something(self) -> list[str]:
@@ -170,10 +181,10 @@ class ConstantTraction:
     """mu(s) = (A + B s) exp(-C s) + D with constant coefficients; D = -A keeps mu(0) = 0."""
 
     law: Literal["constant"] = "constant"
-    a: quantity("", "A", -1.0, 0.0) = -0.0196
-    b: quantity("", "B", 0.0, 1e3) = 0.39873
-    c: quantity("", "C", 0.0, 1e4) = 39.002
-    d: quantity("", "D", 0.0, 1.0) = 0.01984
+    a: Annotated[float, Quantity("", "A", -1.0, 0.0)] = -0.0196
+    b: Annotated[float, Quantity("", "B", 0.0, 1e3)] = 0.39873
+    c: Annotated[float, Quantity("", "C", 0.0, 1e4)] = 39.002
+    d: Annotated[float, Quantity("", "D", 0.0, 1.0)] = 0.01984
 
 
 @record
@@ -181,11 +192,11 @@ class KragelskiiTraction:
     """mu(v) = (A + B v) exp(-C v) + D by sliding speed v, from points of the curve (Kragelskii, as given by Gupta)."""
 
     law: Literal["kragelskii"] = "kragelskii"
-    mu_0: quantity("", "coefficient as sliding begins; reached at rise_speed", 0.0, 1.0) = 0.0
-    mu_max: quantity("", "largest coefficient", 1e-6, 1.0) = 0.05
-    v_max: quantity("m/s", "sliding speed of the largest coefficient", 1e-3, 1e3) = 1.0
-    mu_inf: quantity("", "coefficient at high sliding speed", 0.0, 1.0) = 0.036
-    rise_speed: quantity("m/s", "sliding speed at which mu_0 is reached", 1e-4, 10.0) = 0.01
+    mu_0: Annotated[float, Quantity("", "coefficient as sliding begins; reached at rise_speed", 0.0, 1.0)] = 0.0
+    mu_max: Annotated[float, Quantity("", "largest coefficient", 1e-6, 1.0)] = 0.05
+    v_max: Annotated[float, Quantity("m/s", "sliding speed of the largest coefficient", 1e-3, 1e3)] = 1.0
+    mu_inf: Annotated[float, Quantity("", "coefficient at high sliding speed", 0.0, 1.0)] = 0.036
+    rise_speed: Annotated[float, Quantity("m/s", "sliding speed at which mu_0 is reached", 1e-4, 10.0)] = 0.01
 
     @check
     def _maximum_is_one(self) -> list[str]:
@@ -200,9 +211,13 @@ class EyringTraction:
     """Thermal Eyring film with limiting shear stress (see `bearing_sim.physics.traction`)."""
 
     law: Literal["eyring"] = "eyring"
-    eyring_stress: quantity("Pa", "Eyring stress, tau_E; None: by base oil and temperature", 1e5, 1e9, "MPa") | None = None
-    limiting_ratio: quantity("", "limiting shear stress over mean Hertz pressure, Lambda; None: by base oil and temperature", 1e-3, 0.5) | None = None
-    pressure_index: quantity("", "Roelands' pressure index, Z; None: by the oil's own alpha, or by base oil", 0.05, 2.0) | None = None
+    eyring_stress: Annotated[float, Quantity("Pa", "Eyring stress, tau_E; None: by base oil and temperature", 1e5, 1e9, "MPa")] | None = None
+    limiting_ratio: (
+        Annotated[float, Quantity("", "limiting shear stress over mean Hertz pressure, Lambda; None: by base oil and temperature", 1e-3, 0.5)] | None
+    ) = None
+    pressure_index: Annotated[float, Quantity("", "Roelands' pressure index, Z; None: by the oil's own alpha, or by base oil", 0.05, 2.0)] | None = (
+        None
+    )
 
 
 Traction = Annotated[Oil4109Traction | ConstantTraction | KragelskiiTraction | EyringTraction, Field(discriminator="law"), BeforeValidator(named_law)]
@@ -240,7 +255,9 @@ class SkfStarvation:
     """Contacts that little oil flows back to: film and resistance to rolling fall together (see `bearing_sim.physics.starvation`)."""
 
     law: Literal["skf"] = "skf"
-    constant: quantity("", "K_rs of SKF; None: 3e-8, 6e-8 of grease and oil-air, 0 in a bath above half a roller", 0.0, 1e-6) | None = None
+    constant: (
+        Annotated[float, Quantity("", "K_rs of SKF; None: 3e-8, 6e-8 of grease and oil-air, 0 in a bath above half a roller", 0.0, 1e-6)] | None
+    ) = None
     under_minimum_load: Literal["flooded", "starved"] = "flooded"  # what contacts resist as below the makers' minimum load, where a cage may skid
 
 
@@ -260,18 +277,20 @@ class MixedFriction:
     """Asperities that share the load by a film ratio or by SKF's weight; skew and hysteresis (see `bearing_sim.physics.mixed`)."""
 
     law: Literal["film_ratio", "skf"] = "film_ratio"
-    boundary_friction: quantity("", "friction coefficient of asperities, mu_b", 0.0, 1.0) = 0.12
-    film_ratio_factor: quantity("", "film ratio over kappa^(1/1.3), for surfaces smoother or rougher than usual; of film_ratio", 0.1, 10.0) = 1.0
+    boundary_friction: Annotated[float, Quantity("", "friction coefficient of asperities, mu_b", 0.0, 1.0)] = 0.12
+    film_ratio_factor: Annotated[
+        float, Quantity("", "film ratio over kappa^(1/1.3), for surfaces smoother or rougher than usual; of film_ratio", 0.1, 10.0)
+    ] = 1.0
     raceways: bool = True  # whether asperities count for the traction of the raceways, from the makers' minimum load on
-    skew: quantity("", "mean skew of rollers over what their end clearance leaves them", 0.0, 1.0) = 0.5
-    hysteresis: quantity("", "part of the elastic energy of a rolling contact that is lost", 0.0, 0.1) = 0.01
+    skew: Annotated[float, Quantity("", "mean skew of rollers over what their end clearance leaves them", 0.0, 1.0)] = 0.5
+    hysteresis: Annotated[float, Quantity("", "part of the elastic energy of a rolling contact that is lost", 0.0, 0.1)] = 0.01
 
 
 Mixed = Annotated[NoMixedFriction | MixedFriction, Field(discriminator="law"), _law_or("film_ratio")]
 """A record, or its bare name (``none``, ``film_ratio``, ``skf``)."""
 
 
-_FLOW = quantity("m^3/s", "oil that flows through the bearing", 0.0, 1.0, "l/min")
+_FLOW = Annotated[float, Quantity("m^3/s", "oil that flows through the bearing", 0.0, 1.0, "l/min")]
 
 
 @record
@@ -292,9 +311,12 @@ class Circulating:
 
     law: Literal["circulating"] = "circulating"
     flow: _FLOW | None = None  # carries heat away; None: as of a jet
-    level: quantity("m", "oil level above the lowest point of the outer raceway, H; None: the middle of the lowest roller", 0.0, 4.0, "mm") | None = (
-        None
-    )
+    level: (
+        Annotated[
+            float, Quantity("m", "oil level above the lowest point of the outer raceway, H; None: the middle of the lowest roller", 0.0, 4.0, "mm")
+        ]
+        | None
+    ) = None
 
 
 @record
@@ -302,9 +324,12 @@ class OilBath:
     """Oil that stands in a bearing whose shaft is horizontal (see `bearing_sim.physics.drag.bath_moment`)."""
 
     law: Literal["oil_bath"] = "oil_bath"
-    level: quantity("m", "oil level above the lowest point of the outer raceway, H; None: the middle of the lowest roller", 0.0, 4.0, "mm") | None = (
-        None
-    )
+    level: (
+        Annotated[
+            float, Quantity("m", "oil level above the lowest point of the outer raceway, H; None: the middle of the lowest roller", 0.0, 4.0, "mm")
+        ]
+        | None
+    ) = None
 
 
 @record
@@ -312,7 +337,7 @@ class OilAir:
     """Small doses of oil in a stream of air, or oil mist: next to no oil to displace."""
 
     law: Literal["oil_air"] = "oil_air"
-    flow: quantity("m^3/s", "oil that is dosed; it carries heat away; None: none that counts", 0.0, 1e-3, "ml/h") | None = None
+    flow: Annotated[float, Quantity("m^3/s", "oil that is dosed; it carries heat away; None: none that counts", 0.0, 1e-3, "ml/h")] | None = None
 
 
 @record
@@ -320,7 +345,7 @@ class GreaseSupply:
     """Grease that has been run in: it lies beside the rollers and bleeds oil."""
 
     law: Literal["grease"] = "grease"
-    fill: quantity("", "volume of grease over the free space of the bearing", 0.01, 1.0, "%") = 0.3
+    fill: Annotated[float, Quantity("", "volume of grease over the free space of the bearing", 0.01, 1.0, "%")] = 0.3
 
 
 Supply = Annotated[OilJet | Circulating | OilBath | OilAir | GreaseSupply, Field(discriminator="law"), BeforeValidator(named_law)]
@@ -338,12 +363,12 @@ class Lubricant:
 
     oil: Annotated[Oil | CustomOil, Field(discriminator="law")]
     grease: Grease | None = None  # thickener and consistency; None: lubrication with oil
-    temperature: quantity("K", "oil temperature", 220.0, 600.0, "degC") = 393.15
+    temperature: Annotated[float, Quantity("K", "oil temperature", 220.0, 600.0, "degC")] = 393.15
     supply: Supply | None = None  # None: an oil jet, or of a grease its supply
-    mixture_fraction: quantity("", "volume fraction of oil in the oil-air mixture; None: of a jet by its flow or 0.03, else 0", 0.0, 1.0) | None = (
-        None
-    )
-    traction_scale: quantity("", "factor on every traction coefficient", 0.0, 100.0) = 1.0
+    mixture_fraction: (
+        Annotated[float, Quantity("", "volume fraction of oil in the oil-air mixture; None: of a jet by its flow or 0.03, else 0", 0.0, 1.0)] | None
+    ) = None
+    traction_scale: Annotated[float, Quantity("", "factor on every traction coefficient", 0.0, 100.0)] = 1.0
     traction: Traction | None = None  # None: oil_4109 of aviation oils, eyring of all others
     rolling_resistance: RollingResistance = field(default_factory=HydrodynamicRollingResistance)
     starvation: Starvation = field(default_factory=SkfStarvation)

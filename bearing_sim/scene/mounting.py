@@ -9,11 +9,11 @@ tables are in ``catalog/tables`` and ``catalog/designations/clearances.csv``.
 import math
 import re
 from dataclasses import field
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from bearing_sim.scene.bundled import catalog_table
 from bearing_sim.scene.material import Material
-from bearing_sim.scene.quantity import check, quantity, record
+from bearing_sim.scene.quantity import Quantity, check, record
 
 _CLASS = re.compile(r"^(js|[fghjkmnprs])([45678])$", re.IGNORECASE)
 
@@ -141,8 +141,8 @@ def _hole_limit(letter: str, grade: int, millimetres: float, deviation: int, ste
 class Sleeve:
     """A sleeve between shaft and inner ring, as warm as the shaft."""
 
-    bore_radius: quantity("m", "radius of its seat on the shaft", 1e-3, 2.0, "mm")
-    interference: quantity("m", "effective diametral interference on the shaft", 0.0, 1e-3, "um")
+    bore_radius: Annotated[float, Quantity("m", "radius of its seat on the shaft", 1e-3, 2.0, "mm")]
+    interference: Annotated[float, Quantity("m", "effective diametral interference on the shaft", 0.0, 1e-3, "um")]
     material: Material = field(default_factory=Material)
 
 
@@ -151,12 +151,14 @@ class Shaft:
     """The shaft below the inner ring.  Without a fit or an interference it leaves the ring as it is."""
 
     fit: str | None = None  # class of the seat by ISO 286, such as k5; the mean interference is taken
-    interference: quantity("m", "diametral interference, before its surfaces are smoothed; negative: a gap", -1e-3, 1e-3, "um") | None = None
-    bore_radius: quantity("m", "bore radius of the shaft; 0 is a solid one", 0.0, 2.0, "mm") = 0.0
+    interference: (
+        Annotated[float, Quantity("m", "diametral interference, before its surfaces are smoothed; negative: a gap", -1e-3, 1e-3, "um")] | None
+    ) = None
+    bore_radius: Annotated[float, Quantity("m", "bore radius of the shaft; 0 is a solid one", 0.0, 2.0, "mm")] = 0.0
     material: Material = field(default_factory=Material)
     sleeve: Sleeve | None = None  # between shaft and ring
-    roughness: quantity("m", "mean roughness depth of the seat, R_z", 0.0, 1e-4, "um") = 4e-6
-    ring_roughness: quantity("m", "mean roughness depth of the ring's bore, R_z", 0.0, 1e-4, "um") = 2.5e-6
+    roughness: Annotated[float, Quantity("m", "mean roughness depth of the seat, R_z", 0.0, 1e-4, "um")] = 4e-6
+    ring_roughness: Annotated[float, Quantity("m", "mean roughness depth of the ring's bore, R_z", 0.0, 1e-4, "um")] = 2.5e-6
 
     @check
     def _fit_is_given_once(self) -> list[str]:
@@ -168,11 +170,13 @@ class Housing:
     """The housing around the outer ring.  Without a fit or an interference it leaves the ring as it is."""
 
     fit: str | None = None  # class of the seat by ISO 286, such as H7; the mean interference is taken
-    interference: quantity("m", "diametral interference, before its surfaces are smoothed; negative: a gap", -1e-3, 1e-3, "um") | None = None
-    outside_radius: quantity("m", "outside radius of the housing; None: 1.5 times that of the ring", 1e-3, 10.0, "mm") | None = None
+    interference: (
+        Annotated[float, Quantity("m", "diametral interference, before its surfaces are smoothed; negative: a gap", -1e-3, 1e-3, "um")] | None
+    ) = None
+    outside_radius: Annotated[float, Quantity("m", "outside radius of the housing; None: 1.5 times that of the ring", 1e-3, 10.0, "mm")] | None = None
     material: Material = field(default_factory=Material)
-    roughness: quantity("m", "mean roughness depth of the seat, R_z", 0.0, 1e-4, "um") = 6.3e-6
-    ring_roughness: quantity("m", "mean roughness depth of the ring's outside, R_z", 0.0, 1e-4, "um") = 2.5e-6
+    roughness: Annotated[float, Quantity("m", "mean roughness depth of the seat, R_z", 0.0, 1e-4, "um")] = 6.3e-6
+    ring_roughness: Annotated[float, Quantity("m", "mean roughness depth of the ring's outside, R_z", 0.0, 1e-4, "um")] = 2.5e-6
 
     @check
     def _fit_is_given_once(self) -> list[str]:

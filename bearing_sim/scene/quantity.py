@@ -16,7 +16,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import Annotated, Any, TypeVar, dataclass_transform
+from typing import Any, TypeVar, dataclass_transform
 
 import pydantic.dataclasses
 from pydantic import ConfigDict, model_validator
@@ -292,11 +292,6 @@ def is_bare(value: object) -> bool:
 def in_digits(value: float, digits: int) -> str:
     """Return a number as text, rounded to so many digits, without an exponent where it is large."""
     return f"{float(f'{value:.{digits}g}'):.12g}"
-
-
-def quantity(unit: str, meaning: str, minimum: float = -math.inf, maximum: float = math.inf, shown_in: str = ""):
-    """Return the annotated float type of a scene field (see `Quantity`)."""
-    return Annotated[float, Quantity(unit, meaning, minimum, maximum, shown_in)]
 
 
 # A validator is built at its first use, not for each record that others contain and nobody makes on its own.

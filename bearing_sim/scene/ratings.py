@@ -1,9 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Load ratings of a bearing: by the standards from its dimensions (ISO 281:2007, ISO 76:2006), or its maker's."""
 
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
-from bearing_sim.scene.quantity import check, quantity, record
+from bearing_sim.scene.quantity import Quantity, check, record
 
 
 @record
@@ -13,12 +13,14 @@ class Ratings:
     The ratings of the rollers' contacts (ISO/TS 16281) are in proportion to C, so a maker's C applies to every life.
     """
 
-    dynamic: quantity("N", "basic dynamic radial load rating, C", 1.0, 1e9) | None = None
-    static: quantity("N", "basic static radial load rating, C_0", 1.0, 1e9) | None = None
-    fatigue_limit: quantity("N", "fatigue load limit, C_u", 0.1, 1e8) | None = None
-    minimum_load_factor: quantity("N", "minimum load factor, k_r; makers print 0.15 for 0.15 kN or 150 for 150 N", 10.0, 1e4, "kN") | None = None
-    reference_speed: quantity("rad/s", "reference speed, n_r", 1.0, 12000.0, "rpm") | None = None
-    limiting_speed: quantity("rad/s", "limiting speed", 1.0, 12000.0, "rpm") | None = None
+    dynamic: Annotated[float, Quantity("N", "basic dynamic radial load rating, C", 1.0, 1e9)] | None = None
+    static: Annotated[float, Quantity("N", "basic static radial load rating, C_0", 1.0, 1e9)] | None = None
+    fatigue_limit: Annotated[float, Quantity("N", "fatigue load limit, C_u", 0.1, 1e8)] | None = None
+    minimum_load_factor: (
+        Annotated[float, Quantity("N", "minimum load factor, k_r; makers print 0.15 for 0.15 kN or 150 for 150 N", 10.0, 1e4, "kN")] | None
+    ) = None
+    reference_speed: Annotated[float, Quantity("rad/s", "reference speed, n_r", 1.0, 12000.0, "rpm")] | None = None
+    limiting_speed: Annotated[float, Quantity("rad/s", "limiting speed", 1.0, 12000.0, "rpm")] | None = None
     axial_load: Literal["skf", "krw", "none"] = "skf"  # whose rule counts an axial load in the equivalent load, see `bearing_sim.scene.axial_load`
 
     @check

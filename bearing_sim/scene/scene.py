@@ -20,14 +20,13 @@ from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.diameters import override_by_radius
 from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
 from bearing_sim.scene.estimation import Estimation, estimation_errors
-from bearing_sim.scene.fidelity import LEVELS, WANTS, Level, refusals
+from bearing_sim.scene.fidelity import LEVELS, Level, WantName, refusals
 from bearing_sim.scene.flanges import axial_errors
 from bearing_sim.scene.heat import Heat, NoHeat, given_errors, sink_errors
 from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.mounting import Mounting, mounting_errors
-from bearing_sim.scene.quantity import check, quantity, record
+from bearing_sim.scene.quantity import Quantity, check, record
 from bearing_sim.scene.ratings import rate
-from bearing_sim.scene.requirements import MEASURED
 from bearing_sim.scene.support import Support, support_errors
 from bearing_sim.scene.uncertainty import Range, messages, nearest, quantities, range_errors, with_values
 from bearing_sim.scene.vibration import VibrationInput
@@ -54,14 +53,18 @@ _CRUSHING_LOAD = 10.0  # times C_0r
 class Operating:
     """Constant conditions of `bearing-sim run`; a live run uses them until an input arrives."""
 
-    shaft_speed: quantity("rad/s", "shaft speed, omega_i", -_LARGEST_SPEED, _LARGEST_SPEED, "rpm")
-    radial_load: quantity("N", "radial load on the inner ring, F_r", 0.0, _LARGEST_LOAD) = 0.0
-    load_angle: quantity("rad", "azimuth of the radial load, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
-    axial_load: quantity("N", "axial load on the inner ring along +x, F_a, which flanges of both rings carry", -_LARGEST_LOAD, _LARGEST_LOAD) = 0.0
-    moment: quantity("N*m", "moment on the inner ring, which then tilts freely; None: its tilt is held", 0.0, 1e5) | None = None
-    moment_angle: quantity("rad", "azimuth to which the moment leans the ring's +x end, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
-    misalignment: quantity("rad", "tilt at which the inner ring is held", 0.0, 0.02, "mrad") = 0.0
-    misalignment_angle: quantity("rad", "azimuth to which the ring's +x end leans, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+    shaft_speed: Annotated[float, Quantity("rad/s", "shaft speed, omega_i", -_LARGEST_SPEED, _LARGEST_SPEED, "rpm")]
+    radial_load: Annotated[float, Quantity("N", "radial load on the inner ring, F_r", 0.0, _LARGEST_LOAD)] = 0.0
+    load_angle: Annotated[float, Quantity("rad", "azimuth of the radial load, from +y", -2 * math.pi, 2 * math.pi, "deg")] = 0.0
+    axial_load: Annotated[
+        float, Quantity("N", "axial load on the inner ring along +x, F_a, which flanges of both rings carry", -_LARGEST_LOAD, _LARGEST_LOAD)
+    ] = 0.0
+    moment: Annotated[float, Quantity("N*m", "moment on the inner ring, which then tilts freely; None: its tilt is held", 0.0, 1e5)] | None = None
+    moment_angle: Annotated[
+        float, Quantity("rad", "azimuth to which the moment leans the ring's +x end, from +y", -2 * math.pi, 2 * math.pi, "deg")
+    ] = 0.0
+    misalignment: Annotated[float, Quantity("rad", "tilt at which the inner ring is held", 0.0, 0.02, "mrad")] = 0.0
+    misalignment_angle: Annotated[float, Quantity("rad", "azimuth to which the ring's +x end leans, from +y", -2 * math.pi, 2 * math.pi, "deg")] = 0.0
 
     @check
     def _ring_is_held_or_free(self) -> list[str]:
@@ -81,9 +84,13 @@ class Dynamics:
 class AbsoluteTolerance:
     """What a step may err in each kind of state, however small the state is."""
 
-    position: quantity("m", "error allowed in a step in the position of a roller or the inner ring", 1e-14, 1e-3, "um") = 2.5e-6
-    play: quantity("m", "error allowed in a step in what has play: a roller in its pocket, the cage in its guide", 1e-14, 1e-3, "um") = 5e-6
-    speed: quantity("m/s", "error allowed in a step in an orbital or surface speed, besides the relative one", 1e-12, 10.0, "mm/s") = 1e-2
+    position: Annotated[float, Quantity("m", "error allowed in a step in the position of a roller or the inner ring", 1e-14, 1e-3, "um")] = 2.5e-6
+    play: Annotated[
+        float, Quantity("m", "error allowed in a step in what has play: a roller in its pocket, the cage in its guide", 1e-14, 1e-3, "um")
+    ] = 5e-6
+    speed: Annotated[
+        float, Quantity("m/s", "error allowed in a step in an orbital or surface speed, besides the relative one", 1e-12, 10.0, "mm/s")
+    ] = 1e-2
 
 
 @record
@@ -97,10 +104,10 @@ class Integration:
     """
 
     absolute_tolerance: AbsoluteTolerance = field(default_factory=AbsoluteTolerance)
-    relative_tolerance: quantity("", "error allowed in a step in a speed, relative to ideal rolling", 1e-12, 1.0, "%") = 0.01
-    maximum_step: quantity("s", "longest step", 1e-9, 1.0, "us") = 1e-2
-    first_step: quantity("s", "first step", 1e-12, 1.0, "us") = 1e-5
-    fixed_step: quantity("s", "step without error control, for hard real time", 1e-9, 1e-2, "us") | None = None
+    relative_tolerance: Annotated[float, Quantity("", "error allowed in a step in a speed, relative to ideal rolling", 1e-12, 1.0, "%")] = 0.01
+    maximum_step: Annotated[float, Quantity("s", "longest step", 1e-9, 1.0, "us")] = 1e-2
+    first_step: Annotated[float, Quantity("s", "first step", 1e-12, 1.0, "us")] = 1e-5
+    fixed_step: Annotated[float, Quantity("s", "step without error control, for hard real time", 1e-9, 1e-2, "us")] | None = None
     step_budget: Annotated[int, Field(ge=10, le=1_000_000_000)] = 2_000_000  # most steps in one call of `Simulation.advance`
 
     def with_tolerances(self, factor: float) -> "Integration":
@@ -129,23 +136,27 @@ class InputLimits:
     Where no largest speed or load is given, it is more than the bearing can take (see `Scene.accepted_inputs`).
     """
 
-    maximum_speed: quantity("rad/s", "largest shaft speed accepted; None: the inner raceway at 350 m/s", 0.0, _LARGEST_SPEED, "rpm") | None = None
-    maximum_load: quantity("N", "largest radial load accepted; None: ten times the static load rating", 0.0, _LARGEST_LOAD) | None = None
-    minimum_temperature: quantity("K", "lowest temperature accepted, of oil and rings", 150.0, 800.0, "degC") = 233.15
-    maximum_temperature: quantity("K", "highest temperature accepted, of oil and rings", 150.0, 800.0, "degC") = 523.15
+    maximum_speed: (
+        Annotated[float, Quantity("rad/s", "largest shaft speed accepted; None: the inner raceway at 350 m/s", 0.0, _LARGEST_SPEED, "rpm")] | None
+    ) = None
+    maximum_load: (
+        Annotated[float, Quantity("N", "largest radial load accepted; None: ten times the static load rating", 0.0, _LARGEST_LOAD)] | None
+    ) = None
+    minimum_temperature: Annotated[float, Quantity("K", "lowest temperature accepted, of oil and rings", 150.0, 800.0, "degC")] = 233.15
+    maximum_temperature: Annotated[float, Quantity("K", "highest temperature accepted, of oil and rings", 150.0, 800.0, "degC")] = 523.15
     reverse_rotation: bool = True  # whether negative shaft speeds are accepted
-    stale_after: quantity("s", "age at which an input counts as stale", 1e-3, 3600.0) = 1.0
-    minimum_rate: quantity("Hz", "lowest message rate expected", 0.0, 1e5) = 1.0
-    maximum_rate: quantity("Hz", "highest message rate expected", 0.0, 1e5) = 2000.0
+    stale_after: Annotated[float, Quantity("s", "age at which an input counts as stale", 1e-3, 3600.0)] = 1.0
+    minimum_rate: Annotated[float, Quantity("Hz", "lowest message rate expected", 0.0, 1e5)] = 1.0
+    maximum_rate: Annotated[float, Quantity("Hz", "highest message rate expected", 0.0, 1e5)] = 2000.0
 
 
 @record
 class Hold:
     """Hysteresis and delays of an alarm (see `bearing_sim.watchers.monitoring.monitor.Alarm`)."""
 
-    hysteresis: quantity("", "fraction of the limit by which a value must return before the alarm clears", 0.0, 0.9, "%") = 0.1
-    raise_after: quantity("s", "time beyond the limit before the alarm is raised", 0.0, 86400.0) = 0.5
-    clear_after: quantity("s", "time back within the limit before the alarm clears", 0.0, 86400.0) = 2.0
+    hysteresis: Annotated[float, Quantity("", "fraction of the limit by which a value must return before the alarm clears", 0.0, 0.9, "%")] = 0.1
+    raise_after: Annotated[float, Quantity("s", "time beyond the limit before the alarm is raised", 0.0, 86400.0)] = 0.5
+    clear_after: Annotated[float, Quantity("s", "time back within the limit before the alarm clears", 0.0, 86400.0)] = 2.0
 
 
 def _detection_errors(detection: "ResidualDetection | TemperatureResidualDetection") -> list[str]:
@@ -162,12 +173,14 @@ def _detection_errors(detection: "ResidualDetection | TemperatureResidualDetecti
 class ResidualDetection:
     """How measured slip is compared with predicted slip (see `bearing_sim.watchers.monitoring.residual`)."""
 
-    false_alarm_time: quantity("s", "mean time between false alarms", 60.0, 1e10, "h") = 3.6e6
-    tolerance: quantity("", "lasting change of the residual that is not a fault: the error of the model between conditions", 1e-6, 1.0, "%") = 0.002
-    batch: quantity("s", "time over which residuals are averaged before the test", 0.01, 3600.0) = 1.0
-    learning: quantity("s", "measured time from which the reference mean and scatter of the residual are learned", 1.0, 1e6) = 120.0
-    settling: quantity("s", "time after rest or a change of speed that is ignored", 0.0, 3600.0) = 5.0
-    memory: quantity("s", "time constant of the displayed exponential mean and standard deviation", 0.1, 1e6) = 60.0
+    false_alarm_time: Annotated[float, Quantity("s", "mean time between false alarms", 60.0, 1e10, "h")] = 3.6e6
+    tolerance: Annotated[
+        float, Quantity("", "lasting change of the residual that is not a fault: the error of the model between conditions", 1e-6, 1.0, "%")
+    ] = 0.002
+    batch: Annotated[float, Quantity("s", "time over which residuals are averaged before the test", 0.01, 3600.0)] = 1.0
+    learning: Annotated[float, Quantity("s", "measured time from which the reference mean and scatter of the residual are learned", 1.0, 1e6)] = 120.0
+    settling: Annotated[float, Quantity("s", "time after rest or a change of speed that is ignored", 0.0, 3600.0)] = 5.0
+    memory: Annotated[float, Quantity("s", "time constant of the displayed exponential mean and standard deviation", 0.1, 1e6)] = 60.0
 
     @check
     def _times_fit_together(self) -> list[str]:
@@ -181,12 +194,14 @@ class TemperatureResidualDetection:
     See `bearing_sim.watchers.monitoring.residual`.
     """
 
-    false_alarm_time: quantity("s", "mean time between false alarms", 60.0, 1e10, "h") = 3.6e6
-    tolerance: quantity("delta_degC", "lasting change of the residual that is not a fault: the error of the network", 1e-6, 100.0, "K") = 1.0
-    batch: quantity("s", "time over which residuals are averaged before the test", 0.01, 3600.0) = 10.0
-    learning: quantity("s", "measured time from which the reference mean and scatter of the residual are learned", 1.0, 1e6) = 600.0
-    settling: quantity("s", "time after a change of speed that is ignored", 0.0, 36000.0) = 60.0
-    memory: quantity("s", "time constant of the displayed exponential mean and standard deviation", 0.1, 1e6) = 300.0
+    false_alarm_time: Annotated[float, Quantity("s", "mean time between false alarms", 60.0, 1e10, "h")] = 3.6e6
+    tolerance: Annotated[
+        float, Quantity("delta_degC", "lasting change of the residual that is not a fault: the error of the network", 1e-6, 100.0, "K")
+    ] = 1.0
+    batch: Annotated[float, Quantity("s", "time over which residuals are averaged before the test", 0.01, 3600.0)] = 10.0
+    learning: Annotated[float, Quantity("s", "measured time from which the reference mean and scatter of the residual are learned", 1.0, 1e6)] = 600.0
+    settling: Annotated[float, Quantity("s", "time after a change of speed that is ignored", 0.0, 36000.0)] = 60.0
+    memory: Annotated[float, Quantity("s", "time constant of the displayed exponential mean and standard deviation", 0.1, 1e6)] = 300.0
 
     @check
     def _times_fit_together(self) -> list[str]:
@@ -197,31 +212,33 @@ class TemperatureResidualDetection:
 class Thresholds:
     """When the condition is a warning or an error."""
 
-    slip_warning: quantity("", "cage slip that is a warning", 0.0, 1.0, "%") = 0.05
-    slip_error: quantity("", "cage slip that is an error (Deng 2017: 10 %)", 0.0, 1.0, "%") = 0.10
+    slip_warning: Annotated[float, Quantity("", "cage slip that is a warning", 0.0, 1.0, "%")] = 0.05
+    slip_error: Annotated[float, Quantity("", "cage slip that is an error (Deng 2017: 10 %)", 0.0, 1.0, "%")] = 0.10
     # Just above rest the slip may be large, but it does no harm.
-    slip_from_speed: quantity("rad/s", "shaft speed above which slip and film are monitored", 0.0, _LARGEST_SPEED, "rpm") = 20.0
+    slip_from_speed: Annotated[float, Quantity("rad/s", "shaft speed above which slip and film are monitored", 0.0, _LARGEST_SPEED, "rpm")] = 20.0
     slip_hold: Hold = field(default_factory=Hold)
-    life_warning: quantity("h", "rating life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9) = 300.0
-    life_error: quantity("h", "rating life below which there is an error; 0: never", 0.0, 1e9) = 0.0
+    life_warning: Annotated[float, Quantity("h", "rating life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9)] = 300.0
+    life_error: Annotated[float, Quantity("h", "rating life below which there is an error; 0: never", 0.0, 1e9)] = 0.0
     life_hold: Hold = field(default_factory=Hold)
-    remaining_life_warning: quantity("h", "remaining life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9) = 300.0
-    remaining_life_error: quantity("h", "remaining life below which there is an error; 0: never", 0.0, 1e9) = 0.0
-    remaining_life_memory: quantity("s", "time constant of the mean damage rate from which remaining life is computed", 1e-3, 1e9) = 60.0
+    remaining_life_warning: Annotated[float, Quantity("h", "remaining life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9)] = 300.0
+    remaining_life_error: Annotated[float, Quantity("h", "remaining life below which there is an error; 0: never", 0.0, 1e9)] = 0.0
+    remaining_life_memory: Annotated[
+        float, Quantity("s", "time constant of the mean damage rate from which remaining life is computed", 1e-3, 1e9)
+    ] = 60.0
     remaining_life_hold: Hold = field(default_factory=Hold)
-    lambda_warning: quantity("", "film thickness over roughness below which there is a warning", 0.0, 100.0) = 1.0
-    lambda_error: quantity("", "film thickness over roughness below which there is an error; 0: never", 0.0, 100.0) = 0.0
+    lambda_warning: Annotated[float, Quantity("", "film thickness over roughness below which there is a warning", 0.0, 100.0)] = 1.0
+    lambda_error: Annotated[float, Quantity("", "film thickness over roughness below which there is an error; 0: never", 0.0, 100.0)] = 0.0
     lambda_hold: Hold = field(default_factory=Hold)
-    pocket_force_warning: quantity("N", "pocket force that is a warning; None: none is", 0.0, 1e6) | None = None
-    pocket_force_error: quantity("N", "pocket force that is an error; None: none is", 0.0, 1e6) | None = None
+    pocket_force_warning: Annotated[float, Quantity("N", "pocket force that is a warning; None: none is", 0.0, 1e6)] | None = None
+    pocket_force_error: Annotated[float, Quantity("N", "pocket force that is an error; None: none is", 0.0, 1e6)] | None = None
     pocket_force_hold: Hold = field(default_factory=Hold)
     # A preload may be wanted, so that no clearance is wrong for every bearing.
-    clearance_warning: quantity("m", "running clearance below which there is a warning; -1 mm: never", NO_CLEARANCE_LIMIT, 1e-2, "um") = (
-        NO_CLEARANCE_LIMIT
-    )
-    clearance_error: quantity("m", "running clearance below which there is an error; -1 mm: never", NO_CLEARANCE_LIMIT, 1e-2, "um") = (
-        NO_CLEARANCE_LIMIT
-    )
+    clearance_warning: Annotated[
+        float, Quantity("m", "running clearance below which there is a warning; -1 mm: never", NO_CLEARANCE_LIMIT, 1e-2, "um")
+    ] = NO_CLEARANCE_LIMIT
+    clearance_error: Annotated[
+        float, Quantity("m", "running clearance below which there is an error; -1 mm: never", NO_CLEARANCE_LIMIT, 1e-2, "um")
+    ] = NO_CLEARANCE_LIMIT
     clearance_hold: Hold = field(default_factory=Hold)
     residual: ResidualDetection = field(default_factory=ResidualDetection)
     temperature_residual: TemperatureResidualDetection = field(default_factory=TemperatureResidualDetection)
@@ -286,7 +303,7 @@ class LifeRating:
     `none` sets a_ISO = 1.
     """
 
-    reliability: quantity("", "probability of reaching the life", 0.9, 0.9995, "%") = 0.9
+    reliability: Annotated[float, Quantity("", "probability of reaching the life", 0.9, 0.9995, "%")] = 0.9
     a_iso: Annotated[CLEANLINESS, BeforeValidator(_cleanliness_class)] = "none"  # cleanliness class of the lubricant for a_ISO; none: a_ISO = 1
     method: Literal["iso16281", "iso281", "deng2017"] = "iso16281"  # which rating life is shown, monitored and counted as damage
     laminae: Annotated[int, Field(ge=2, le=400)] = 40  # per roller for L10r; ISO/TS 16281 requires 30 or more
@@ -315,14 +332,22 @@ class LifeRating:
 class SteadyTable:
     """The table of operating points of level ``steady``: its tolerance and range; it covers all load directions."""
 
-    tolerance: quantity("", "error allowed in slip, over 0.025 points of it, and in life, relative", 1e-4, 0.5, "%") = 0.02
-    maximum_speed: quantity("rad/s", "highest shaft speed; None: a fifth above the operating speed", 1.0, _LARGEST_SPEED, "rpm") | None = None
-    maximum_load: quantity("N", "largest radial load; None: half the bearing's dynamic load rating", 1.0, _LARGEST_LOAD) | None = None
-    minimum_temperature: quantity("K", "lowest oil temperature", 220.0, 600.0, "degC") = 313.15
-    maximum_temperature: quantity("K", "highest oil temperature", 220.0, 600.0, "degC") = 453.15
+    tolerance: Annotated[float, Quantity("", "error allowed in slip, over 0.025 points of it, and in life, relative", 1e-4, 0.5, "%")] = 0.02
+    maximum_speed: (
+        Annotated[float, Quantity("rad/s", "highest shaft speed; None: a fifth above the operating speed", 1.0, _LARGEST_SPEED, "rpm")] | None
+    ) = None
+    maximum_load: Annotated[float, Quantity("N", "largest radial load; None: half the bearing's dynamic load rating", 1.0, _LARGEST_LOAD)] | None = (
+        None
+    )
+    minimum_temperature: Annotated[float, Quantity("K", "lowest oil temperature", 220.0, 600.0, "degC")] = 313.15
+    maximum_temperature: Annotated[float, Quantity("K", "highest oil temperature", 220.0, 600.0, "degC")] = 453.15
     # With a law of heat the table has an axis for how far the clearance has closed, as far as these differences between the rings need.
-    minimum_difference: quantity("delta_degC", "least temperature of the inner ring over the outer one's", -300.0, 300.0, "K") = -20.0
-    maximum_difference: quantity("delta_degC", "largest temperature of the inner ring over the outer one's", -300.0, 300.0, "K") = 40.0
+    minimum_difference: Annotated[
+        float, Quantity("delta_degC", "least temperature of the inner ring over the outer one's", -300.0, 300.0, "K")
+    ] = -20.0
+    maximum_difference: Annotated[float, Quantity("delta_degC", "largest temperature of the inner ring over the outer one's", -300.0, 300.0, "K")] = (
+        40.0
+    )
     # planar: operating points are corrected by what level planar settles in at some hundred of them, measured once for this bearing and oil
     correction: Literal["none", "planar"] = "none"  # which level's pocket forces, whirl and vibration the table contains
 
@@ -339,7 +364,7 @@ class SteadyTable:
 class WantedError:
     """The largest error that a scene accepts of something that it wants."""
 
-    want: Literal[tuple(MEASURED)]  # entry of wants
+    want: Literal["slip", "life", "roller_loads", "edge_loads"]  # entry of wants
     error: Annotated[float, Field(gt=0.0, le=1.0)]  # 0.003 of slip are 0.3 percentage points; others are relative
 
 
@@ -363,7 +388,7 @@ class Scene:
     level: Level = "slip"  # level of fidelity; a file may also say auto
     # With `level: auto` a file gets the lowest level that has these and all other effects of the scene; level_reason says why.  A mapping to largest
     # errors, such as {slip: 0.3 %, life: 5 %}, asks for the fastest setting whose errors `bearing-sim trade` has measured to be below them.
-    wants: tuple[Literal[tuple(WANTS)], ...] = ()
+    wants: tuple[WantName, ...] = ()
     wanted_errors: tuple[WantedError, ...] = ()  # those of a mapping wants, which a file gives there
     # path, from the folder of the scene file, of what `bearing-sim trade --front` measured: `level: auto` with errors in wants chooses by it, on
     # every machine alike; None: by what this machine has kept, which level_reason says; a loaded scene has the level and no front

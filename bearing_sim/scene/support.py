@@ -3,9 +3,9 @@
 
 import math
 from dataclasses import field, replace
-from typing import Any
+from typing import Annotated, Any
 
-from bearing_sim.scene.quantity import check, quantity, record
+from bearing_sim.scene.quantity import Quantity, check, record
 from bearing_sim.scene.ratings import rate
 
 # What stands for a part of which a scene gives no number (assumption; plausible ranges in doc/theory/support.md).
@@ -20,11 +20,16 @@ _LARGEST_ECCENTRICITY = 0.9  # of a squeeze film under the static load
 class ShaftSupport:
     """The shaft.  Without a stiffness its mass moves with the inner ring; with one it is a body behind that spring, on which the load acts."""
 
-    mass: quantity("kg", "mass of the shaft that the bearing carries", 0.0, 1e5) = 0.5
-    stiffness: quantity("N/m", "stiffness between inner ring and shaft mass, along y; None: rigid, or by `support.elastic`", 1e3, 1e13) | None = None
-    stiffness_z: quantity("N/m", "the same along z; None: as along y", 1e3, 1e13) | None = None
-    damping: quantity("N*s/m", "damping beside it, along y; None: a damping ratio of 0.05 of the shaft's mass", 0.0, 1e9) | None = None
-    damping_z: quantity("N*s/m", "the same along z; None: as along y", 0.0, 1e9) | None = None
+    mass: Annotated[float, Quantity("kg", "mass of the shaft that the bearing carries", 0.0, 1e5)] = 0.5
+    stiffness: (
+        Annotated[float, Quantity("N/m", "stiffness between inner ring and shaft mass, along y; None: rigid, or by `support.elastic`", 1e3, 1e13)]
+        | None
+    ) = None
+    stiffness_z: Annotated[float, Quantity("N/m", "the same along z; None: as along y", 1e3, 1e13)] | None = None
+    damping: Annotated[float, Quantity("N*s/m", "damping beside it, along y; None: a damping ratio of 0.05 of the shaft's mass", 0.0, 1e9)] | None = (
+        None
+    )
+    damping_z: Annotated[float, Quantity("N*s/m", "the same along z; None: as along y", 0.0, 1e9)] | None = None
 
     @check
     def _spring_is_complete(self) -> list[str]:
@@ -40,9 +45,9 @@ class ShaftSupport:
 class SqueezeFilmDamper:
     """Oil film between the outer ring and its housing (see `bearing_sim.physics.squeeze_film`); with the viscosity of the lubricant."""
 
-    radius: quantity("m", "radius of the film, R", 1e-3, 2.0, "mm")
-    length: quantity("m", "length of the film along the axis, L", 1e-4, 1.0, "mm")
-    clearance: quantity("m", "radial clearance of the ring in it, c", 1e-6, 5e-3, "um")
+    radius: Annotated[float, Quantity("m", "radius of the film, R", 1e-3, 2.0, "mm")]
+    length: Annotated[float, Quantity("m", "length of the film along the axis, L", 1e-4, 1.0, "mm")]
+    clearance: Annotated[float, Quantity("m", "radial clearance of the ring in it, c", 1e-6, 5e-3, "um")]
     cavitates: bool = False  # whether the film pushes on half of its circumference only, as without supply pressure
 
 
@@ -50,11 +55,16 @@ class SqueezeFilmDamper:
 class OuterRingSupport:
     """Spring and damper that carry the outer ring in the housing.  The spring transmits the static load in full."""
 
-    mass: quantity("kg", "mass of outer ring and sleeve; None: twice the inner ring's", 1e-4, 1e5) | None = None
-    stiffness: quantity("N/m", "stiffness towards the housing along y; None: the static load rating deflects it by 1 mm", 1e3, 1e13) | None = None
-    stiffness_z: quantity("N/m", "the same along z; None: as along y", 1e3, 1e13) | None = None
-    damping: quantity("N*s/m", "damping beside it, along y; None: a damping ratio of 0.5 of all moving masses, 0 with a film", 0.0, 1e9) | None = None
-    damping_z: quantity("N*s/m", "the same along z; None: as along y", 0.0, 1e9) | None = None
+    mass: Annotated[float, Quantity("kg", "mass of outer ring and sleeve; None: twice the inner ring's", 1e-4, 1e5)] | None = None
+    stiffness: (
+        Annotated[float, Quantity("N/m", "stiffness towards the housing along y; None: the static load rating deflects it by 1 mm", 1e3, 1e13)] | None
+    ) = None
+    stiffness_z: Annotated[float, Quantity("N/m", "the same along z; None: as along y", 1e3, 1e13)] | None = None
+    damping: (
+        Annotated[float, Quantity("N*s/m", "damping beside it, along y; None: a damping ratio of 0.5 of all moving masses, 0 with a film", 0.0, 1e9)]
+        | None
+    ) = None
+    damping_z: Annotated[float, Quantity("N*s/m", "the same along z; None: as along y", 0.0, 1e9)] | None = None
     squeeze_film: SqueezeFilmDamper | None = None  # a film that damps; None: no film
 
 
@@ -62,8 +72,8 @@ class OuterRingSupport:
 class Unbalance:
     """Unbalance of the shaft: a force m e omega^2 that turns with it."""
 
-    amount: quantity("kg*m", "mass times eccentricity, m e", 0.0, 1e3, "g*mm") = 0.0
-    angle: quantity("rad", "azimuth of the eccentricity when the shaft's angle is 0", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+    amount: Annotated[float, Quantity("kg*m", "mass times eccentricity, m e", 0.0, 1e3, "g*mm")] = 0.0
+    angle: Annotated[float, Quantity("rad", "azimuth of the eccentricity when the shaft's angle is 0", -2 * math.pi, 2 * math.pi, "deg")] = 0.0
 
 
 @record

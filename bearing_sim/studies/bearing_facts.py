@@ -100,7 +100,7 @@ _RING, _ROLLER, _CAGE, _LINE = "#c9d3de", "#f0d9b5", "#7a9a6b", "#444444"
 _INK = {"edgecolor": _LINE, "linewidth": 0.8}
 
 
-def draw(path: Path, bearing: Bearing) -> None:
+def plot_bearing(path: Path, bearing: Bearing) -> None:
     """Draw a bearing into a file; the suffix of ``path`` gives the format.  Estimated dimensions are marked with a tilde."""
     from bearing_sim.sweep.pictures import new_figure, save  # here, because facts are asked for without a picture, too
 

@@ -557,7 +557,7 @@ def _fitted_scene(scene: Scene, fitted: Sequence[Fitted], confidence: float) -> 
 _MEASURED, _BEFORE, _AFTER = "0.45", "#d55e00", "#0072b2"  # Okabe and Ito: safe for colour-blind readers
 
 
-def draw(path: Path, title: str, found: Calibration) -> None:
+def plot_calibration(path: Path, title: str, found: Calibration) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     figure = new_figure(12, 8)
     axes = figure.subplot_mosaic([["time", "time"], ["against", "left"]])

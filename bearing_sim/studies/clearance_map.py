@@ -240,7 +240,7 @@ _STACKED = (("initial_clearance", "#7a7a7a"), ("fit_clearance", "#0072b2"), ("ro
 _NODE_COLOURS = ("#000000", "#d55e00", "#e69f00", "#009e73", "#0072b2", "#cc79a7")
 
 
-def draw(path: Path, title: str, found: ClearanceMap) -> None:
+def plot_clearance_map(path: Path, title: str, found: ClearanceMap) -> None:
     """Draw maps over speed and load, or lines over speed where there is one load; the suffix of ``path`` gives the format."""
     figure = new_figure(11.5, 8.4)
     axes = figure.subplots(2, 2)

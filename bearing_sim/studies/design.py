@@ -612,7 +612,7 @@ def condition_name(kind: str, wanted: Mapping) -> str:
     return "at nominal speeds and loads" if wanted["points"] else "at nominal speed and load"
 
 
-def draw(path: Path | BinaryIO, designed: Designed, beside: tuple[str, tuple[float, float], tuple[float, float]] | None = None) -> None:
+def plot_design(path: Path | BinaryIO, designed: Designed, beside: tuple[str, tuple[float, float], tuple[float, float]] | None = None) -> None:
     """Draw the regions and isolines of slip and life into a file.
 
     The region of the worst case and the nominal one each stand under their own name, also where there is none.  After verification the region

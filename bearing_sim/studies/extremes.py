@@ -152,7 +152,7 @@ _VIEWS = (  # field, factor, label
 )
 
 
-def draw(path: Path, title: str, outcomes: Sequence[StockOutcome]) -> None:
+def plot_extremes(path: Path, title: str, outcomes: Sequence[StockOutcome]) -> None:
     """Draw the outcomes over speed and load, and over oil temperature and play; the suffix of ``path`` gives the format."""
     figure = new_figure(11, 4.6)
     for axes, (x, y) in zip(figure.subplots(1, len(_VIEWS)), _VIEWS):

@@ -72,7 +72,6 @@ _EMPTY = {each["name"]: math.nan if each["kind"] == "number" else "" for each in
 
 def replay_fleet(
     bearings: Sequence[Bearing],
-    longest_gap: float | None = None,
     execution: Execution = IN_MEMORY,
     progress: Callable[[str, int, int], None] = lambda act, done, total: None,
     prepare: Callable[[Scene, tuple[float, float]], object] | None = None,
@@ -85,7 +84,6 @@ def replay_fleet(
     Parameters
     ----------
     bearings : to replay.
-    longest_gap : see `bearing_sim.inputs.profile.judge`.
     execution : see `bearing_sim.sweep.tasks.Execution`; workers of a cluster open the logs under the same paths.
     progress : called with what is under way (``reading``, ``replay``), the number of finished tasks and of all that are to be computed.
     prepare : called with a scene and its oil temperatures [K] before its table is needed, where workers are of this machine.
@@ -119,7 +117,7 @@ def replay_fleet(
             prepare(scene, ends)
     ready = [k for k in ready if not rows[k]]
     wanted = {k: bearings[k]._replace(scene=scenes[k]) for k in ready}
-    tasks = [_task(scenes[k].level, replay_bearing, wanted[k], checksums[k], longest_gap, temperatures[k]) for k in ready]
+    tasks = [_task(scenes[k].level, replay_bearing, wanted[k], checksums[k], temperatures[k]) for k in ready]
     tasks = [each._replace(arguments=(*each.arguments, responses.get(repr(bearings[k].scene)))) for k, each in zip(ready, tasks)]
     for k, found in zip(ready, run("replay", tasks)):
         rows[k] = found
@@ -212,19 +210,16 @@ def _survey(bearing: Bearing) -> dict:
     return {"fastest": float(speeds.max(initial=0.0)), "coldest": ends[0], "warmest": ends[1]}
 
 
-def replay_bearing(
-    bearing: Bearing, longest_gap: float | None, temperatures: tuple[float, float] | None, response: ResponseModel | None = None
-) -> dict:
+def replay_bearing(bearing: Bearing, temperatures: tuple[float, float] | None, response: ResponseModel | None = None) -> dict:
     """Return the results of one bearing by the names of `COLUMNS`; those of a log that cannot be read have only ``status`` and ``reason``.
 
     Parameters
     ----------
     bearing : with its log.
-    longest_gap : see `replay_fleet`.
     temperatures : lowest and highest oil temperature of the table of operating points [K]; None without a table.
     response : of a scene that asks for bands.
     """
-    return _caught(_replay_bearing, bearing, longest_gap, temperatures, response)
+    return _caught(_replay_bearing, bearing, temperatures, response)
 
 
 def _caught(function: Callable[..., dict], *arguments) -> dict:
@@ -241,10 +236,10 @@ def _caught(function: Callable[..., dict], *arguments) -> dict:
         return {"status": UNAVAILABLE, "reason": f"{type(error).__name__}: {error}"}
 
 
-def _replay_bearing(bearing: Bearing, longest_gap: float | None, temperatures: tuple[float, float] | None, response: ResponseModel | None) -> dict:
+def _replay_bearing(bearing: Bearing, temperatures: tuple[float, float] | None, response: ResponseModel | None) -> dict:
     scene, log = bearing.scene, read_log(bearing.log, bearing.reading)
     held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
-    profile = judge(log, scene.accepted_inputs, held, longest_gap, scene.heat.law)
+    profile = judge(log, scene.accepted_inputs, held, bearing.reading.recordings.longest_gap, scene.heat.law)
     model, given = Simulation, {} if response is None else {"estimation": response}
     if temperatures is not None:
         model, given["validity"] = partial(Simulation, table=_operating_points(scene, temperatures)), laws_of_table(scene, temperatures)

@@ -18,9 +18,8 @@ from typing import NamedTuple
 from bearing_sim.files.limits import BEARINGS_ROWS
 from bearing_sim.inputs.csv_import import Mapping, input_log, mapping_from_yaml, read_table
 from bearing_sim.inputs.csv_text import DELIMITERS, TableError, encoding_of, find_header, first_look, records, table_lines
-from bearing_sim.inputs.log import InputLog, Source, read_input_log
+from bearing_sim.inputs.log import InputLog, LogReading
 from bearing_sim.inputs.parquet_table import checksum, files_of, is_parquet, rows_of, values_of
-from bearing_sim.messages import topics
 from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean, shortened
 from bearing_sim.scene.loader import load_scene, read_named
 from bearing_sim.scene.scene import Scene
@@ -74,18 +73,13 @@ class Reading(NamedTuple):
     ----------
     mapping, mapping_overrides : of tables, the text of the mapping and texts that change it; ``""`` where there is none.
     mapping_name : for messages.
-    sources : of recordings, by channel, where it is not called by its own name.
-    joint, stamps : of recordings, see `bearing_sim.inputs.log.read_input_log`.
-    constants : by channel, values in SI that were not measured.
+    recordings : how those are read; its longest gap counts for tables, too.
     """
 
-    mapping: str = ""
-    mapping_overrides: tuple[str, ...] = ()
-    mapping_name: str = ""
-    sources: tuple[tuple[str, Source], ...] = ()
-    joint: str = topics.SHAFT_JOINT
-    stamps: str = "header"
-    constants: tuple[tuple[str, float], ...] = ()
+    mapping: str
+    mapping_overrides: tuple[str, ...]
+    mapping_name: str
+    recordings: LogReading
 
 
 def find_logs(paths: Sequence[Path], by: str | None = None, leave_out: Collection[Path] = ()) -> list[Log]:
@@ -166,7 +160,7 @@ def read_log(log: Log, reading: Reading) -> InputLog:
         It cannot be read, or it is a table and there is no mapping.
     """
     if not log.is_table:
-        return read_input_log(log.path, dict(reading.sources), reading.joint, reading.stamps, constants=dict(reading.constants))
+        return reading.recordings.read(log.path)
     if not reading.mapping:
         hint = f"bearing-sim import-csv --guess {log.path} -o mapping.yaml" if is_text(log.path) else "see `bearing-sim import-csv --help`"
         raise TableError(f"{log.path}: a table needs a mapping that says which columns are what (--mapping): {hint}")

@@ -198,12 +198,6 @@ def turning_answer(scene: Scene, inputs: Inputs, state: OperatingState, work: Wo
     return answer
 
 
-def _model_moment(scene: Scene, inputs: Inputs, state: OperatingState, work: Work) -> float:
-    """Return the frictional moment of a scene under conditions by level steady [N mm]; errors as of `compare`."""
-    power, speed = turning_answer(scene, inputs, state, work)[ANSWER.shaft_power], abs(inputs.shaft_speed) / _RPM
-    return float(power) * 1e3 / (speed * _RPM)
-
-
 class Comparison(NamedTuple):
     """Friction of one bearing at one condition [W]."""
 
@@ -235,14 +229,17 @@ def compare(scene: Scene, series: str) -> Comparison:
     inputs, state = scene_inputs(scene), operating_state(scene)
     plain = dataclasses.replace(scene, lubricant=dataclasses.replace(scene.lubricant, rolling_resistance=NoRollingResistance()))
     work = new_work(state.params)
-    bare = _model_moment(plain, inputs, operating_state(plain, inputs, state.temperatures), work)
-    full = _model_moment(scene, inputs, state, work)
+    bare = float(turning_answer(plain, inputs, operating_state(plain, inputs, state.temperatures), work)[ANSWER.shaft_power])
+    full = float(turning_answer(scene, inputs, state, work)[ANSWER.shaft_power])
     speed, load, viscosity = abs(inputs.shaft_speed), math.hypot(inputs.load_y, inputs.load_z), 1e6 * state.lubrication.kinematic_viscosity
     simple, skf = moments_of_makers(scene, series, speed / _RPM, load, viscosity, scene.operating.axial_load)
     watts = 1e-3 * speed
     return Comparison(
         series,
-        *(watts * moment for moment in (bare, full, sum(simple), skf.whole)),
+        bare,
+        full,
+        watts * sum(simple),
+        watts * skf.whole,
         0.0011 * scene.operating.radial_load * 0.5 * dimensions_of(scene).bore * watts,
         viscosity,
         dict(zip(NODE_OBSERVABLES, state.temperatures.tolist())),

@@ -134,7 +134,7 @@ _CONTOUR, _PRESSED, _ROUND = "#b2451f", "#c9d8ea", "#7a7a7a"
 _DRAWN = 0.22  # of the radius, as which D is drawn
 
 
-def draw(path: Path, section: RingSection, pressing: Pressing, machined: Machined) -> None:
+def plot_machined(path: Path, section: RingSection, pressing: Pressing, machined: Machined) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     figure = new_figure(11, 5.2)
     shape, radius = figure.subplots(1, 2, width_ratios=(1, 1.35))

@@ -33,9 +33,9 @@ from bearing_sim.scene.uncertainty import quantities, value_at
 from bearing_sim.studies import design as studied
 from bearing_sim.studies import spectrum as spectra
 from bearing_sim.studies.page import NoResults, command, document, folded, pairs, paragraph, picture, rows_table, warnings
-from bearing_sim.studies.run_plot import DEFAULT_PANELS, course_of, draw_over_time
+from bearing_sim.studies.run_plot import DEFAULT_PANELS, course_of, plot_over_time
 from bearing_sim.studies.sheet import results, sheet
-from bearing_sim.sweep.pictures import COLOURS, NotDrawable, draw, new_figure, save
+from bearing_sim.sweep.pictures import COLOURS, NotDrawable, new_figure, plot_table, save
 from bearing_sim.sweep.point import OK, Column
 from bearing_sim.sweep.settling import mean_life
 from bearing_sim.sweep.table import Table, read_any_table, written_by_us
@@ -143,10 +143,10 @@ def _part(path: Path, tell: _Tell) -> _Part:
         raise NoResults(f"{path}: {error}") from None
 
 
-def _picture(title: str, draw: Callable, *arguments, caption: str = "") -> str:
+def _picture(title: str, plot: Callable, *arguments, caption: str = "") -> str:
     """Return an embedded picture that a function draws into a stream."""
     stream = io.BytesIO()
-    draw(stream, *arguments)
+    plot(stream, *arguments)
     return picture(stream.getvalue(), title, caption)
 
 
@@ -203,11 +203,11 @@ def _text(value) -> str:
 
 def _table_pictures(table: Table) -> str:
     if table.about.get("kind") == "spectrum":
-        return _picture("Shares of time and damage by point", spectra.draw, table)
+        return _picture("Shares of time and damage by point", spectra.plot_spectrum, table)
     if table.about.get("kind") != "sweep":
         return ""
     try:
-        return _picture("Results over what was varied", draw, table)
+        return _picture("Results over what was varied", plot_table, table)
     except NotDrawable as error:
         return paragraph(f"No picture: {error}.")
 
@@ -259,7 +259,7 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
         {
             "Summary": pairs(summary),
             "Operating points": rows_table(points, rows) if rows else "",
-            "Picture": _picture("Raceways that meet the limits", studied.draw, designed),
+            "Picture": _picture("Raceways that meet the limits", studied.plot_design, designed),
             "Intervals of radii": rows_table(studied.BORDER_COLUMNS, designed.border_table.rows),
             "Both levels": rows_table(check_columns, designed.check_table.rows) if designed.checks else "",
             "Map": rows_table(studied.COLUMNS, designed.grid.rows, f"all {len(designed.grid.rows)} raceways"),
@@ -327,7 +327,7 @@ def _recording_part(recording: Recording) -> _Part:
         {
             "Summary": pairs(summary),
             f"Answer sheet, mean {over}": _sheet(scene, at_end),
-            "Pictures": _picture("Conditions and results over time", draw_over_time, [course])
+            "Pictures": _picture("Conditions and results over time", plot_over_time, [course])
             + _picture("Load distribution", _draw_loads, settled, caption=f"Roller loads over the azimuth from +y, mean {over} of the recording."),
             "Observables": _observables(blocks, settled, scene),
             "Events": _events_table(events),

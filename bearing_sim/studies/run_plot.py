@@ -316,7 +316,7 @@ def _one_per_cell(rows: np.ndarray) -> np.ndarray:
     return rows[np.unique([*first, *extremes])]
 
 
-def draw_over_time(path: Path | BinaryIO, courses: Sequence[Course], title: str = "") -> "object":
+def plot_over_time(path: Path | BinaryIO, courses: Sequence[Course], title: str = "") -> "object":
     """Draw runs over time into a file, one panel below the other, and return the figure.
 
     A life has a logarithmic axis; what exceeds the shortest by more than six decades is cut off.
@@ -464,14 +464,14 @@ def minimum_loads(scene: Scene, speeds: np.ndarray) -> np.ndarray:
     return np.broadcast_to(minimum_load(scene, np.asarray(speeds, float) / RPM)[0], np.shape(speeds))
 
 
-def draw_over_load(path: Path | BinaryIO, courses: Sequence[Course], title: str = "") -> "object":
+def plot_over_load(path: Path | BinaryIO, courses: Sequence[Course], title: str = "") -> "object":
     """Draw slip and life of the samples of runs over the radial load, with the minimum load, and return the figure.
 
     The minimum load rises with the speed; between its values at the speeds of a run that turns it is a strip.
 
     Parameters
     ----------
-    path, courses, title : see `draw_over_time`.
+    path, courses, title : see `plot_over_time`.
     """
     series = [course.loaded[:, 1:].T for course in courses]
     runs = [(course.scene, course.loaded[_turning(course), 0], course.name) for course in courses]
@@ -542,12 +542,12 @@ def _draw_minimum_loads(axes, runs: Sequence[tuple[Scene, np.ndarray, str]], new
     return handles
 
 
-def draw_table_over_load(path: Path, points: Sequence[Mapping], scene: Scene | None, title: str, life_heading: str) -> "object":
+def plot_table_over_load(path: Path, points: Sequence[Mapping], scene: Scene | None, title: str, life_heading: str) -> "object":
     """Draw slip and life of the points of a table over the radial load, a line for each speed, with the minimum load; return the figure.
 
     Parameters
     ----------
-    path, title : see `draw_over_time`.
+    path, title : see `plot_over_time`.
     points : each with ``load`` [N], ``slip`` [%], ``life`` [h], ``speed`` [rpm] and ``family``, what else was varied, in words.
     scene : whose minimum load is drawn; None if it is not known.
     life_heading : label of the axis of the life.

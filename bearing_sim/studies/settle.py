@@ -9,8 +9,6 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from bearing_sim.model.sample import OBSERVABLES, RING_TEMPERATURES
 from bearing_sim.model.validity import Exceedance, Grade, outside
 from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, hours, number, power
@@ -28,7 +26,7 @@ from bearing_sim.sweep.tasks import Execution
 if TYPE_CHECKING:
     import pandas
 
-    from bearing_sim.model.names import SettledResults
+    from bearing_sim.model.names import Sample, SettledResults
     from bearing_sim.studies.uncertainty_propagation import Band
 else:
     SettledResults = object
@@ -64,7 +62,7 @@ class Settled(SettledResults):
     scene: Scene
     outcome: Outcome
     bands: "Mapping[str, Band]"
-    start: str = ROLLING
+    start: Literal["rolling", "skid", "nearby"] = ROLLING
 
     @property
     def settled(self) -> bool:
@@ -72,7 +70,7 @@ class Settled(SettledResults):
         return self.outcome.settled
 
     @property
-    def sample(self) -> np.void:
+    def sample(self) -> "Sample":
         """The last sample, from which another run can begin (`bearing_sim.Simulation.reset`, `resume`)."""
         return self.outcome.window[-1]
 

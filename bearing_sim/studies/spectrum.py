@@ -209,7 +209,7 @@ def _conditions(scene: Scene, point: OperatingPoint, share: float, hours: float 
     }
 
 
-def draw(path: Path | BinaryIO, table: Table, most: int = 20) -> None:
+def plot_spectrum(path: Path | BinaryIO, table: Table, most: int = 20) -> None:
     """Draw share of time, load and share of damage of each point as bars, the most harmful first.
 
     Parameters

@@ -152,7 +152,7 @@ def _pressure(line_load, curvature_radius, reduced_modulus) -> float:
 _INNER, _OUTER = "#b2451f", "#3c5f8a"
 
 
-def draw(path: Path, title: str, found: Statics) -> None:
+def plot_statics(path: Path, title: str, found: Statics) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     figure = new_figure(13, 7.4)
     grid = figure.add_gridspec(2, 2, width_ratios=(1, 1.25))

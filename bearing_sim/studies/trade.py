@@ -10,7 +10,7 @@ processor times of one core.
 import dataclasses
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -128,13 +128,18 @@ class Trade(NamedTuple):
 
     @property
     def is_complete(self) -> bool:
-        """Whether nothing is left out of the errors: the reference vibrates and whirls, or no level can that computes the scene."""
-        return self.reference_level in WHIRLING or all(level in self.left_out for level in WHIRLING)
+        """Whether errors against the reference leave nothing out (see `has_all`)."""
+        return has_all(self.reference_level, self.left_out)
 
     @property
     def simulated(self) -> float:
         """Simulated time of each setting [s]."""
         return self.course.measured
+
+
+def has_all(reference: str, left_out: Mapping[str, str]) -> bool:
+    """Return whether a level vibrates and whirls, as that of a reference, or no level can that computes the scene; ``left_out`` as of `Trade`."""
+    return reference in WHIRLING or all(level in left_out for level in WHIRLING)
 
 
 def settings_of(level: str, quick: bool = False) -> list[Candidate]:
@@ -542,7 +547,7 @@ _LEVELS = {"steady": ("#009e73", "D"), "slip": ("#0072b2", "o"), "planar": ("#d5
 _FLOORS = (1e-4, 1e-4, 1e-4)  # smallest error shown on each logarithmic axis
 
 
-def draw(path: Path, title: str, found: Trade) -> None:
+def plot_trade(path: Path, title: str, found: Trade) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     figure = new_figure(14, 5.6)
     labels = ("error of cage slip [percentage points]", "error of the largest roller load", "error of the life")

@@ -565,7 +565,7 @@ _SLIP, _LIFE, _FIRST, _TOTAL = "#0072b2", "#009e73", "#56b4e9", "#0072b2"  # Oka
 _FEWEST_BINS, _MOST_BINS = 8, 40
 
 
-def draw(path: Path, title: str, found: Study, life: str, times: np.ndarray | None = None) -> None:
+def plot_uncertainty(path: Path, title: str, found: Study, life: str, times: np.ndarray | None = None) -> None:
     """Draw distributions, indices and the slip over a course into a file.  Shares of the variance are those of `Indices.bounded`.
 
     Parameters

@@ -297,7 +297,7 @@ def require_drawable(axes: Sequence[Sequence]) -> None:
         raise NotDrawable(f"a picture shows one or two varied fields, this sweep has {varied}; fix the others with --set")
 
 
-def draw(path: Path | BinaryIO, table: Table, quantities: Sequence[str] = ()) -> None:
+def plot_table(path: Path | BinaryIO, table: Table, quantities: Sequence[str] = ()) -> None:
     """Draw a sweep into a file: lines over one variable, maps over two.
 
     Parameters

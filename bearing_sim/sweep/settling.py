@@ -280,8 +280,8 @@ class _Record:
         self._blocks = [start]
         self._times, self._turns, self._integrals = [start["time"]], [np.zeros(1)], [np.zeros((1, len(OBSERVED) + len(GROWING)))]
 
-    def take(self, block: np.ndarray) -> None:
-        """Take the samples that follow."""
+    def append(self, block: np.ndarray) -> None:
+        """Append the samples that follow."""
         before, last = self._blocks[-1][-1], self._integrals[-1][-1]
         steps = np.diff(block["time"], prepend=before["time"])
         ideal = block["ideal_cage_speed"]
@@ -355,7 +355,7 @@ def advance_until_settled(simulation: Simulation, shortest: float, longest: floa
     advance = advance or (lambda seconds: sampled(simulation, seconds, shortest / _SAMPLES))
     record, begin, length = _Record(start_sample(simulation)), simulation.time, min(shortest, longest)
     while True:
-        record.take(advance(begin + length - simulation.time))
+        record.append(advance(begin + length - simulation.time))
         length = simulation.time - begin
         settled = has_settled(record.course, TOLERANCES)
         if settled or length >= (1.0 - 1e-9) * longest:
@@ -411,7 +411,7 @@ def sampled(simulation: Simulation, seconds: float, interval: float) -> np.ndarr
 
 
 def advance_in_calls(
-    simulation: Simulation, interval: float, count: int, together: int, take: Callable[[np.ndarray], None] = lambda block: None
+    simulation: Simulation, interval: float, count: int, together: int, receive: Callable[[np.ndarray], None] = lambda block: None
 ) -> np.ndarray:
     """Advance sample by sample and return some of the samples, evenly spread, the last one among them.
 
@@ -423,13 +423,13 @@ def advance_in_calls(
     interval : between samples [s].
     count : of samples.
     together : samples of a call of the model, whose budget of steps is that of a call.
-    take : called with every block of samples.
+    receive : called with every block of samples.
     """
     stride, kept, largest = max(count // _KEPT, 1), [], {name: [] for name in _MAXIMA}
     for done in range(0, count, together):
         size = min(together, count - done)
         block = simulation.advance(size * interval, samples=size)
-        take(block)
+        receive(block)
         for name, values in largest.items():
             values.append(block[name].copy())
         kept.append(block[(count - done - 1) % stride :: stride].copy())

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -46,8 +46,8 @@ class Table(NamedTuple):
     """
 
     columns: tuple[Column, ...]
-    rows: list[dict]
-    about: dict
+    rows: list[dict[str, Any]]
+    about: dict[str, Any]
 
     def __repr__(self) -> str:
         axes = [f"{axis['field']}{f' [{unit}]' if (unit := axis.get('unit')) else ''} x {len(axis['values'])}" for axis in self._varied]

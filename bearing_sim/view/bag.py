@@ -97,7 +97,7 @@ class CloudCourse:
     Attributes
     ----------
     coloured_by : the field that colours the points, the first one after the places; empty if there is none.
-    clouds : in the order in which they were taken.
+    clouds : in the order in which they were added.
     """
 
     def __init__(self):
@@ -105,8 +105,8 @@ class CloudCourse:
         self.clouds: list[Cloud] = []
         self._seen, self._every = 0, 1
 
-    def take(self, message, log_ns: int) -> int:
-        """Take a deserialised sensor_msgs/PointCloud2 with its log time [ns since the epoch]; return how many numbers of it are kept.
+    def add(self, message, log_ns: int) -> int:
+        """Add a deserialised sensor_msgs/PointCloud2 with its log time [ns since the epoch]; return how many numbers of it are kept.
 
         Raises
         ------
@@ -204,7 +204,7 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
             message = decode(data)
             taken.add_events(_events_in(ros_type, message, log_ns))
             if ros_type == POINT_CLOUD:
-                taken.count(clouds.setdefault(topic, CloudCourse()).take(message, log_ns))
+                taken.count(clouds.setdefault(topic, CloudCourse()).add(message, log_ns))
             found_here = [*_numbers_in(ros_type, topic, roles.get(topic, ""), message)]
             for role, line in named.items():
                 if line.topic == topic and line.fields:

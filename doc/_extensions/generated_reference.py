@@ -221,8 +221,10 @@ def parameters() -> str:
 
 
 def services() -> str:
-    """Return the services that the node and the player offer, read from the calls that create them."""
-    rows = []
+    """Return the services that the node and the player offer, read from the calls that create them, and those of watchers."""
+    from bearing_sim.watchers.monitoring.watchers import SERVICES
+
+    rows = [[code("bearing_node"), code(f"~/{name}"), code("std_srvs/srv/Trigger"), meaning] for name, (meaning, _) in SERVICES.items()]
     for program, module in (("bearing_node", "node"), ("bearing_player", "player")):
         for path in _reached(PACKAGE / "ros" / f"{module}.py"):
             tree = ast.parse(path.read_text())

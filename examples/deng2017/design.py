@@ -21,7 +21,7 @@ from bearing_sim.studies.design import (
     condition_name,
     default_axes,
     design,
-    draw,
+    plot_design,
 )
 from bearing_sim.sweep.conditions import Conditions
 from bearing_sim.sweep.grid import Axis, axis
@@ -108,7 +108,7 @@ def write_answer(folder: Path, designed: Designed) -> Pictured:
     write_table(folder / "tables" / "design", designed.grid)
     write_table(folder / "tables" / "design_borders", designed.border_table)
     with replaced(folder / "figures" / "design.png") as draft:
-        draw(draft, designed, BESIDE)
+        plot_design(draft, designed, BESIDE)
     ranges, mapped = [], designed.grid.values(D_VALUE)
     for kind in KINDS:
         found = radii_within([border for border in designed.borders if border.kind == kind], mapped)

@@ -27,7 +27,7 @@ def misalignment(scene_name, overrides, largest, points, crowns, slices):
     import numpy as np
 
     announce_compilation()
-    from misalignment.misaligned_rings import CROWNS, draw, misalign
+    from misalignment.misaligned_rings import CROWNS, misalign, plot_misalignment
 
     crowns = crowns or CROWNS
     amounts = [round(float(each), 9) for each in 1e-3 * np.linspace(0.0, largest, points)]
@@ -39,7 +39,7 @@ def misalignment(scene_name, overrides, largest, points, crowns, slices):
         ("crown", "misalignment [mrad]", "slip [%]", "largest [MPa]", "inner edge [MPa]", "outer edge [MPa]")
         + ("tilt [mrad]", "skew [mrad]", "life [h]", "L10r [h]", "L10r, no slip, h"),
         list(map(_row, found)),
-        lambda draft: draw(draft, title, found),
+        lambda draft: plot_misalignment(draft, title, found),
         {"scene": scene_name, "slices": slices},
         remarks=["pressures, tilt and skew: time average of the largest value at each instant; no slip: life by slices in quasi-static equilibrium"],
     )

@@ -91,7 +91,7 @@ def _run(scene, crown, misalignment, slices, turns):
     )
 
 
-def draw(path: Path, title: str, found: list[Misaligned]) -> None:
+def plot_misalignment(path: Path, title: str, found: list[Misaligned]) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     figure = new_figure(14, 8)
     axes = figure.subplots(2, 3).ravel()

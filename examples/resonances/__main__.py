@@ -29,7 +29,7 @@ def main(scene_name, overrides, lowest, highest, points, level):
 
     scene = scene_of(scene_name, overrides, level)
     announce_compilation(scene)
-    from resonances.ring_on_rollers import draw, resonances
+    from resonances.ring_on_rollers import plot_resonances, resonances
 
     own = abs(scene.operating.shaft_speed) * 30.0 / math.pi
     if own == 0.0 and None in (lowest, highest):
@@ -43,7 +43,7 @@ def main(scene_name, overrides, lowest, highest, points, level):
         f"{scene_name}: the inner ring on its rollers over speed, level {level}",
         ("speed [rpm]", "over passage", "multiplier", "nearby", "slip [%]", "life [h]", "state"),
         rows,
-        lambda draft: draw(draft, title, found),
+        lambda draft: plot_resonances(draft, title, found),
         {"scene": scene_name, "level": level},
         [(speed, f"{low:.2f}, {high:.2f}", *others) for speed, low, high, *others in (row.values() for row in rows)],
         ("over passage", "state"),

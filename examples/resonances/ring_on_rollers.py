@@ -52,7 +52,7 @@ def resonances(scene: Scene, shaft_speeds: Sequence[float], progress: Callable[[
     return found
 
 
-def draw(path: Path, title: str, found: Sequence[Speed]) -> None:
+def plot_resonances(path: Path, title: str, found: Sequence[Speed]) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     figure = new_figure(9, 10.5)
     ratios, growth, slips, lives = figure.subplots(4, 1, sharex=True)

@@ -31,7 +31,7 @@ def response_over_speed(scene_name, overrides, lowest, highest, points, level):
     import numpy as np
 
     announce_compilation()
-    from response_over_speed.responses import draw, relative_damage, respond
+    from response_over_speed.responses import plot_responses, relative_damage, respond
 
     speeds = [float(each) for each in np.linspace(lowest, highest, points) * (math.pi / 30)]
     with progress_bar("points", 3 * points) as show:
@@ -42,7 +42,7 @@ def response_over_speed(scene_name, overrides, lowest, highest, points, level):
         f"{scene_name}: {title}",
         ("model", "speed [rpm]", "slip [%]", "largest load [N]", "ring moves [µm]", "outer ring [µm]", "damage/slip's", "support [W]"),
         [_response_row(one, relative) for one in found],
-        lambda draft: draw(draft, f"{' '.join([scene_name, *overrides])}: {title}", found),
+        lambda draft: plot_responses(draft, f"{' '.join([scene_name, *overrides])}: {title}", found),
         {"scene": scene_name, "level": level},
     )
 

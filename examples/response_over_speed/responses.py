@@ -91,7 +91,7 @@ def relative_damage(found: Sequence[Response]) -> dict[tuple[str, float], float]
     return {(one.model, one.shaft_speed): one.damage_rate / still[one.shaft_speed] for one in found}
 
 
-def draw(path: Path, title: str, found: Sequence[Response]) -> None:
+def plot_responses(path: Path, title: str, found: Sequence[Response]) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     figure, relative = new_figure(13, 8), relative_damage(found)
     axes = figure.subplots(2, 2).ravel()

@@ -179,9 +179,9 @@ class _Monitors:
 
     def changes(self, block: np.ndarray) -> list[Event]:
         """Return the conditions that changed in a block."""
-        self._monitor.take(block)
+        self._monitor.judge(block)
         now = float(block["time"][-1])
-        return self._changes.take(now, (*self._monitor.events(now), *self._residual.events(now)))
+        return self._changes.update(now, (*self._monitor.events(now), *self._residual.events(now)))
 
     def compare(self, predicted: np.ndarray, true: np.ndarray, random: np.random.Generator) -> Iterator[Measurement]:
         """Yield measurements of the machine with sensor noise, and monitor their residuals."""
@@ -189,5 +189,5 @@ class _Monitors:
             ideal = float(one["ideal_cage_speed"])
             speed = float(other["cage_speed"]) + _NOISE * ideal * random.normal()
             measured = 1.0 - speed / ideal
-            self._residual.take(float(one["time"]), float(one["shaft_speed"]), measured, float(one["cage_slip"]))
+            self._residual.compare(float(one["time"]), float(one["shaft_speed"]), measured, float(one["cage_slip"]))
             yield Measurement(float(one["time"]), speed, measured - float(one["cage_slip"]))

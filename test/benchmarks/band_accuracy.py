@@ -109,7 +109,7 @@ def resolution_of(scene, conditions, answers):
 
 def compare(scene, response, conditions, answers):
     """Print how far the edges of bands of settled answers are from the exact ones."""
-    found = BandEstimator(scene, response).take(samples_at(conditions, answers[:, 0]))
+    found = BandEstimator(scene, response).estimate(samples_at(conditions, answers[:, 0]))
     for column, name in enumerate(QUANTITIES[:3]):
         by_slip_alone = name == "rating_life" and ANSWERS.index(name) not in response.varied_answers()
         resolution = resolution_of(scene, conditions, answers) if by_slip_alone else None
@@ -127,7 +127,7 @@ def compare_remaining(scene, response, conditions, answers):
     conditions, answers, rates = conditions[kept], answers[kept], 1.0 / (3600.0 * lives[kept])
     block, column = samples_at(conditions, answers[:, 0]), QUANTITIES.index("remaining_life")
     block["damage"] = SPENT
-    found = np.concatenate([BandEstimator(scene, response).take(block[k : k + 1])[:, column] for k in range(len(block))])
+    found = np.concatenate([BandEstimator(scene, response).estimate(block[k : k + 1])[:, column] for k in range(len(block))])
     exact = np.clip(1.0 - SPENT * rates / rates[:, :1], 0.0, 1.0) / (3600.0 * rates)
     show("remaining_life, each point for itself", *distances(found, exact[:, 1:]))
 
@@ -139,7 +139,7 @@ def compare_remaining(scene, response, conditions, answers):
     exact = np.clip(1.0 - spent, 0.0, 1.0) / (3600.0 * means)
     block["time"], block["damage"] = hold * np.arange(1, len(block) + 1), spent[:, 0]
     bands = BandEstimator(replace(scene, thresholds=replace(scene.thresholds, remaining_life_memory=memory)), response)
-    show("remaining_life, along a course", *distances(bands.take(block)[:, column], exact[:, 1:]))
+    show("remaining_life, along a course", *distances(bands.estimate(block)[:, column], exact[:, 1:]))
     print(f"remaining_life: that of the level itself is met to {np.abs(bands.remaining_life / exact[:, 0] - 1.0).max():.1g}")
 
 
@@ -150,10 +150,10 @@ def cost(scene, response, block):
         repeats = np.resize(block, 50 * size).reshape(50, size)
         repeats["time"] = np.arange(repeats.size).reshape(repeats.shape) / RATE
         repeats["shaft_speed"] *= 1.0 + 1e-6 * np.arange(repeats.size).reshape(repeats.shape)  # no two alike
-        bands.take(repeats[0])
+        bands.estimate(repeats[0])
         began = time.process_time()
         for each in repeats[1:]:
-            bands.take(each)
+            bands.estimate(each)
         each = (time.process_time() - began) / (49 * size)
         print(f"{size:2d} at once: {1e3 * each:.3f} ms a band, {100.0 * RATE * each:.2f} % of a core at {RATE:g} Hz")
 

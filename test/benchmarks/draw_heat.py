@@ -13,7 +13,7 @@ TEMPERATURES = ("shaft", "inner_ring", "roller", "outer_ring", "housing", "oil_o
 CLEARANCES = ("running", "initial", "fit", "rotation", "heat")
 
 
-def draw(recording: Path, picture: Path) -> None:
+def plot_heat(recording: Path, picture: Path) -> None:
     """Draw a recording of a scene with a law of heat."""
     samples = np.concatenate([block for block in Recording(recording) if isinstance(block, np.ndarray)])
     minutes = samples["time"] / 60.0
@@ -36,4 +36,4 @@ def draw(recording: Path, picture: Path) -> None:
 
 
 if __name__ == "__main__":
-    draw(*map(Path, sys.argv[1:3]))
+    plot_heat(*map(Path, sys.argv[1:3]))

@@ -445,7 +445,7 @@ def extremes(samples, levels, seed, long, workers, as_json, picture, table):
     Speed, load, play, lobes, rollers, pockets, lands, oil, slices, tolerances and steps from a Latin hypercube, and named corner
     cases, on all cores available to this process.  Scenes that their own settings limit run again at stock settings.  Exit code 1 if any case fails.
     """
-    from validation.extremes import draw, run_extremes, table_rows
+    from validation.extremes import plot_extremes, run_extremes, table_rows
 
     with progress_bar("extremes", 1.0) as progress:
         report, outcomes = run_extremes(samples, levels, seed, long, lambda text: click.echo(f"{text} ...", err=True), progress, workers)
@@ -454,7 +454,7 @@ def extremes(samples, levels, seed, long, workers, as_json, picture, table):
             write_csv(table, table_rows(outcomes))
         if picture is not None:
             with picture.draft() as draft:
-                draw(draft, outcomes)
+                plot_extremes(draft, outcomes)
     if as_json:
         print_json(report)
     else:

@@ -16,7 +16,7 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs
-from bearing_sim.studies.friction import Dimensions, dimensions_of, moments_of_makers, series_of, simple_moment, skf_moment, turning_answer
+from bearing_sim.studies.friction import Dimensions, dimensions_of, moments_of_makers, series_of, turning_answer
 from bearing_sim.sweep.thermal import OperatingState, operating_state
 
 _RPM = math.pi / 30.0
@@ -298,19 +298,18 @@ def thermal_speeds(progress: Callable[[str], None] = lambda name: None, override
     for name in bearings():
         progress(name)
         scene, series = bath_scene(name, overrides), series_of(name)
-        dimensions, printed = dimensions_of(scene), scene.bearing.ratings.reference_speed / _RPM
+        flow, printed = heat_flow(dimensions_of(scene)), scene.bearing.ratings.reference_speed / _RPM
         load = REFERENCE_LOAD * scene.bearing.ratings.static
-        level = 500.0 * scene.bearing.roller.diameter
         viscosity = 1e6 * operating_state(scene).lubrication.kinematic_viscosity
         laws = (
             lambda speed: moments(scene, series, [(speed, load)])[0].model,
-            lambda speed: sum(simple_moment(series, dimensions, speed, load, viscosity)),
-            lambda speed: skf_moment(series, dimensions, speed, load, viscosity, level).whole,
+            lambda speed: sum(moments_of_makers(scene, series, speed, load, viscosity, 0.0)[0]),
+            lambda speed: moments_of_makers(scene, series, speed, load, viscosity, 0.0)[1].whole,
         )
 
         def excess(log_speed, law):
             speed = math.exp(log_speed)
-            return math.log(1e-3 * law(speed) * speed * _RPM / heat_flow(dimensions))
+            return math.log(1e-3 * law(speed) * speed * _RPM / flow)
 
         speeds = [math.exp(brentq(excess, math.log(0.1 * printed), math.log(4.0 * printed), (law,), xtol=1e-3)) for law in laws]
         found.append(ThermalSpeed(name, *speeds, printed, float(NKE_SPEEDS.get(name, math.nan))))

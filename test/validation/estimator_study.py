@@ -263,7 +263,7 @@ def judge(
             if first == 0:
                 predict(k, 0, block[first], slips[first])
             began = time.process_time()
-            estimator.take(block[part])
+            estimator.update(block[part])
             seconds += time.process_time() - began
             if first == round(_LATE * RATE):
                 predict(k, 1, block[first], slips[first])
@@ -373,7 +373,7 @@ def false_alarms(scene: Scene, hours: float, noise: float, correlation: float, s
             values, last = lfilter([left], [1.0, -correlation], values, zi=[state])
             state = float(last[0])
         for value in values.tolist():
-            monitor.take(now, 1.0, value, 0.0)
+            monitor.compare(now, 1.0, value, 0.0)
             now += detection.batch
             side = monitor.side
             alarms, before = alarms + (side != 0 and before == 0), side
@@ -496,7 +496,7 @@ def _played(estimator, scene, start, seconds, there, own, slip, random):
         times = start + second + (np.arange(RATE) + 1.0) / RATE
         for when in times:
             estimator.measure(float(when), (1.0 - slip - NOISE * random.normal()) * ideal)
-        estimator.take(samples(scene, times, np.repeat(there[None], len(times), axis=0), np.full(len(times), own)))
+        estimator.update(samples(scene, times, np.repeat(there[None], len(times), axis=0), np.full(len(times), own)))
         yield float(times[-1])
 
 

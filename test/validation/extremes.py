@@ -149,7 +149,7 @@ _VIEWS = (
 _LINEAR_TO = {"radial_load": 0.1, "clearance": 10.0}  # of a symlog axis, in its unit
 
 
-def draw(path: Path, outcomes: Sequence[Outcome]) -> None:
+def plot_extremes(path: Path, outcomes: Sequence[Outcome]) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     levels = list(dict.fromkeys(outcome.case.level for outcome in outcomes))
     figure = new_figure(15, 0.9 + 3.5 * len(levels))

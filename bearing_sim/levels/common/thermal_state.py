@@ -130,7 +130,7 @@ class ThermalState:
         self._values[-2], self._values[-1] = nodes[NODE.inner_ring], nodes[NODE.outer_ring]
         rows[..., THERMAL] = self._values
 
-    def take(self, before: np.ndarray, rows: np.ndarray, duration: float, inlet: float, measured: tuple[float, float]) -> bool:
+    def record_losses(self, before: np.ndarray, rows: np.ndarray, duration: float, inlet: float, measured: tuple[float, float]) -> bool:
         """Take the losses of a call, and step where an interval is over; return whether temperatures have changed.
 
         Parameters

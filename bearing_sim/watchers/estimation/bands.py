@@ -50,8 +50,8 @@ class BandEstimator:
 
     Attributes
     ----------
-    remaining_life : of the samples that were taken last, by the lives that they have themselves [h], shape (n,).
-    medians : of the quantities, of the samples that were taken last, shape (n, 4).
+    remaining_life : of the newest samples, by the lives that they have themselves [h], shape (n,).
+    medians : of the quantities, of the newest samples, shape (n, 4).
     """
 
     def __init__(self, scene: Scene, response: ResponseModel, known: Sequence[str] = ()):
@@ -83,7 +83,7 @@ class BandEstimator:
         """Take another time constant of the mean damage rate [s] from now on."""
         self._memory = remaining_life_memory
 
-    def take(self, block: np.ndarray) -> np.ndarray:
+    def estimate(self, block: np.ndarray) -> np.ndarray:
         """Return the bands of the samples that follow.
 
         Parameters

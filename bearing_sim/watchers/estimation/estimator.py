@@ -299,11 +299,11 @@ class Estimator:
         if math.isfinite(time) and math.isfinite(clearance):
             insort(self._waiting, (time, 1.0, clearance, standard_error))
 
-    def take(self, block: np.ndarray) -> bool:
+    def update(self, block: np.ndarray) -> bool:
         """Take samples in order of time (see `bearing_sim.model.sample`); return whether anything was learned."""
         if len(block) and not float(block["time"][0]) > self._course.newest - 1e-9:
             self.interrupt()
-        self._course.take(block)
+        self._course.append(block)
         self._close_before(float(block["time"][0]))  # before time passes: it says nothing about what has changed since
         self._watch_conditions(block)
         before = self._updates
@@ -371,7 +371,7 @@ class Estimator:
         departures, left = self._before.predict(SLIP, batch.conditions, batch.own)
         expected, deviation = float(departures.mean()), math.sqrt(float(departures.var()) + left)
         if deviation <= max(self._scene.thresholds.residual.tolerance, math.sqrt(batch.variance)):
-            self._residual.take(batch.time, float(batch.conditions[0]), batch.residual, expected)
+            self._residual.compare(batch.time, float(batch.conditions[0]), batch.residual, expected)
         if self._since_change is not None and not self._residual.side:
             self._return_to_before()
         if self._residual.is_quiet and self._since_change is None:
@@ -414,7 +414,7 @@ class Estimator:
 
     def _learn(self, posterior: Posterior, batch: Batch) -> None:
         wild = self._settings.noise.outliers, _WIDE
-        outcome = posterior.take(SLIP, batch.conditions, batch.own, batch.residual, batch.variance, wild, batch.count)
+        outcome = posterior.learn(SLIP, batch.conditions, batch.own, batch.residual, batch.variance, wild, batch.count)
         self._updates += 1
         self._wild.append(outcome.wild > 0.5)
 
@@ -447,7 +447,7 @@ class Estimator:
 
     def _learn_other(self, quantity: str, conditions: np.ndarray, own: float, departure: float, deviation: float) -> None:
         for posterior in self._posteriors():
-            posterior.take(quantity, conditions, own, departure, deviation**2, (self._settings.noise.outliers, 20.0 * deviation))
+            posterior.learn(quantity, conditions, own, departure, deviation**2, (self._settings.noise.outliers, 20.0 * deviation))
         self._updates += 1
 
     def prediction(self, sample: np.void) -> np.ndarray:

@@ -138,12 +138,12 @@ class LiveEstimation(Watcher):
 
     def hear(self, channel: str, time: float, value: float, standard_error: float) -> None:
         """Take a measurement, where it belongs to a prediction and has not taught anything in an earlier run."""
-        take = {MEASURED: self.measure, MEASURED_CLEARANCE: self.measure_clearance}.get(channel)
-        if take is None or not self.run.is_predicted or (self.run.acts_on_arrival and self.run.newest is None):
+        measure = {MEASURED: self.measure, MEASURED_CLEARANCE: self.measure_clearance}.get(channel)
+        if measure is None or not self.run.is_predicted or (self.run.acts_on_arrival and self.run.newest is None):
             return
         self._know_what_is_heard()
         if not self.run.watchers.memory.contained(self.run.stamp(time)):
-            take(time, value, standard_error)
+            measure(time, value, standard_error)
 
     def is_calm(self, block: np.ndarray) -> bool:
         """Return whether nothing that is measured acts from sample to sample."""
@@ -169,7 +169,7 @@ class LiveEstimation(Watcher):
         found = []
         self._know_what_is_heard()
         if self._estimator is not None:
-            if self._estimator.take(block):
+            if self._estimator.update(block):
                 self._use_posterior()
             now = float(block["time"][-1])
             if now >= self._next_estimates:
@@ -186,7 +186,7 @@ class LiveEstimation(Watcher):
             return []
         self._last_period = float(periods[-1])
         samples = block[chosen]
-        edges = self._bands.take(samples)
+        edges = self._bands.estimate(samples)
         if self.is_calibrated:
             numbers = np.concatenate([self._bands.medians[:, :, None], edges], axis=2)
             turning = np.isfinite(numbers[:, _SLIP]).all(axis=1) & turns(samples["shaft_speed"], self.scene.thresholds.slip_from_speed)

@@ -181,7 +181,7 @@ class Posterior:
         departures, left = self.predict(quantity, conditions, own)
         return departures + math.hypot(math.sqrt(left), systematic if self.rows else 0.0) * self._noise
 
-    def take(
+    def learn(
         self, quantity: str, conditions: np.ndarray, own: float, departure: float, variance: float, wild: tuple[float, float], readings: int = 1
     ) -> Outcome:
         """Learn from a measurement.

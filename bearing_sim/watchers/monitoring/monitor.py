@@ -187,7 +187,7 @@ class Monitor(Watcher):
         self._latest: dict[str, float] = {}
         self._calm: np.ndarray | None = None  # the block that is known to be calm
 
-    def take(self, block: np.ndarray) -> None:
+    def judge(self, block: np.ndarray) -> None:
         """Judge a block of samples by its worst values, at its last instant; the film by its last sample.
 
         Parameters
@@ -215,14 +215,14 @@ class Monitor(Watcher):
     def see(self, block: np.ndarray) -> Sequence[Record]:
         """Judge samples: those of each hundredth of a second together, or all in one go if none of them can raise or clear an alarm."""
         if len(block) > 1 and (block is self._calm or self.is_calm(block)):
-            self.take_calm(block[:-1])
+            self.judge_calm(block[:-1])
             block = block[-1:]
         for part in np.split(block, np.flatnonzero(np.diff(np.floor(block["time"] / _TOGETHER + 1e-6))) + 1) if len(block) > 1 else [block]:
-            self.take(part)
+            self.judge(part)
         return ()
 
     def is_calm(self, block: np.ndarray) -> bool:
-        """Return whether no sample of a block can raise or clear an alarm; `take_calm` then replaces `take` sample by sample."""
+        """Return whether no sample of a block can raise or clear an alarm; `judge_calm` then replaces `judge` sample by sample."""
         is_calm = self._has_no_alarm(block)
         self._calm = block if is_calm else None
         return is_calm
@@ -244,8 +244,8 @@ class Monitor(Watcher):
             values["lambda"] = self._films.least(block[turning]) / self._films.roughness
         return damage < 1.0 and all(self._watches[name].is_calm(numbers) for name, numbers in values.items())
 
-    def take_calm(self, block: np.ndarray) -> None:
-        """Take samples for which `is_calm` is true."""
+    def judge_calm(self, block: np.ndarray) -> None:
+        """Judge samples for which `is_calm` is true."""
         for time, life, damage in zip(block["time"].tolist(), block["modified_rating_life"].tolist(), block["damage"].tolist()):
             self._remaining_life(time, life, damage)
 

@@ -178,7 +178,7 @@ class Whitener:
         likely = max(found + (1.0 + 3.0 * found) / self._pairs, 0.0)
         return min(likely + math.sqrt(max(1.0 - likely * likely, 0.0) / self._pairs), _MOST_CORRELATED)
 
-    def take(self, value: float, learn: bool = True) -> float:
+    def whiten(self, value: float, learn: bool = True) -> float:
         """Return the standard normal number of a batch; NaN where there is nothing to compare it with.
 
         Parameters
@@ -256,7 +256,7 @@ class Cusum:
         """The larger sum."""
         return max(self.up, self.down)
 
-    def take(self, number: float) -> int:
+    def accumulate(self, number: float) -> int:
         """Add a number and return the side; NaN changes nothing."""
         if math.isnan(number):
             return self.side
@@ -352,8 +352,8 @@ class ResidualMonitor:
     def _threshold(self) -> float:
         return threshold_for(self._detection.false_alarm_time / self._detection.batch)
 
-    def take(self, now: float, shaft_speed: float, measured: float, predicted: float) -> None:
-        """Take a measurement.
+    def compare(self, now: float, shaft_speed: float, measured: float, predicted: float) -> None:
+        """Compare a measurement with its prediction.
 
         Parameters
         ----------
@@ -471,9 +471,9 @@ class ResidualMonitor:
         quiet = self.is_quiet  # a possible change must not become usual
         learned = self._whitener.count * self._detection.batch >= self._detection.learning
         self._newest_mean = self._batch_total / self._batch_count
-        number = self._whitener.take(self._newest_mean, learn=quiet)
+        number = self._whitener.whiten(self._newest_mean, learn=quiet)
         if learned:
-            self._cusum.take(number)
+            self._cusum.accumulate(number)
         self._batch_start, self._batch_count, self._batch_total = math.nan, 0, 0.0
 
 
@@ -531,7 +531,7 @@ class TemperatureResiduals(Watcher):
             self._next = now + self._interval * (1 - 1e-9)
             for name, monitor in self._monitors.items():
                 if not math.isnan(measured := float(sample[f"{name}_measured"])):
-                    monitor.take(now, speed, measured, float(sample[f"{name}_uncorrected"]))
+                    monitor.compare(now, speed, measured, float(sample[f"{name}_uncorrected"]))
         return ()
 
     def events(self, now: float) -> list[Event]:
@@ -565,8 +565,8 @@ class Course:
         """Time of the newest sample [s]; minus infinity before the first."""
         return self._times[-1] if self._times else -math.inf
 
-    def take(self, block: np.ndarray) -> None:
-        """Take samples in order of time (see `bearing_sim.model.sample`)."""
+    def append(self, block: np.ndarray) -> None:
+        """Append samples in order of time (see `bearing_sim.model.sample`)."""
         rows = list(zip(*(block[name].tolist() for name in self._names)))
         self._times += [row[0] for row in rows]
         self._rows += [row[1:] for row in rows]
@@ -646,7 +646,7 @@ class SlipResidual(Watcher):
         """Take samples in order of time (see `bearing_sim.model.sample`) and return the comparisons that they complete."""
         if self.run.acts_on_arrival:
             return []
-        self._course.take(block)
+        self._course.append(block)
         return self._due()
 
     def events(self, now: float) -> list[Event]:
@@ -669,5 +669,5 @@ class SlipResidual(Watcher):
     ) -> Measurement:
         """Return a measurement compared with a prediction at an instant ``sampled`` [s]."""
         measured = 1.0 - cage_speed / ideal if ideal else math.nan
-        self.monitor.take(sampled, shaft_speed, measured, predicted)
+        self.monitor.compare(sampled, shaft_speed, measured, predicted)
         return Measurement(time, cage_speed, measured - predicted, standard_error)

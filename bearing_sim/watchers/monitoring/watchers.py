@@ -15,13 +15,16 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.messages.bands import Bands
-from bearing_sim.messages.events import Event, Level, Record
+from bearing_sim.messages.events import Event, Level, MeasuredClearance, Record
+from bearing_sim.messages.topics import MEASURED_CLEARANCE
 from bearing_sim.model.sample import joined
 from bearing_sim.model.validity import Exceedance
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.scene.watchers import place_of
 
 NOTHING: Mapping = MappingProxyType({})
+MEMORY = "state"
+"""Name of the watcher that remembers the bearing."""
 
 
 class Run:
@@ -235,6 +238,7 @@ class Kind(NamedTuple):
     is_asked : whether a scene asks for it in a run; otherwise it is there only where the run is given it, or its resource.
     subject, otherwise : a subject of diagnostics, and what that says where the run does without the watcher.
     record : name of its metadata record in recordings, from which it is made again.
+    services : of the node that it answers, by name: what each does, and what is said where there is nothing to do it with.
     absent : event of a run whose scene asks for it, and whose resource (`Watcher.resource`) is not there; without, it needs none.
     """
 
@@ -244,6 +248,7 @@ class Kind(NamedTuple):
     otherwise: str = ""
     absent: Event | None = None
     record: str = ""
+    services: Mapping[str, tuple[str, str]] = NOTHING
 
 
 _NO_RESPONSE = Event(
@@ -265,6 +270,12 @@ BUILT_IN = {
         "estimate",
         "the scene does not ask for it",
         _NO_RESPONSE,
+        services={
+            "accept_change": (
+                "Take the machine as it is since a change that the calibration has found for the new normal.",
+                "there is no change to accept: no calibration.change is reported",
+            )
+        },
     ),
     "vibration": Kind(
         "bearing_sim.watchers.vibration.meter:CageSpeedMeter",
@@ -272,11 +283,23 @@ BUILT_IN = {
         "vibration",
         "not listened to: the scene does not ask for it, or the run has simulated time",
     ),
-    "state": Kind(
-        "bearing_sim.watchers.stored_state.keeper:StateKeeper", lambda scene, run: False, "state", "nothing is remembered", record="bearing_sim_state"
+    MEMORY: Kind(
+        "bearing_sim.watchers.stored_state.keeper:StateKeeper",
+        lambda scene, run: False,
+        "state",
+        "nothing is remembered",
+        record="bearing_sim_state",
+        services={
+            "get_stored_state": (
+                "Answer with the stored state of the bearing as JSON: totals, calibration, temperatures.",
+                "nothing is remembered: set serial or state_file, and configure the node",
+            )
+        },
     ),
 }
 """By name, under which what they have learned is remembered."""
+SERVICES = {name: said for kind in BUILT_IN.values() for name, said in kind.services.items()}
+"""Those of all, as `Kind.services`."""
 
 
 def kind_of(name: str) -> type[Watcher]:
@@ -412,8 +435,9 @@ class Watchers:
         self._all("begin")
 
     def hear(self, channel: str, time: float, value, standard_error: float = math.nan) -> list[Record]:
-        """Pass a measurement on and return what sinks are to keep."""
-        return [record for _, records in self._each(time, "hear", channel, time, value, standard_error) for record in records]
+        """Pass a measurement on and return what sinks are to keep: a clearance itself, and what the watchers make of it."""
+        own = [MeasuredClearance(time, value, standard_error)] if channel == MEASURED_CLEARANCE else []
+        return own + [record for _, records in self._each(time, "hear", channel, time, value, standard_error) for record in records]
 
     def correct(self, block: np.ndarray, seconds: np.ndarray) -> None:
         """Let samples be changed before anybody sees or keeps them."""
@@ -513,9 +537,9 @@ class Watchers:
         """Return what they have measured themselves since the last call."""
         return [reading for _, readings in self._each(0.0, "measured") for reading in readings]
 
-    def serve(self, service: str) -> tuple[bool, str] | None:
-        """Return the answer of the one whose service it is; None where the run has none."""
-        return next((answer for _, answer in self._each(0.0, "serve", service)), None)
+    def serve(self, service: str) -> tuple[bool, str]:
+        """Return the answer of the one whose service it is: whether it was done, and what to say."""
+        return next((answer for _, answer in self._each(0.0, "serve", service)), (False, SERVICES[service][1]))
 
     def close(self) -> None:
         """End all."""

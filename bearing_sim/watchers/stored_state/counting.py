@@ -26,7 +26,7 @@ class LifeCounter:
         """Begin another run, whose damage begins at 0, after ``used`` of the life."""
         self._before, self._run, self._twice = used, 0.0, 0.0
 
-    def take(self, block: np.ndarray, times_ns: np.ndarray, seconds: np.ndarray) -> np.ndarray | None:
+    def count(self, block: np.ndarray, times_ns: np.ndarray, seconds: np.ndarray) -> np.ndarray | None:
         """Write the life used into samples, and return the fraction of their time that counts, shape (n,); None where all of it does.
 
         Parameters

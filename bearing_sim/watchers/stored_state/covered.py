@@ -57,7 +57,7 @@ class Covered:
         """Return independent stretches with the same times."""
         return Covered(self.stretches)
 
-    def add(self, begin: int, end: int) -> None:
+    def cover(self, begin: int, end: int) -> None:
         """Cover the time from ``begin`` to ``end`` [ns since the epoch] as well; nothing if it is empty."""
         if end <= begin:
             return

@@ -16,7 +16,7 @@ import numpy as np
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES, joined
 from bearing_sim.scene.scene import Scene, Thresholds
-from bearing_sim.watchers.monitoring.watchers import BUILT_IN, Memory, Watcher
+from bearing_sim.watchers.monitoring.watchers import BUILT_IN, MEMORY, Memory, Watcher
 from bearing_sim.watchers.stored_state.counting import LifeCounter
 from bearing_sim.watchers.stored_state.covered import Covered
 from bearing_sim.watchers.stored_state.history import history_paths, move_days
@@ -24,7 +24,7 @@ from bearing_sim.watchers.stored_state.state import StoredState, Thermal, calibr
 from bearing_sim.watchers.stored_state.state_file import News, StateError, StateFile, checked_serial, default_path, parsed, serialised
 from bearing_sim.watchers.stored_state.totals import criteria
 
-RECORD = BUILT_IN["state"].record
+RECORD = BUILT_IN[MEMORY].record
 """Name of a recording's metadata record with the state that it began with: state, as in a state file, and counts."""
 
 WRITE_EVERY = 2.0
@@ -76,7 +76,7 @@ class RecordedState(_StateMemory):
 
     def correct(self, block: np.ndarray, seconds: np.ndarray) -> None:
         """Write the life used into samples."""
-        self._counter.take(block, _times_ns(block, self.run.start_ns), seconds)
+        self._counter.count(block, _times_ns(block, self.run.start_ns), seconds)
 
     def continue_from(self, life_used: float) -> None:
         """Count from what the recorded run had used where it was reset."""
@@ -131,7 +131,7 @@ class StateKeeper(_StateMemory):
         try:
             state, news = self._file.read()
             self._state = new_state(scene, serial, now_ns()) if state is None else state
-            self._pending: list[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]] = []  # arguments of `StoredState.take`
+            self._pending: list[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]] = []  # arguments of `StoredState.accumulate`
             self._require_same(scene, serial)
         except Exception:
             self._file.close()
@@ -304,7 +304,7 @@ class StateKeeper(_StateMemory):
         """
         times_ns = _times_ns(block, start_ns)
         self._note_change()
-        counted = self._counter.take(block, times_ns, seconds)
+        counted = self._counter.count(block, times_ns, seconds)
         self._pending.append((block, times_ns, seconds, counted))
         if len(self._pending) >= _TOGETHER:
             self._take_pending()
@@ -316,7 +316,7 @@ class StateKeeper(_StateMemory):
             blocks, times_ns, seconds, counted = zip(*pending)
             all_count = all(each is None for each in counted)
             fractions = None if all_count else np.concatenate([np.ones(len(b)) if each is None else each for b, each in zip(blocks, counted)])
-            self._state.take(joined(blocks), np.concatenate(times_ns), np.concatenate(seconds), self._by, fractions)
+            self._state.accumulate(joined(blocks), np.concatenate(times_ns), np.concatenate(seconds), self._by, fractions)
 
     def count_live(self, block: np.ndarray, starts_ns: tuple[int, ...], interval: float) -> None:
         """Count samples of a bearing that runs now.
@@ -332,10 +332,10 @@ class StateKeeper(_StateMemory):
         self._last_time = float(block["time"][-1])
         seconds = np.where(steps > 1.5 * interval, interval, np.maximum(steps, 0.0))
         times_ns = _times_ns(block, starts_ns[0])
-        self.state.take(block, times_ns, seconds, self._by)
+        self.state.accumulate(block, times_ns, seconds, self._by)
         for other in starts_ns[1:]:
             for begin, end in zip((times_ns - np.rint(1e9 * seconds).astype(np.int64)).tolist(), times_ns.tolist()):
-                self.state.covered.add(begin - starts_ns[0] + other, end - starts_ns[0] + other)
+                self.state.covered.cover(begin - starts_ns[0] + other, end - starts_ns[0] + other)
 
     def _note_change(self) -> None:
         self._has_changed = True

@@ -119,7 +119,7 @@ class StoredState:
     written_ns: Instant = 0
     retired_ns: Instant | None = None
 
-    def take(self, block: np.ndarray, times_ns: np.ndarray, seconds: np.ndarray, by: Criteria, counted: np.ndarray | None = None) -> None:
+    def accumulate(self, block: np.ndarray, times_ns: np.ndarray, seconds: np.ndarray, by: Criteria, counted: np.ndarray | None = None) -> None:
         """Count samples.
 
         Parameters
@@ -155,7 +155,7 @@ class StoredState:
             return
         cuts = [0, *(np.flatnonzero(begins[1:] - times[:-1] > _SAME_STRETCH) + 1).tolist(), len(times)]
         for first, after in zip(cuts, cuts[1:]):
-            self.covered.add(int(begins[first]), int(times[after - 1]))
+            self.covered.cover(int(begins[first]), int(times[after - 1]))
 
     def note_estimates(self, time_ns: int, fields: Mapping[str, tuple[float, float, float]]) -> None:
         """Take the calibrated fields as they are at an instant [ns since the epoch], unless the newest entry is of the same hour.

@@ -89,7 +89,7 @@ class CageSpeedMeter(Watcher):
         run = self.run
         slips = [float(run.newest_bands.numbers[-1, run.newest_bands.names.index("cage_slip"), 2])] if run.newest_bands is not None else []
         slips += [float(run.newest["cage_slip"])] if run.newest is not None else []
-        self._news += self.take(block, time, run.shaft_speed, max(filter(math.isfinite, slips), default=0.0))
+        self._news += self.receive(block, time, run.shaft_speed, max(filter(math.isfinite, slips), default=0.0))
 
     def news(self, now: float) -> list[Event]:
         """Return what was wrong with blocks since the last call."""
@@ -100,8 +100,8 @@ class CageSpeedMeter(Watcher):
         """Return the cage speeds found since the last call, with their standard errors."""
         return [(MEASURED, reading) for reading in self.readings(self.run.shaft_speed)]
 
-    def take(self, block: Block, now: float, shaft_speed: float, slip: float = 0.0) -> list[Event]:
-        """Take a block that arrives at run time ``now`` [s]; return what is wrong with it or with those before.
+    def receive(self, block: Block, now: float, shaft_speed: float, slip: float = 0.0) -> list[Event]:
+        """Receive a block at run time ``now`` [s]; return what is wrong with it or with those before.
 
         Parameters
         ----------

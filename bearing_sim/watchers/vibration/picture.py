@@ -12,7 +12,7 @@ _PER_TURN = 128
 _NEAR = 0.02  # of an order, within which the peak of a line is looked for
 
 
-def draw(path: Path, vibration: Vibration, geometry: Geometry, found: Analysis) -> None:
+def plot_vibration(path: Path, vibration: Vibration, geometry: Geometry, found: Analysis) -> None:
     """Draw the envelope spectrum of a record; of the whole of its band where no line was found."""
     import matplotlib.figure
     from matplotlib.transforms import ScaledTranslation
