@@ -88,6 +88,12 @@ def bore_compliance(n, radius: float, modulus: float, poisson_ratio: float, outs
     return np.array([_one_bore_compliance(int(k), radius, modulus, poisson_ratio, radius / outside) for k in np.atleast_1d(n)])
 
 
+def bed_compliance(n, stiffness: float):
+    """Return h_n of a local bed: the same for all waves, 1 over its stiffness [N/m^3]; 0 for n = 1."""
+    n = np.asarray(n)
+    return np.where(n == 1, 0.0, 1.0 / stiffness)
+
+
 def _one_bore_compliance(n, radius, modulus, nu, ratio):
     scale = radius * (1.0 + nu) / modulus
     if n == 1:
