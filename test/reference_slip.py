@@ -98,7 +98,10 @@ class Reference:
             inner, _ = balance(micrometres * 1e-6)
             return direction @ inner - [self.load, 0.0]
 
-        found = root(residual, self.ring * 1e6, tol=1e-11)
+        for further in (0.0, 10.0, 30.0, 100.0):  # the hybrid method may stop where rollers let go: then it begins where they are pressed
+            found = root(residual, self.ring * 1e6 + [further, 0.0], tol=1e-11)
+            if np.abs(residual(found.x)).max() < 1e-5:
+                break
         assert np.abs(residual(found.x)).max() < 1e-5, found.message
         self.ring = found.x * 1e-6
         inner, outer_penetration = balance(self.ring)

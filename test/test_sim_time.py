@@ -258,7 +258,7 @@ def test_nothing_is_known_beyond_the_clock_though_messages_are_stamped_later():
     known = OnlineInputProfile(RATE, SCENE.accepted_inputs, 390.0)
     for channel, value in (("shaft_speed", 100.0), ("radial_load", (800.0, 0.0))):
         for stamp in (100, 1000):
-            known.add(channel, stamp, value)
+            known.add_message(channel, stamp, value)
     assert [known.known_until(clock, clock, []) for clock in (500, 1000, 2000)] == [500, 1000, 1000]
 
 
