@@ -13,9 +13,7 @@ RADIUS, THICKNESS, WIDTH = 35.8e-3, 3.4e-3, 10e-3
 
 
 def section(thickness=THICKNESS, width=WIDTH, shear=True):
-    return RingSection(
-        RADIUS, width * thickness**3 / 12, width * thickness, MODULUS, 0.5 * MODULUS / (1 + NU) if shear else math.inf, 7850.0
-    )
+    return RingSection(RADIUS, width * thickness**3 / 12, width * thickness, MODULUS, 0.5 * MODULUS / (1 + NU) if shear else math.inf, 7850.0)
 
 
 def finite_elements(n, inside, outside, plane, pressed):

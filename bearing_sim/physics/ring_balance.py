@@ -18,10 +18,10 @@ changes, a solution is one product with the transformed matrix.  Where signs are
 first reaches zero changes sides: the parametric method of R. W. Cottle (Monotone solutions of the parametric linear complementarity problem,
 Mathematical Programming 3, 1972), which ends after finitely many changes, as many as there are wrong signs or a few more.
 
-**Rollers.** Unknown are the forces q_j that press the ring outwards and the position of the inner ring from the housing's centre, y:
-q_j = Q_j(squeeze_j - w_j(q) - e_j.x(q) + e_j.y), sum of the inner loads = load.  These are the gradient of a potential of w + x.e and y that is convex.  A
-correction solves the same equations with rollers that are springs of the stiffness they have now, and still let go and close (one problem of
-complementarity for rollers and seat); where that serves, the compliance of a moment ago and the rollers that carry now are enough.  A correction is
+**Rollers.** Unknown are the forces q_j that press the ring outwards and the position y of the inner ring from the housing's centre:
+q_j = Q_j(squeeze_j - w_j(q) - e_j.x(q) + e_j.y), sum of the inner loads = load.  These are the gradient of a convex potential of w + x.e and y.
+A correction solves the same equations with rollers that are springs of the stiffness they have now, and still let go and close: one problem of
+complementarity for rollers and seat.  Where that serves, the compliance of a moment ago and the rollers that carry now are enough.  A correction is
 halved until what is left of the gradient does not push back by more than half of what it pushed forward.
 """
 
@@ -254,7 +254,7 @@ def _settle(allowed, tableau, sides, values, offsets):
     values : gaps of what is open [m], forces of what touches [N]; changed.
     offsets : scratch.
     """
-    size, wrong, level = tableau.shape[0], 0, 1.0
+    size, wrong = tableau.shape[0], 0
     for i in range(size):
         offsets[i] = 0.0
         if sides[i] < 2 and values[i] < -(allowed if sides[i] == 1 else _WRONG_GAP):
@@ -273,7 +273,6 @@ def _settle(allowed, tableau, sides, values, offsets):
                     first, highest = i, reached
         if first < 0:
             return change
-        level = min(highest, level)
         inverse = 1.0 / tableau[first, first]
         value, offset = values[first] * inverse, offsets[first] * inverse
         for i in range(size):

@@ -2,8 +2,8 @@
 """Pre-deformation machining of a lobed raceway (Deng 2017, eq. 1, Fig. 1 to 3): press the blank, grind it round, release it.
 
 At the pressed arcs the raceway springs back outwards and forms high points.  Deng computes the deformation by finite elements;
-this module uses a thin elastic ring and the Fourier series of the pressure: the harmonic q_n bends the ring inwards by
-w_n = q_n b R^4/(E I (n^2 - 1)^2), the mean pressure shrinks it by q_0 R^2/(E t).  An equivalent thickness accounts for the ribs.
+this module uses a thin elastic ring (`bearing_sim.physics.outer_ring`, without shear) and the Fourier series of the pressure: the harmonic q_n bends
+the ring inwards by w_n = q_n b R^4/(E I (n^2 - 1)^2), the mean pressure shrinks it by q_0 R^2/(E t).  An equivalent thickness accounts for the ribs.
 """
 
 import math
@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.physics import outer_ring
 from bearing_sim.scene.display import number
 from bearing_sim.sweep.pictures import new_figure, plain_numbers, save
 
@@ -97,10 +98,13 @@ def deflection(azimuths, section: RingSection, harmonics: np.ndarray, pressed_wi
     harmonics : of the pressure, see `pressure_harmonics`; the first is ignored: it moves the ring as a whole.
     pressed_width : [m]; None: the ring's width.
     """
-    width = section.width if pressed_width is None else pressed_width
+    force = math.pi * section.mean_radius * (section.width if pressed_width is None else pressed_width)  # by a wave of pressure
+    ring = outer_ring.RingSection(
+        section.mean_radius, section.second_moment, section.width * section.thickness, section.modulus, math.inf, density=0.0
+    )
     n = np.arange(2, len(harmonics))
-    bent = harmonics[2:] * width * section.mean_radius**4 / (section.modulus * section.second_moment * (n**2 - 1.0) ** 2)
-    shrunk = harmonics[0].real * width * section.mean_radius**2 / (section.modulus * section.width * section.thickness)
+    bent = force * harmonics[2:] * outer_ring.ring_compliance(n, ring)
+    shrunk = 2.0 * force * harmonics[0].real * float(outer_ring.ring_compliance(0, ring))
     return shrunk + (np.exp(1j * np.multiply.outer(azimuths, n)) @ bent).real
 
 
