@@ -357,11 +357,11 @@ class Estimator:
             return
         self._readings = []
         residuals, errors = (np.array([getattr(each, name) for each in readings]) for name in ("residual", "error"))
-        told = np.isfinite(errors)
-        if told.all():
+        stated = np.isfinite(errors)
+        if stated.all():
             mean, variance = _weighted_mean(residuals, errors)
         else:
-            mean, variance = self._scatter.mean(residuals[~told])
+            mean, variance = self._scatter.mean(residuals[~stated])
         conditions = np.mean([each.conditions for each in readings], axis=0)
         batch = Batch(readings[-1].time, conditions, float(np.mean([each.own for each in readings])), mean, variance, len(readings))
         self._judge(batch)
@@ -530,7 +530,7 @@ def explained(causes: Sequence[Cause], missing: Mapping[str, str]) -> str:
     rivals = [each for each in others if each.probability > first.probability / 3.0]
     text = f"likeliest cause: {first.text} (probability {100 * first.probability:.0f} %)"
     if rivals:
-        text += "; not told apart from it: " + ", ".join(f"{each.text} ({100 * each.probability:.0f} %)" for each in rivals)
+        text += "; also possible: " + ", ".join(f"{each.text} ({100 * each.probability:.0f} %)" for each in rivals)
     if missing:
         wanted = ", ".join(f"{group} (give uncertainty.{field})" for group, field in missing.items())
         text += f"; cannot be named without a range: {wanted}"

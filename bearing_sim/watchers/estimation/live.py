@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What a run says about how sure it is: bands of its results, and what measurements teach about its scene, for topics, recordings and diagnostics.
+"""Live uncertainty bands and calibration results, for topics, recordings and diagnostics.
 
 Samples and measurements in, bands, events and numbers out; all times are those of the samples.  A run has it where its scene asks for it (block
 ``estimation``).
