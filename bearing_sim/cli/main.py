@@ -145,7 +145,7 @@ class LazyGroup(click.Group):
 
     def resolve_command(self, context, args):
         """Return the command that is called; an unknown one is refused with the nearest name."""
-        if self.get_command(context, args[0]) is None and not args[0].startswith("-"):
+        if self.get_command(context, args[0]) is None:
             from bearing_sim.scene.errors import did_you_mean
 
             raise UsageError(f"no command {args[0]!r}{did_you_mean(args[0], self._entries)}; see {context.command_path} --help")

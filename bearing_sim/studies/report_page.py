@@ -24,7 +24,7 @@ from bearing_sim.model.plausibility import left_out, plausibility
 from bearing_sim.model.sample import OBSERVABLES, joined
 from bearing_sim.model.turning import DIVIDED, slip_statistics, stands_text, turns, use_of
 from bearing_sim.model.validity import counted
-from bearing_sim.recording.bag import ACTIVE, RecordingError
+from bearing_sim.recording.bag import ACTIVE
 from bearing_sim.recording.reader import Recording
 from bearing_sim.scene.display import hours, number
 from bearing_sim.scene.loader import SceneError, scene_from_yaml
@@ -124,24 +124,20 @@ def _folder_page(folder: Path, tell: _Tell) -> str:
 
 def _part(path: Path, tell: _Tell) -> _Part:
     """Return the part of a page on one result."""
-    if path.is_dir() or path.suffix in _RECORDINGS:
-        try:
+    kept = path.with_suffix(".parquet")
+    try:
+        if path.is_dir() or path.suffix in _RECORDINGS:
             recording = Recording(path, allow_partial=True)
             part = _recording_part(recording)
             tell(recording.tally, path)
             return part
-        except RecordingError as error:
-            raise NoResults(str(error)) from None
-    if path.suffix not in _TABLES:
-        raise NoResults(f"{path}: expected a table ({', '.join(_TABLES)}), a recording (.mcap), or a folder")
-    kept = path.with_suffix(".parquet")
-    try:
+        if path.suffix not in _TABLES:
+            raise NoResults(f"{path}: expected a table ({', '.join(_TABLES)}), a recording (.mcap), or a folder")
         table = read_any_table(path)
         with written_by_us(path):
             return _design_part(kept, studied.read_design(kept)) if table.about.get("kind") == "design" else _table_part(path, table)
     except (ValueError, FileNotFoundError) as error:
-        reason = str(error)
-        raise NoResults(reason if path.stem in reason else f"{path}: {reason}") from None
+        raise NoResults(str(error)) from None
 
 
 def _picture(title: str, plot: Callable, *arguments, caption: str = "") -> str:
