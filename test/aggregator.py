@@ -48,7 +48,7 @@ class GenericAnalyzer:
         }
         return any(fits[key](value) for key, values in self._wanted.items() for value in values)
 
-    def take(self, name, item):
+    def receive(self, name, item):
         self._items[name] = item
 
     def report(self, now):
@@ -86,10 +86,10 @@ class AnalyzerGroup:
     def wants(self, name):
         return any(analyzer.wants(name) for analyzer in self._analyzers)
 
-    def take(self, name, item):
+    def receive(self, name, item):
         for analyzer in self._analyzers:
             if analyzer.wants(name):
-                analyzer.take(name, item)
+                analyzer.receive(name, item)
 
     def report(self, now):
         """Return levels by path, that of the group first."""
@@ -117,11 +117,11 @@ class Aggregator:
         self._group = AnalyzerGroup(self.path, parameters)
         self._other = GenericAnalyzer(f"{self.path}/Other", discard_stale=True)
 
-    def take(self, now, statuses):
-        """Take a diagnostic_msgs/DiagnosticArray at a time [s]: (name, level, message) of each status, in its order."""
+    def receive(self, now, statuses):
+        """Receive a diagnostic_msgs/DiagnosticArray at a time [s]: (name, level, message) of each status, in its order."""
         for name, level, message in statuses:
-            taker = self._group if self._group.wants(name) else self._other
-            taker.take(name, Item(int(level), message, now))
+            receiver = self._group if self._group.wants(name) else self._other
+            receiver.receive(name, Item(int(level), message, now))
 
     def report(self, now):
         """Return levels by path at a time [s], that of the whole first."""

@@ -88,7 +88,7 @@ def test_a_new_scene_loads_and_names_every_choice_that_was_made(tmp_path, lubric
     assert all(f"#   {each.field}: " in text for each in scene.bearing.estimated) and text.count("Assumption") >= 4
     assert f"bearing-sim run {out}" in told and "estimated" in told
     refused = called("new", "NU 210", *lubricant, "--speed", "1rpm", "--load", "1N", "-o", out, code=2)
-    assert "exists; --force replaces it" in refused.output
+    assert "exists; use --force to replace it" in refused.output
     assert out.read_text() == text
 
 

@@ -39,7 +39,7 @@ def test_a_point_is_speed_load_weight_and_perhaps_oil_temperature_with_units(tex
     ("text", "reported"),
     [
         ("45000 rpm, 800 N", "2 parts; expected speed, load, weight"),
-        ("45000, 800 N, 1", "45000 rpm for turns a minute"),
+        ("45000, 800 N, 1", r"45000 rpm \(turns per minute\)"),
         ("800 N, 45000 rpm, 1", "shaft_speed"),
         ("45000 rpm, 800 mm, 1", "radial_load: .* wrong dimension"),
         ("45000 rpm, 800 N, 0", "more than 0"),

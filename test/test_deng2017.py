@@ -200,7 +200,7 @@ def test_contours_of_the_machining_model_grow_as_the_arc_is_turned(folder):
 
 def test_a_second_call_computes_nothing_and_says_the_same(folder, about, tmp_path, monkeypatch):
     shutil.copy(folder / "study.journal", tmp_path)
-    monkeypatch.setattr("deng2017.run.draw_study", lambda *all_of_it: [])
+    monkeypatch.setattr("deng2017.run.plot_study", lambda *all_of_it: [])
     result = CliRunner().invoke(deng2017, ["--quick", "-o", str(tmp_path), "--json"], catch_exceptions=False)
     again = json.loads(result.stdout)
     assert again["computed"] == 0 and again["claims"] == about["claims"]

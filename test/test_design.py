@@ -109,7 +109,7 @@ def test_a_region_thinner_than_the_steps_of_the_grid_is_found():
 def test_a_region_that_goes_on_beyond_the_range_says_so_and_raceways_that_cannot_be_end_it():
     inside = found(radii="34.863mm:34.864mm:2", d_values="0.1mm")
     assert {(each.below_by, each.above_by) for each in inside.borders} == {(END_OF_MAP, END_OF_MAP)}
-    assert "R_low = 34.86300 and 34.86400 mm, where raceways meet both limits: the region goes on beyond it" in inside.open_ends(NOMINAL)
+    assert "R_low = 34.86300 and 34.86400 mm, where raceways meet both limits: the region continues beyond it" in inside.open_ends(NOMINAL)
     refused = found(radii="34.7mm,34.863mm", d_values="0.1mm")
     assert [row["status"] for row in refused.grid.rows] == ["refused", "ok"]
     assert border_of(refused, NOMINAL, 0.1).below_by in ("life", "no result")

@@ -48,17 +48,17 @@ KINDS = kinds_of_events()
 def test_the_check_follows_the_published_rules_of_an_analyzer(settings, statuses, expected):
     analyzer = {"type": "diagnostic_aggregator/GenericAnalyzer", "path": "x", "contains": ["a", "b"], **settings}
     aggregator = Aggregator({"path": "top", "x": analyzer})
-    aggregator.take(0.0, [(name, level, "") for name, level in statuses.items()])
+    aggregator.receive(0.0, [(name, level, "") for name, level in statuses.items()])
     assert aggregator.report(1.0)["/top/x"] == aggregator.report(1.0)["/top"] == expected
 
 
 def test_the_check_forgets_nothing_and_sees_a_silent_name_as_stale_and_so_as_an_error_of_its_group():
     """What a report of events alone led to: after the cure the group stays at ERROR, and of two statuses of a name the last one wins."""
     aggregator = Aggregator({"path": "top", "x": {"type": "diagnostic_aggregator/GenericAnalyzer", "path": "x", "contains": ["n: "]}})
-    aggregator.take(0.0, [("n: condition", WARN, ""), ("n: input.stale", ERROR, "speed"), ("n: input.stale", WARN, "load")])
+    aggregator.receive(0.0, [("n: condition", WARN, ""), ("n: input.stale", ERROR, "speed"), ("n: input.stale", WARN, "load")])
     assert aggregator.report(0.0)["/top"] == WARN
     for second in range(1, 7):
-        aggregator.take(float(second), [("n: condition", OK, "")])
+        aggregator.receive(float(second), [("n: condition", OK, "")])
     assert aggregator.report(6.5)["/top/x/n: input.stale"] == STALE and aggregator.report(6.5)["/top"] == ERROR
 
 
@@ -91,7 +91,7 @@ def test_each_fault_shows_in_its_subject_alone_and_its_cure_is_seen_within_a_rep
     aggregator = Aggregator(ANALYZERS)
     for second in range(30):
         holding = [event] if 10 <= second < 20 else []
-        aggregator.take(float(second), statuses_of(report(second, holding, {}, "bearing_node")))
+        aggregator.receive(float(second), statuses_of(report(second, holding, {}, "bearing_node")))
         levels = aggregator.report(second + 0.9)
         assert levels["/Bearings"] == (level if holding else OK)
         wrong = {path.rpartition(": ")[2] for path, found in levels.items() if found and ": " in path}
@@ -103,9 +103,9 @@ def test_each_fault_shows_in_its_subject_alone_and_its_cure_is_seen_within_a_rep
 def test_an_expected_number_of_items_is_the_number_of_subjects_of_the_bearings():
     counted = {**ANALYZERS, "inputs": {**ANALYZERS["inputs"], "num_items": 9}}
     aggregator = Aggregator(counted)
-    aggregator.take(0.0, statuses_of(report(0, component="bearing_node/front")))
+    aggregator.receive(0.0, statuses_of(report(0, component="bearing_node/front")))
     assert aggregator.report(0.0)["/Bearings/Inputs"] == OK
-    aggregator.take(0.0, statuses_of(report(0, component="bearing_node/rear")))
+    aggregator.receive(0.0, statuses_of(report(0, component="bearing_node/rear")))
     assert aggregator.report(0.0)["/Bearings/Inputs"] == ERROR, "a second bearing has as many again"
 
 
@@ -126,14 +126,14 @@ def test_subjects_that_a_run_does_without_share_one_status_that_is_always_there_
 def test_without_anything_optional_no_group_of_the_example_is_empty_which_would_be_stale():
     aggregator = Aggregator(ANALYZERS)
     condition = not_running(Event(0.0, Level.OK, "run.inactive", "", "inactive"))
-    aggregator.take(0.0, statuses_of(report(0, condition.events, {}, "bearing_node", "", {}, condition.otherwise, condition.unused)))
+    aggregator.receive(0.0, statuses_of(report(0, condition.events, {}, "bearing_node", "", {}, condition.otherwise, condition.unused)))
     assert set(aggregator.report(0.0).values()) == {OK} and "/Bearings/Other" not in aggregator.report(0.0)
 
 
 @pytest.mark.parametrize("node", ["bearing_node", "ship/bearing_node", "bearing_node/front", "front/bearing_front", "plant/hall/bearing_node/rear"])
 def test_the_example_takes_all_statuses_of_a_node_whatever_its_namespace_and_none_of_another(node):
     aggregator = Aggregator(ANALYZERS)
-    aggregator.take(0.0, [*statuses_of(report(0, component=node)), ("motor: slip", WARN, ""), ("camera: life", WARN, "")])
+    aggregator.receive(0.0, [*statuses_of(report(0, component=node)), ("motor: slip", WARN, ""), ("camera: life", WARN, "")])
     levels = aggregator.report(0.0)
     assert sorted(path for path in levels if path.startswith("/Bearings/Other/")) == ["/Bearings/Other/camera: life", "/Bearings/Other/motor: slip"]
     assert len([path for path in levels if ": " in path and "Other" not in path]) == len(NAMES)

@@ -137,7 +137,7 @@ def test_an_absent_field_is_told_with_those_there_are(tmp_path):
 
 
 def test_a_log_without_the_usual_topics_says_how_the_numbers_in_it_are_named(tmp_path):
-    with pytest.raises(InputLogError, match=r"no /shaft_speed; no /radial_load; .* named by its field, such as /servo/state.velocity\[0\]"):
+    with pytest.raises(InputLogError, match=r"no /shaft_speed; no /radial_load; .* by its field, such as /servo/state.velocity\[0\]"):
         read_input_log(servo_mcap(tmp_path / "log.mcap"))
 
 

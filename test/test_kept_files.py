@@ -185,7 +185,7 @@ def test_what_cannot_be_used_is_said_once_with_its_file_and_reason(kind, spoil, 
     spoil(path)
     assert read() is read() is None
     (said,) = caplog.messages
-    assert said.startswith(f"{path} {reason}") and said.endswith("; it is not used, and built anew")
+    assert said.startswith(f"{path} {reason}") and said.endswith("; it is ignored and built again")
 
 
 def test_an_absent_file_is_nothing_to_speak_of(tmp_path, caplog):

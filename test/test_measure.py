@@ -76,7 +76,7 @@ def test_a_topic_that_there_is_not_is_named_with_those_that_there_are():
 
 
 def test_a_node_that_does_not_begin_is_told_in_its_own_words(tmp_path):
-    silent = SimpleNamespace(is_matched=False, received=[], take=lambda: None)
+    silent = SimpleNamespace(is_matched=False, received=[], receive=lambda: None)
     with open(tmp_path / "log", "w+b") as log:
         node = subprocess.Popen([sys.executable, "-c", "raise SystemExit('bearing_node: no such scene')"], stdout=log, stderr=subprocess.STDOUT)
         with pytest.raises(RuntimeError, match="did not start; its log:\nbearing_node: no such scene"):

@@ -49,7 +49,7 @@ class Watcher(Client):
 
     def _hear_diagnostics(self, report):
         super()._hear_diagnostics(report)
-        self._aggregator.take(time.monotonic(), statuses_of(report))
+        self._aggregator.receive(time.monotonic(), statuses_of(report))
 
     def hear(self):
         super().hear()

@@ -100,7 +100,7 @@ def test_an_output_is_refused_where_there_is_anything_but_a_file_of_its_own(name
         path.unlink()
     if not isinstance(option.type, CONTINUED):
         target.write_bytes(OLD)
-        refused("exists; --force replaces it")
+        refused("exists; use --force to replace it")
     arguments[-1] = str(tmp_path / "absent" / target.name)
     refused("there is no folder")
 
@@ -215,7 +215,7 @@ def test_a_study_completes_its_own_table_and_replaces_no_other(tmp_path):
 
     ours, others = study_digest("sweep", [0.5, 0.8]), study_digest("sweep", [0.5, 0.9])
     (tmp_path / "s.csv").write_bytes(OLD)
-    with pytest.raises(RefusedOutput, match=r"s\.csv exists and was not written by this study; --force replaces it"):
+    with pytest.raises(RefusedOutput, match=r"s\.csv exists and was not written by this study; use --force to replace it"):
         written(ours, 0.1)
     (tmp_path / "s.csv").unlink()
     assert set(made := written(ours, 0.1)) == {"s.csv", "s.parquet"}

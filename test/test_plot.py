@@ -287,7 +287,7 @@ def test_the_command_compares_recordings_over_time_and_load_and_takes_panels(rec
         assert done.exit_code == 0, done.output
     assert plotted(recording, "--panel", "slip").exit_code == 0 and recording.with_suffix(".png").is_file()
     refused = plotted(recording, "--panel", "slip")
-    assert refused.exit_code == 2 and "exists; --force replaces it" in refused.output
+    assert refused.exit_code == 2 and "exists; use --force to replace it" in refused.output
 
 
 @pytest.mark.parametrize(

@@ -61,3 +61,15 @@ def test_a_program_names_the_extra_that_it_lacks_and_raises_what_is_no_extra(tmp
     with pytest.raises(ModuleNotFoundError):
         programs._run("needs_other", 0)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"), [(["import-cvs"], "did you mean 'import-csv'?"), (["study", "clearence"], "did you mean 'clearance'?")]
+)
+def test_an_unknown_command_is_refused_with_the_nearest_name(words, expected):
+    from click.testing import CliRunner
+
+    from bearing_sim.cli.main import main
+
+    result = CliRunner().invoke(main, words)
+    assert result.exit_code == 2 and expected in result.output

@@ -210,8 +210,8 @@ def test_the_page_goes_beside_its_source_unless_told_otherwise(folder):
     [
         ("missing.parquet", None, "does not exist; expected a table of sweep or design"),
         ("note.txt", "x", "expected a table (.parquet, .csv), a recording (.mcap), or a folder"),
-        ("t.parquet", "x", "not readable as Parquet"),
-        ("t.csv", "a,b\n1\n", "a heading and lines with as many values"),
+        ("t.parquet", "x", "Error: {path}: not readable as Parquet"),
+        ("t.csv", "a,b\n1\n", "Error: {path}: expected a heading and lines with as many values"),
         ("t.mcap", "x", "t.mcap"),
     ],
 )
@@ -219,7 +219,7 @@ def test_what_is_no_result_is_refused_with_what_was_expected(tmp_path, name, tex
     if text is not None:
         (tmp_path / name).write_text(text)
     result = CliRunner().invoke(main, ["report", str(tmp_path / name)])
-    assert result.exit_code == 2 and reported in " ".join(result.output.split())
+    assert result.exit_code == 2 and reported.format(path=tmp_path / name) in " ".join(result.output.split())
 
 
 def test_a_design_without_its_further_tables_is_refused_by_the_name_of_the_missing_one(folder, tmp_path):

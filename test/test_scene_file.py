@@ -92,7 +92,7 @@ def test_a_rotational_speed_is_the_same_in_every_unit_through_every_door(door, t
 @pytest.mark.parametrize("door", [by_scene, by_file, by_range, by_sweep])
 @pytest.mark.parametrize("text", ["3000", "3000.0", "3e3", "50"])
 def test_a_rotational_speed_without_a_unit_is_refused_with_what_to_write(door, text):
-    with pytest.raises(ValueError, match="has no unit; write .* rpm for turns a minute, .* Hz for turns a second, or .* rad/s"):
+    with pytest.raises(ValueError, match="has no unit; write .* rpm .turns per minute., .* Hz .turns per second. or .* rad/s"):
         door(text)
 
 

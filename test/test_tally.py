@@ -160,7 +160,7 @@ def test_a_log_that_is_cut_short_is_used_and_its_replay_ends_with_code_3(tmp_pat
 def test_the_documented_exit_codes_are_those_that_commands_end_with():
     found = {kind.exit_code: kind.__doc__ for kind in Ending.__subclasses__()}
     assert set(found) <= set(EXIT_CODES) and all(f"exit code {code}" in text for code, text in found.items())
-    assert "3: done, but only a part" in " ".join(CliRunner().invoke(main, ["--help"]).output.split())
+    assert "3: success, but only a part of the input" in " ".join(CliRunner().invoke(main, ["--help"]).output.split())
 
 
 def test_tallies_add_up_and_say_everything_once():

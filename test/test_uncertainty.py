@@ -317,7 +317,7 @@ def test_the_command_tells_bands_shares_errors_and_sources(tmp_path):
     assert resumed["cage_slip"] == slip and resumed["kept_from_before"] == 16 * 8, "the study may replace its own file"
     before = (tmp_path / "points.csv").read_bytes()
     other = bands("--samples", 16, "--seed", 1, "--out", tmp_path / "points.csv")
-    assert other.exit_code == 2 and "points.csv exists and was not written by this study; --force replaces it" in other.output
+    assert other.exit_code == 2 and "points.csv exists and was not written by this study; use --force to replace it" in other.output
     assert (tmp_path / "points.csv").read_bytes() == before
     (tmp_path / "points.csv").write_text("notes of the user")
     edited = bands("--samples", 16, "--out", tmp_path / "points.csv")

@@ -606,7 +606,7 @@ def test_the_command_refuses_what_does_not_go_together(tmp_path):
         (("--rollers", 2), "Invalid value"),
         (("--bearing", "NU 2x5"), "NU 2x5"),
         (("--rollers", 13, "--pitch-diameter", "40mm"), "go together"),
-        (("--rollers", 13, "--pitch-diameter", "40mm", "--roller-diameter", "12mm"), "do not go on a circle"),
+        (("--rollers", 13, "--pitch-diameter", "40mm", "--roller-diameter", "12mm"), "do not fit on a circle"),
         (("--rollers", 13, "--channel", "aceleration"), "did you mean"),
         (("--rollers", 13, "--channel", "acceleration"), "how fast does the shaft turn"),
         (("--rollers", 13, "--channel", "acceleration", "--speed", "600"), "600"),

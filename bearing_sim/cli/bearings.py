@@ -83,7 +83,7 @@ def _list(types, series, bounds, least) -> Result:
         if found:
             print_rows(f"{len(found)} bearings, lengths in mm", _COLUMNS, [_cells(row) for row in found], _WORDS)
         else:
-            note("no bearing of the catalogue is like that; see bearing-sim catalog --help")
+            note("no bearing in the catalogue matches; see bearing-sim catalog --help")
 
     return Result({"bearings": found}, show)
 

@@ -143,6 +143,14 @@ class LazyGroup(click.Group):
         module, _, function = self._entries[name].place.partition(":")
         return getattr(importlib.import_module(f"bearing_sim.cli.{module}"), function)
 
+    def resolve_command(self, context, args):
+        """Return the command that is called; an unknown one is refused with the nearest name."""
+        if self.get_command(context, args[0]) is None:
+            from bearing_sim.scene.errors import did_you_mean
+
+            raise UsageError(f"no command {args[0]!r}{did_you_mean(args[0], self._entries)}; see {context.command_path} --help")
+        return super().resolve_command(context, args)
+
     def format_commands(self, context, formatter):
         """Write the list of commands without importing any."""
         with formatter.section(self._heading):

@@ -39,13 +39,7 @@ def flag(*about: str, **settings) -> Callable:
 
 def together(*decorators: Callable) -> Callable:
     """Return a decorator that adds several options and arguments, in the order in which help lists them."""
-
-    def add(command: Callable) -> Callable:
-        for each in reversed(decorators):
-            command = each(command)
-        return command
-
-    return add
+    return lambda command: functools.reduce(lambda made, each: each(made), reversed(decorators), command)
 
 
 def gathered(parameter: str, make: Callable, *options: Callable) -> Callable:

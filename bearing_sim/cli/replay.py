@@ -126,8 +126,8 @@ def replay(logs, scene_name, from_recording, overrides, out, rrd, rate, state_fi
     if jump is not None:
         finer = float(f"{10.0 / jump.interval:.1g}")
         note(
-            f"note: the outputs are coarser than the motion: cage slip changes by {100 * jump.slip:.3g} points within the {jump.interval:.3g} s "
-            f"before {jump.time:.6g} s, drawn as a straight line; take finer outputs with --rate, such as --rate {finer:g}"
+            f"note: outputs are coarser than the motion: cage slip changes by {100 * jump.slip:.3g} points in the {jump.interval:.3g} s "
+            f"before {jump.time:.6g} s, drawn as a straight line; use a finer rate, such as --rate {finer:g}"
         )
     report = {
         **_report(result, course, recorded, scene, out),

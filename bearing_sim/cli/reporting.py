@@ -25,13 +25,13 @@ from bearing_sim.files.limits import printable
 from bearing_sim.files.outputs import Output
 
 EXIT_CODES = {
-    0: "done, and all that was there was used",
-    1: "it failed: a run, a check or a disk; `info` found damage, `compare` a difference; or something has to be decided (`import-csv --guess`)",
-    2: "an argument or an input cannot be used; nothing is written",
-    3: "done, but only a part of what was there was used: the last message says how much, why, and what may help",
-    4: "done, but the run has not settled",
-    129: "the terminal was closed (SIGHUP); recordings are complete as far as they go, other files are not written",
-    143: "ended by SIGTERM, likewise",
+    0: "success; all of the input was used",
+    1: "failure of a run, a check or a disk; `info` found damage, `compare` a difference, or `import-csv --guess` needs a decision",
+    2: "an argument or an input is invalid; nothing is written",
+    3: "success, but only a part of the input was used; the last message says how much, why, and what may help",
+    4: "success, but the run has not settled",
+    129: "the terminal was closed (SIGHUP); recordings are completed up to that moment, other files are not written",
+    143: "SIGTERM; likewise",
 }
 """What the exit codes of commands mean, for `bearing-sim --help` and the reference."""
 
@@ -295,10 +295,10 @@ def warn_of_scene(scene, before_results: bool = True) -> None:
     """
     from bearing_sim.model.plausibility import plausibility
 
-    warn([*plausibility(scene), *(each.text for each in _told_of_scene(scene, before_results))])
+    warn([*plausibility(scene), *(each.text for each in _warnings_of_scene(scene, before_results))])
 
 
-def _told_of_scene(scene, before_results: bool = True) -> list:
+def _warnings_of_scene(scene, before_results: bool = True) -> list:
     """Return the exceedances of a scene that `warn_of_scene` prints."""
     from bearing_sim.model.validity import Grade, scene_exceedances
 
@@ -317,12 +317,12 @@ def warn_of_limits(scene, exceedances: Iterable, verbose: bool = False) -> None:
     from bearing_sim.model.plausibility import plausibility
     from bearing_sim.model.validity import Grade
 
-    told, implausible = {each.law.name for each in _told_of_scene(scene)}, plausibility(scene)
+    printed, implausible = {each.law.name for each in _warnings_of_scene(scene)}, plausibility(scene)
     for each in exceedances:
         if each.grade != Grade.WARNING:
             if verbose:
                 note(f"note: {each.note}")
-        elif each.law.name not in told and each.text not in implausible:
+        elif each.law.name not in printed and each.text not in implausible:
             warn([each.text])
 
 
@@ -430,9 +430,9 @@ def column_texts(column, values) -> tuple[str, list[str]]:
 
     if any(isinstance(value, (str, bool)) for value in values):
         return heading(column.name, column.unit), [str(value) for value in values]
-    told, digits = as_shown(column.name, column.unit, values), max(shown(column.name).digits, 4)
+    texts, digits = as_shown(column.name, column.unit, values), max(shown(column.name).digits, 4)
     longest = LONGEST_LIFE if column.unit == "h" else math.inf
-    return told.label, [f"> {number(longest)}" if value > longest else number(value, digits) for value in told.values.tolist()]
+    return texts.label, [f"> {number(longest)}" if value > longest else number(value, digits) for value in texts.values.tolist()]
 
 
 _BORDER = 3  # characters that a column adds

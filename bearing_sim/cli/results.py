@@ -92,7 +92,7 @@ def signed(table, study: str):
 
 
 class Command(click.Command):
-    """A command whose errors are told in one message, and whose `Result` is delivered.
+    """A command whose errors are reported in one message, and whose `Result` is delivered.
 
     Of one that writes files all outputs are checked before it begins, and SIGTERM unwinds it, so that it leaves no drafts.
     """

@@ -30,7 +30,7 @@ def _path_of(name: str) -> Path:
 
 
 def _read(path: Path):
-    """Return the state in a file; what had to be done about it is told on stderr."""
+    """Return the state in a file; what had to be done about it is printed on stderr."""
     state, news = read_state(path)
     for each in news:
         note(f"warning: {each.text}")

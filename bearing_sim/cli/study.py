@@ -228,7 +228,7 @@ def cold_oil(scene_name, overrides, supplies, temperatures, loads):
     Says below which load a skid lasts, and where a skid depends on how fast the shaft runs up. All parts are as warm as the oil.
     """
     from bearing_sim.simulation import IntegrationError
-    from bearing_sim.studies.cold_oil import SUPPLIES, TEMPERATURES, draw_map, run_ups, skid_map
+    from bearing_sim.studies.cold_oil import SUPPLIES, TEMPERATURES, plot_skid_map, run_ups, skid_map
 
     scene = scene_of(scene_name, overrides)
     _prepare_turning(scene)
@@ -240,7 +240,7 @@ def cold_oil(scene_name, overrides, supplies, temperatures, loads):
     return Result(
         {"scene": scene.name, "minimum_load": found.minimum_load, **{name: [one._asdict() for one in each] for name, each in parts.items()}},
         lambda: _print_skids(scene, found, run_up),
-        lambda draft: draw_map(found, draft, f"{scene.name}: slip with cold oil"),
+        lambda draft: plot_skid_map(found, draft, f"{scene.name}: slip with cold oil"),
     )
 
 
@@ -284,7 +284,7 @@ def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise):
     Once from ideal rolling and once from a skid.  A second table says what the load does to the cage if it comes earlier, and to a warm machine that
     idles again: the largest sliding power of a contact, before and while the load rises.  Without SCENE: the NU 232 of a wind gearbox, in a bath.
     """
-    from bearing_sim.studies.cold_start import DEFAULT_OVERRIDES, DEFAULT_SCENE, SHARES, cold_scene, draw_courses
+    from bearing_sim.studies.cold_start import DEFAULT_OVERRIDES, DEFAULT_SCENE, SHARES, cold_scene, plot_cold_start
     from bearing_sim.studies.cold_start import cold_start as follow
 
     scene = scene_of(scene_name or DEFAULT_SCENE, [*(() if scene_name else DEFAULT_OVERRIDES), *overrides])
@@ -295,7 +295,7 @@ def cold_start(scene_name, overrides, loads, loaded, idling, temperature, rise):
     return Result(
         _courses_report(scene, found),
         lambda: [_print_course(scene, found, load) for load in dict.fromkeys(course.load for course in found.courses)],
-        lambda draft: draw_courses(found, draft, f"{scene.name}: cold start from {temperature - 273.15:g} °C"),
+        lambda draft: plot_cold_start(found, draft, f"{scene.name}: cold start from {temperature - 273.15:g} °C"),
     )
 
 

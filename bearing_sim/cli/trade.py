@@ -136,7 +136,7 @@ def trade(
             remarks += [f"added to {front} ({_courses_in(written)})"]
         if chosen is not None:
             remarks += [_write_chosen(chosen, scene, scene_name, found, best, is_asked)]
-    except FailedRun as failure:  # what was measured is told nevertheless
+    except FailedRun as failure:  # what was measured is printed nevertheless
         ending = failure
 
     def show():

@@ -47,7 +47,7 @@ def _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, mea
         size = roller_diameter / pitch_diameter
         if not 0.02 <= size <= 0.5 or rollers * math.asin(min(size, 1.0)) > 1.001 * math.pi:
             raise UsageError(
-                f"{rollers} rollers of {1e3 * roller_diameter:g} mm do not go on a circle of {1e3 * pitch_diameter:g} mm; check the diameters"
+                f"{rollers} rollers of {1e3 * roller_diameter:g} mm do not fit on a circle of {1e3 * pitch_diameter:g} mm; check the diameters"
             )
         return Geometry(rollers, size, True, f"{rollers} rollers"), scene_name
     if roller_diameter is not None or pitch_diameter is not None:
@@ -118,7 +118,7 @@ def vibration(
     """Find the cage speed in the vibration that FILE holds, and which ring or roller shows; or that there is no line.
 
     FILE is CSV or other text, Parquet, MAT, NPZ, NPY, WAV, HDF5, MCAP or another bag.  The number of rollers must be known: by --bearing,
-    --scene or --rollers.  The answer is the ratio of cage to shaft speed with its standard error.  Lines that cannot be told apart from those of
+    --scene or --rollers.  The answer is the ratio of cage to shaft speed with its standard error.  Lines that cannot be distinguished from those of
     something else, such as an exactly periodic train of a gear or of another machine, are no claim.  Slip against the drawing is claimed only
     where the lines are, the shaft's speed is measured, and it exceeds 3 % or the diameters were measured, because a roller of another size of the
     same designation moves it by 3 %.

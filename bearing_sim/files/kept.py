@@ -31,7 +31,7 @@ class Damaged(ValueError):
 
 
 def cache_folder() -> Path:
-    """Return the user's folder for what this program can make anew; for a user without a home folder one that cannot be made."""
+    """Return the user's folder for what this program can make again; for a user without a home folder one that cannot be made."""
     return _user_folder("user_cache_dir")
 
 
@@ -68,7 +68,7 @@ def read_kept(path: Path, limit: Limit, parsed: Callable[[bytes], _Read]) -> _Re
         fault = f"is damaged: {error}"
     except Exception:  # whatever contents that another version has written make their reader raise
         fault = "is damaged: it holds something else than this version keeps there"
-    tell_once(f"{printable(path)} {fault}; it is not used, and built anew", path)
+    tell_once(f"{printable(path)} {fault}; it is ignored and built again", path)
     return None
 
 

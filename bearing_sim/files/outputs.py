@@ -154,7 +154,7 @@ def checked(path: Path, force: bool = False, inputs: Iterable[Path] = ()) -> Pat
         raise RefusedOutput(f"{path} is {kind_of(found.st_mode)}, no regular file; it is never replaced: name another file")
     _refuse_input(path, found, inputs)
     if not force:
-        raise RefusedOutput(f"{path} exists; {FORCE} replaces it, or name another file")
+        raise RefusedOutput(f"{path} exists; use {FORCE} to replace it, or name another file")
     return path.resolve()
 
 
@@ -271,7 +271,7 @@ def _give_name(draft: Path, target: Path, force: bool) -> None:
         try:
             rename_without_replacing(draft, target)
         except FileExistsError:
-            raise RefusedOutput(f"{target} was made by another program meanwhile; {FORCE} replaces it, or name another file") from None
+            raise RefusedOutput(f"{target} was made by another program meanwhile; use {FORCE} to replace it, or name another file") from None
     synchronise(target.parent)
 
 

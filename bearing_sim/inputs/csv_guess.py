@@ -302,7 +302,7 @@ def _guess_time(found: Guess, given: str | None, unit: str | None, format_: str 
 def _zone_note(values: Sequence[str], how: AnyMapping) -> str:
     if "format" not in how or re.search(r"(Z|[+-]\d\d:?\d\d)$", values[0]):
         return ""
-    return "no zone is told, so UTC is assumed; zone: Europe/Berlin says otherwise"
+    return "no time zone is given, so UTC is assumed; set another one like zone: Europe/Berlin"
 
 
 def _is_time(cells: Cells, layout: Layout, heading: str) -> bool:
@@ -511,7 +511,7 @@ def _column_of(layout: Layout, name: str, headings: list[str], columns, units) -
         relative = percentage_question(headed, role.si_unit).replace(", such as ", f": --unit {name}=")
         raise _Asked(f"{heading!r} is a percentage; give {relative}")
     if unit is None:
-        raise _Asked(f"the heading {heading!r} has no unit; say which: --unit {name}={example}")
+        raise _Asked(f"the heading {heading!r} has no unit; give it: --unit {name}={example}")
     if not is_unit_of(unit, role.si_unit):
         raise _Asked(f"--unit {name}={unit}: no unit of this quantity; expected for example {example}")
     reason = ("as given" if given else "by its heading") + f", in {unit} " + ("as given" if name in units else "as it says")

@@ -396,7 +396,7 @@ def _check_found(path: Path, wanted: _Wanted, required: tuple[str, ...], named: 
     if absent:
         hints = "; ".join(f"no message on {topic}" if topic in present else f"no {topic}{did_you_mean(topic, present)}" for topic in absent)
         fields = [f"{topic}.{field}" for topic, message in sorted(wanted.others.items()) for field, _ in islice(numbers(message), 1)]
-        named = f"; a number in a message is named by its field, such as {' or '.join(fields[:2])}" if fields else ""
+        named = f"; name a number in a message by its field, such as {' or '.join(fields[:2])}" if fields else ""
         raise InputLogError(f"{path}: {hints}; the file has {listing}{named}")
     empty = [series.topic for channel, series in found.items() if channel in required and not series.stamps]
     if empty:
@@ -427,7 +427,7 @@ def summary_lines(log: InputLog) -> Iterable[str]:
             continue
         odd = [f"{len(series.errors)} not readable"] if series.errors else []
         odd += [f"{count} {name.replace('_', ' ')}" for name, count in anomalies(series)._asdict().items() if count]
-        yield ", ".join([f"{channel}: {series.topic} ({series.ros_type}), {len(series.stamps)} messages by {series.stamped_by}", *odd])
+        yield ", ".join([f"{channel}: {series.topic} ({series.ros_type}), {len(series.stamps)} messages timed by {series.stamped_by}", *odd])
 
 
 class Anomalies(NamedTuple):

@@ -1087,8 +1087,8 @@ def counted(cells: Iterable[str], with_assumptions: bool = False) -> list[str]:
         name, *number = each.split(" ")[:2]
         values.setdefault(name, []).append(float(number[0]) if number else math.nan)
     known = BY_NAME | {MINIMUM_LOAD.name: MINIMUM_LOAD}
-    told = {name: found for name, found in values.items() if with_assumptions or not known[name].is_assumed}
-    return [f"{len(found)} x {known[name].counted_text(found)}" for name, found in told.items()]
+    reported = (name for name in values if with_assumptions or not known[name].is_assumed)
+    return [f"{len(values[name])} x {known[name].counted_text(values[name])}" for name in reported]
 
 
 def worst(law: Law, low: float, high: float, values: np.ndarray) -> list[Exceedance]:

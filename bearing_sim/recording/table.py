@@ -91,7 +91,7 @@ def _observables(excerpt: Excerpt) -> list:
     known = {observable.name for observable in _COLUMNS}
     for name in excerpt.columns:
         if name not in known:
-            raise TableError(f"no observable {name!r}{did_you_mean(name, known)}; there are {', '.join(sorted(known))}")
+            raise TableError(f"no observable {name!r}{did_you_mean(name, known)}; bearing-sim observables lists them")
     wanted = {"time", *(excerpt.columns or known)}
     return [observable for observable in _COLUMNS if observable.name in wanted and (excerpt.rollers or not observable.per_roller)]
 

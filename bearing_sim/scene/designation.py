@@ -330,8 +330,8 @@ def _designation(kind: str, series: str, bore: int, read: "_Suffixes", notes: li
         clearance_limits(read.clearance, 1e-3 * bore)
     except ValueError as error:
         raise DesignationError(f"{written}: {error}; take another group") from None
-    told = (*notes, *read.notes)
-    return Designation(written, kind, series, size, bore / 1e3, read.high_capacity, read.cage, read.clearance, tuple(read.unmodelled), told)
+    remarks = (*notes, *read.notes)
+    return Designation(written, kind, series, size, bore / 1e3, read.high_capacity, read.cage, read.clearance, tuple(read.unmodelled), remarks)
 
 
 def _parse_number(plain: str, gost: str, before: str, digits: str, bore: str, after: str) -> Designation:
@@ -366,11 +366,11 @@ def _parse_number(plain: str, gost: str, before: str, digits: str, bore: str, af
     what = f"{plain}, by GOST {kind} {_digits(series, size)}"
     read = _read_gost(what, before, suffixes)
     limits = clearance_limits(read.clearance, 1e-3 * size)
-    told = [f"{digits} is {kind} {_digits(series, size)} by GOST 8328"]
-    told.append(f"clearance of GOST 24810: {1e6 * limits.least:.0f} to {1e6 * limits.largest:.0f} µm, group {read.clearance}")
+    remarks = [f"{digits} is {kind} {_digits(series, size)} by GOST 8328"]
+    remarks.append(f"clearance of GOST 24810: {1e6 * limits.least:.0f} to {1e6 * limits.largest:.0f} µm, group {read.clearance}")
     if not read.high_capacity:
-        told.append("rollers and ratings are those of other makers; without the letter А GOST bearings may carry less: give bearing.ratings")
-    return _designation(kind, series, size, read, told)
+        remarks.append("rollers and ratings are those of other makers; without the letter А GOST bearings may carry less: give bearing.ratings")
+    return _designation(kind, series, size, read, remarks)
 
 
 def _read_gost(what: str, before: str, suffixes: str) -> "_Suffixes":

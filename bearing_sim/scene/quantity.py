@@ -122,7 +122,7 @@ _SPELLINGS = "N kN MN Pa kPa MPa GPa m mm um kg g s ms K degC rpm Hz kHz N*m mPa
 
 def _bare_speed(value: object) -> str:
     """Return the reason why a rotational speed without a unit is refused."""
-    return f"{value!r} has no unit; write {value} rpm for turns a minute, {value} Hz for turns a second, or {value} rad/s"
+    return f"{value!r} has no unit; write {value} rpm (turns per minute), {value} Hz (turns per second) or {value} rad/s"
 
 
 def _other_kind(written, unit: str) -> str:

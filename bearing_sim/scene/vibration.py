@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What a live run makes of the vibration that is measured at a bearing: its cage speed, where something shows.
+"""Settings for estimating the cage speed from vibration in a live run.
 
-A scene that does not ask for it does not listen to the vibration and pays nothing.
+Without them a run does not listen to the vibration.
 """
 
 from typing import Annotated

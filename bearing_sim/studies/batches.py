@@ -27,7 +27,7 @@ def answers_at(
     """
     count = len(points[0])
     parts = [[tuple(map(tuple, each[first : first + size].tolist())) for each in points] for first in range(0, count, size)]
-    told = execution._replace(progress=lambda *batches: execution.progress(*(min(size * each, count) for each in batches)))
-    results = told.run([task(kind, function, *arguments, *part) for part in parts])
+    counting = execution._replace(progress=lambda *batches: execution.progress(*(min(size * each, count) for each in batches)))
+    results = counting.run([task(kind, function, *arguments, *part) for part in parts])
     answers = {name: [result.get(name, [absent] * len(part[0])) for result, part in zip(results, parts)] for name, absent in nothing.items()}
     return {name: np.array(list(itertools.chain.from_iterable(lists))) for name, lists in answers.items()}

@@ -117,7 +117,7 @@ def run_ups(scene: Scene, found: SkidMap) -> list[RunUp]:
     return [run_up(scene, *point[:3], each) for point in first.values() for each in RUN_UPS]
 
 
-def draw_map(found: SkidMap, path: Path, title: str) -> None:
+def plot_skid_map(found: SkidMap, path: Path, title: str) -> None:
     """Draw slip over load by temperature, a column for each supply, and the skid load over temperature below.
 
     Parameters

@@ -278,7 +278,7 @@ def _heaviest(samples: np.ndarray, params) -> tuple[float, float, float]:
     return max(found)
 
 
-def draw_courses(found: ColdStart, path: Path, title: str) -> None:
+def plot_cold_start(found: ColdStart, path: Path, title: str) -> None:
     """Draw slip, sliding power, films and temperatures over time, a column for each load while idling.
 
     Parameters

@@ -143,8 +143,8 @@ def _way_to_balance(steady: np.ndarray, slip: float, ways: tuple[np.ndarray, np.
     measured = np.array([per_change * _change_at(there, ways[int(there > slip)]) for there in CAGE_SLIPS.tolist()])
     measured[(np.abs(CAGE_SLIPS - slip) < _TOLD) | ~(measured * (CAGE_SLIPS - slip) > 0.0)] = math.nan
     more = measured - steady[ACCELERATIONS]
-    if (told := np.isfinite(more)).any():
-        found[ACCELERATIONS] += np.interp(CAGE_SLIPS, CAGE_SLIPS[told], more[told])
+    if (known := np.isfinite(more)).any():
+        found[ACCELERATIONS] += np.interp(CAGE_SLIPS, CAGE_SLIPS[known], more[known])
     near = [side * per_change * _change_at(slip + side * _TOLD, way) for side, way in zip((-1.0, 1.0), ways)]
     lags = [_TOLD * ideal / acceleration for acceleration in near if acceleration > 0.0]
     if steady[ANSWER.lag] > _LEAST_LAG * turn and lags:

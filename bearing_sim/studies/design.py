@@ -184,7 +184,7 @@ class Designed(NamedTuple):
         radii = {end for border in borders for end, by in (border[2::2], border[3::2]) if by == END_OF_MAP}
         shown = (("D", d_ends, 4), ("R_low", radii, 5))
         ends = [f"{name} = {' and '.join(f'{value:.{digits}f}' for value in sorted(values))} mm" for name, values, digits in shown if values]
-        return f"the map ends at {', and at '.join(ends)}, where raceways meet both limits: the region goes on beyond it" if ends else ""
+        return f"the map ends at {', and at '.join(ends)}, where raceways meet both limits: the region continues beyond it" if ends else ""
 
     @property
     def border_table(self) -> Table:

@@ -2,7 +2,7 @@
 """One scene at the extremes: what comes of it, and whether its books of energy close.
 
 The case runs for at least 50 turns of its cage, or until it has settled.  Its inputs change once over what are 50 turns of an ideal cage;
-under the last ones it goes on until it settles or its cage has turned often enough, however long a cage that hardly turns takes for it.  Only the
+under the last ones it continues until it settles or its cage has turned often enough, however long a cage that hardly turns takes for it.  Only the
 core time is bounded; a run that has used it up is step-limited.  Then follow the books of energy: over ten more turns, under constant
 inputs, what the shaft and the load put in, less what is lost and what is stored.
 """

@@ -24,7 +24,7 @@ from bearing_sim.model.plausibility import left_out, plausibility
 from bearing_sim.model.sample import OBSERVABLES, joined
 from bearing_sim.model.turning import DIVIDED, slip_statistics, stands_text, turns, use_of
 from bearing_sim.model.validity import counted
-from bearing_sim.recording.bag import ACTIVE, RecordingError
+from bearing_sim.recording.bag import ACTIVE
 from bearing_sim.recording.reader import Recording
 from bearing_sim.scene.display import hours, number
 from bearing_sim.scene.loader import SceneError, scene_from_yaml
@@ -124,23 +124,20 @@ def _folder_page(folder: Path, tell: _Tell) -> str:
 
 def _part(path: Path, tell: _Tell) -> _Part:
     """Return the part of a page on one result."""
-    if path.is_dir() or path.suffix in _RECORDINGS:
-        try:
+    kept = path.with_suffix(".parquet")
+    try:
+        if path.is_dir() or path.suffix in _RECORDINGS:
             recording = Recording(path, allow_partial=True)
             part = _recording_part(recording)
             tell(recording.tally, path)
             return part
-        except RecordingError as error:
-            raise NoResults(str(error)) from None
-    if path.suffix not in _TABLES:
-        raise NoResults(f"{path}: expected a table ({', '.join(_TABLES)}), a recording (.mcap), or a folder")
-    kept = path.with_suffix(".parquet")
-    try:
+        if path.suffix not in _TABLES:
+            raise NoResults(f"{path}: expected a table ({', '.join(_TABLES)}), a recording (.mcap), or a folder")
         table = read_any_table(path)
         with written_by_us(path):
             return _design_part(kept, studied.read_design(kept)) if table.about.get("kind") == "design" else _table_part(path, table)
     except (ValueError, FileNotFoundError) as error:
-        raise NoResults(f"{path}: {error}") from None
+        raise NoResults(str(error)) from None
 
 
 def _picture(title: str, plot: Callable, *arguments, caption: str = "") -> str:
@@ -154,10 +151,10 @@ def _picture(title: str, plot: Callable, *arguments, caption: str = "") -> str:
 
 
 def _table_part(path: Path, table: Table) -> _Part:
-    about, told = table.about, []
+    about, remarks = table.about, []
     if not about:
-        told.append("the origin of these numbers is not known: there is no Parquet file beside the CSV")
-    told += _reasons(table.rows)
+        remarks.append("the origin of these numbers is not known: there is no Parquet file beside the CSV")
+    remarks += _reasons(table.rows)
     results = rows_table(table.columns, table.rows[:_MOST_ROWS])
     if len(table.rows) > _MOST_ROWS:
         results += paragraph(f"The first {_MOST_ROWS} of {len(table.rows)} rows; {path.name} has all.")
@@ -165,7 +162,7 @@ def _table_part(path: Path, table: Table) -> _Part:
     where = f" of {about['scene']} at level {about['level']}" if "scene" in about else ""
     return _Part(
         f"{kind.capitalize()}{where}",
-        _opening(about, told),
+        _opening(about, remarks),
         {
             "Summary": pairs({"rows": len(table.rows), **_statuses(table), **_varied(about), **about.get("summary", {})}),
             "Pictures": _table_pictures(table),
@@ -218,22 +215,22 @@ def _table_pictures(table: Table) -> str:
 def _design_part(path: Path, designed: studied.Designed) -> _Part:
     about = designed.grid.about
     wanted, verify_level = about["wanted"], about["verify_level"]
-    told = []
+    remarks = []
     if verify_level is None:
-        told.append("nothing was verified at a level of higher fidelity")
+        remarks.append("nothing was verified at a level of higher fidelity")
     if (about["level"], verify_level) in studied.ALIKE:
-        told.append(studied.ALIKE[about["level"], verify_level])
+        remarks.append(studied.ALIKE[about["level"], verify_level])
     counts = Counter(key for band in designed.bands for key in ((band.verdict, band.found.kind), band.found.kind))
-    told += [
+    remarks += [
         f"{counts[verdict, kind]} of {counts[kind]} intervals ({kind}) {verdict} at level {verify_level}"
         for verdict, kind in product((studied.WITHDRAWN, studied.NARROWED), studied.KINDS)
         if counts[verdict, kind]
     ]
     for kind in studied.KINDS:
         if ends := designed.open_ends(kind):
-            told.append(f"{studied.condition_name(kind, wanted)} {ends}")
-    told += _reasons(designed.grid.rows)
-    told += [f"verification: {text}" for text in _reasons([check._asdict() for check in designed.checks])]
+            remarks.append(f"{studied.condition_name(kind, wanted)} {ends}")
+    remarks += _reasons(designed.grid.rows)
+    remarks += [f"verification: {text}" for text in _reasons([check._asdict() for check in designed.checks])]
     widest = designed.widest
     nowhere = [studied.condition_name(kind, wanted) for kind in studied.KINDS if not designed.recommended(kind)]
     answer = f"No raceway of the map meets both limits {', nor '.join(nowhere)}."
@@ -255,7 +252,7 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
     check_columns = [_at_level(column, about) for column in studied.CHECK_COLUMNS]
     return _Part(
         f"Design of {about['name']} at level {about['level']}",
-        _opening(about, told) + f"<p><b>{escape(answer)}</b></p>",
+        _opening(about, remarks) + f"<p><b>{escape(answer)}</b></p>",
         {
             "Summary": pairs(summary),
             "Operating points": rows_table(points, rows) if rows else "",
@@ -285,9 +282,9 @@ def _recording_part(recording: Recording) -> _Part:
         (events if isinstance(item, Event) else blocks).append(item)
     block = joined([_thinned(each, recording.samples) for each in blocks])
     course = course_of(blocks, scene, recording.path.name, recording.samples, (*DEFAULT_PANELS, "roller_load"))
-    told = [] if recording.tally.is_whole else [f"the recording is used in part only: {recording.tally.text}"]
-    told += [scene.level_reason] if scene.level_reason else []
-    told += [each.warning for each in _grouped(event for event in events if event.level > Level.OK)]
+    remarks = [] if recording.tally.is_whole else [f"the recording is used in part only: {recording.tally.text}"]
+    remarks += [scene.level_reason] if scene.level_reason else []
+    remarks += [each.warning for each in _grouped(event for event in events if event.level > Level.OK)]
     last = float(blocks[-1]["time"][-1])  # that could be read
     duration = last - recording.first_time
     settled = block[block["time"] >= last - _LAST * duration]
@@ -323,7 +320,7 @@ def _recording_part(recording: Recording) -> _Part:
     }
     return _Part(
         f"{scene.name} at level {scene.level}: {recording.path.name}",
-        _opening(about, told),
+        _opening(about, remarks),
         {
             "Summary": pairs(summary),
             f"Answer sheet, mean {over}": _sheet(scene, at_end),
@@ -461,19 +458,19 @@ def _draw_loads(stream, settled: np.ndarray) -> None:
 # What all pages have
 
 
-def _opening(about: Mapping, told: Sequence[str]) -> str:
+def _opening(about: Mapping, remarks: Sequence[str]) -> str:
     """Return the command and the warnings of a result."""
     made = command(about["command"]) if about.get("command") else ""
     again = f"<p>Reproduced by <code>{escape(about['reproduced by'])}</code></p>" if about.get("reproduced by") else ""
     scene = _scene(about)
     if isinstance(scene, SceneError):
-        told = [
-            *told,
+        remarks = [
+            *remarks,
             f"the scene was written by another version of bearing_sim ({about.get('version') or 'unknown'}) and is shown as text only: {scene}",
         ]
     elif scene is not None:
-        told = [*told, *plausibility(scene), *left_out(scene)]
-    return made + again + warnings(told)
+        remarks = [*remarks, *plausibility(scene), *left_out(scene)]
+    return made + again + warnings(remarks)
 
 
 def _scene_text(about: Mapping) -> str:

@@ -241,7 +241,7 @@ def _axial_report(scene: Scene, speed: float, load: float, kappa: float) -> dict
     if not axial:
         return {}
 
-    def told(limits):
+    def described(limits):
         return {each.kind: {"force": each.force, "reason": each.reason or None} for each in limits}
 
     limits = axial_limits(scene, speed, load, kappa)
@@ -249,8 +249,8 @@ def _axial_report(scene: Scene, speed: float, load: float, kappa: float) -> dict
         "axial_load_rule": equivalent_load_law(scene.bearing).rule,
         "axial_load_within_rule": not results_without_rule(scene, load),
         "axial_load_permitted": not any(each.force < axial for each in limits[:2]),
-        "axial_load_limits": told(limits),
-        "other_axial_load_limits": told(other_axial_limits(scene, speed, kappa)),
+        "axial_load_limits": described(limits),
+        "other_axial_load_limits": described(other_axial_limits(scene, speed, kappa)),
     }
 
 
@@ -484,7 +484,7 @@ def _limit_rows(scene: Scene, found: Mapping) -> list[Row]:
     met = "met" if load >= least else "NOT met"
     return [
         ("speed limits", ", ".join(limits) or "no maker's speeds are known (bearing.ratings)"),
-        ("minimum load", f"{met}: {force(load)} for {force(least, 3)}, {found['minimum_load_rule']}"),
+        ("minimum load", f"{met}: {force(load)}, minimum {force(least, 3)} by {found['minimum_load_rule']}"),
     ]
 
 
@@ -517,8 +517,8 @@ def ring_difference(scene: Scene, found: Mapping) -> str:
         return said
     per_kelvin = 1e6 * scene.bearing.material.expansion * 2.0 * scene.bearing.outer_raceway.low_radius
     return (
-        f"{said}, because the shaft only cools it here. A heated shaft turns this round: each kelvin takes {number(per_kelvin, 2)} µm off the "
-        "clearance. Say what the shaft leads to (new --shaft motor, heat.shaft.back_temperature)"
+        f"{said}, because the shaft only cools it here. A heated shaft reverses this: each kelvin takes {number(per_kelvin, 2)} µm off the "
+        "clearance. Specify what the shaft is connected to (new --shaft motor, heat.shaft.back_temperature)"
     )
 
 

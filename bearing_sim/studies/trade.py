@@ -2,7 +2,7 @@
 """Speed against accuracy: every level and tolerance or step on the same course, against a tight reference.
 
 A course (`bearing_sim.studies.trade_course`) is one of the built-in ones or windows of a log; errors show in its transients as well as in
-its steady states.  Each setting runs each window as a task of its own, so an interrupted trade goes on where it was.  Every window begins in
+its steady states.  Each setting runs each window as a task of its own, so an interrupted trade resumes.  Every window begins in
 the state to which level ``steady`` settles at its first inputs, in thermal equilibrium where the scene has a thermal network.  All times are
 processor times of one core.
 """
@@ -192,7 +192,7 @@ def trade(
     progress : called with the number of finished runs and of all that are not in the journal.
     against : level of the reference; None: `planar`, or the highest level that can compute the scene where planar cannot.
     course : name of a built-in course, or a function that returns the course of a scene (see `bearing_sim.studies.trade_course`).
-    journal : file from which an interrupted trade of the same scene, course and program goes on; None: it cannot.
+    journal : file from which an interrupted trade of the same scene, course and program resumes; None: it cannot.
     workers : number of processes; None: one per core.
 
     Raises

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""When a run has settled: one criterion for ``bearing-sim run`` and for every point of a sweep, and the run that goes on until it is met.
+"""When a run has settled: one criterion for ``bearing-sim run`` and for every point of a sweep, and the run that continues until it is met.
 
 A bearing needs anything from milliseconds to minutes to settle, and nothing in its scene tells which.  What can be judged is whether the
 last fifth of a run differs from the fifths before it by more than a tolerance, and whether these differences shrink.  A run is therefore

@@ -1,8 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """All states in which a cage stays under the same inputs, and the load below which it stays in a skid.
 
-Thick oil brakes a cage that is slow beside its rollers more than a light load drives it.  A cage that rolls then goes on rolling, and one that skids,
-as after a start with cold oil or while the load was low, goes on skidding.  The scan of an operating point
+Thick oil brakes a cage that is slow beside its rollers more than a light load drives it.  One that rolls then continues to roll, and one that skids,
+as after a start with cold oil or while the load was low, continues to skid.  The scan of an operating point
 (`bearing_sim.levels.steady.operating_point`) sees where the mean drive of a cage changes from braking to driving.  Each such slip is a state of its
 own.
 """
@@ -256,7 +256,7 @@ def state_rows(others: Others, start: str) -> list[tuple[str, str]]:
     rows = [("state", f"{came}{'' if others.states else '; no other was found'}")]
     rows += [("also stays at", state_text(state)) for state in others.states]
     if others.skid_load > 0.0:
-        rows.append(("skid load", f"{force(others.skid_load)}; under less a cage that skids goes on skidding"))
+        rows.append(("skid load", f"{force(others.skid_load)}; below it a skidding cage continues to skid"))
     if others.resonance is not None:
         rows.append(("inner ring", resonance_text(others.resonance)))
     return rows

@@ -188,7 +188,7 @@ def require_same_study(output: Output, study: str, parts: Sequence[str] = ("",))
         is_its_text = is_same and text.is_file() and _digest_of(text) == csv_digest
         for path, may_replace in ((parquet, is_same), (text, is_its_text)):
             if path.is_file() and not (may_replace or output.force):
-                raise RefusedOutput(f"{path} exists and was not written by this study; {FORCE} replaces it, or name another file")
+                raise RefusedOutput(f"{path} exists and was not written by this study; use {FORCE} to replace it, or name another file")
             Output(path, True, output.inputs).check()
 
 
@@ -212,7 +212,7 @@ def same_points(output: Output, study: str) -> Output:
             with Journal(beside) as journal:
                 origin = journal[study] if study in journal else {}
         if origin.get(_POINTS) != _digest_of(output.path).decode():
-            raise RefusedOutput(f"{output.path} exists and was not written by this study; {FORCE} replaces it, or name another file")
+            raise RefusedOutput(f"{output.path} exists and was not written by this study; use {FORCE} to replace it, or name another file")
     own = Output(output.path, output.force or exists, output.inputs)
     own.check()
     return own

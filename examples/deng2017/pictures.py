@@ -30,7 +30,7 @@ class Pictured(NamedTuple):
     tables: tuple[str, ...]  # of its data, by the stems of their files
 
 
-def draw_contours(path: Path, rings: Mapping[float, Machined]) -> None:
+def plot_contours(path: Path, rings: Mapping[float, Machined]) -> None:
     """Draw figures 3 and 10: contours made by pre-deformation machining, and their low and high points.
 
     Parameters
@@ -58,7 +58,7 @@ def draw_contours(path: Path, rings: Mapping[float, Machined]) -> None:
     _finish(figure, path, (contours, points))
 
 
-def draw_lines(path: Path, tables: Tables, name: str, x: str, profiles: Sequence[tuple[str, dict]] = ()) -> None:
+def plot_lines(path: Path, tables: Tables, name: str, x: str, profiles: Sequence[tuple[str, dict]] = ()) -> None:
     """Draw slip and life over one variable at both levels and, if given, load distributions at level slip.
 
     Parameters
@@ -100,7 +100,7 @@ def _draw_profiles(axes, profiles) -> None:
     axes.legend(frameon=False, fontsize=8, ncols=2)
 
 
-def draw_families(path: Path, tables: Tables, name: str, x: str, quantities: Sequence[str]) -> None:
+def plot_families(path: Path, tables: Tables, name: str, x: str, quantities: Sequence[str]) -> None:
     """Draw quantities over one variable for the four low-point radii; solid at level slip, dashed at level planar.
 
     Parameters
@@ -134,7 +134,7 @@ def _pair(rows, x, y):
     return [row[x] for row in rows], [row[y] for row in rows]
 
 
-def draw_map(path: Path, tables: Tables, slip_below: float = 10.0, life_above: float = 300.0) -> None:
+def plot_map(path: Path, tables: Tables, slip_below: float = 10.0, life_above: float = 300.0) -> None:
     """Draw figure 21: slip and life over D and R_low at both levels, the limits of the design, and the region recommended by Deng.
 
     Parameters
@@ -161,7 +161,7 @@ def draw_map(path: Path, tables: Tables, slip_below: float = 10.0, life_above: f
         figure.savefig(draft, dpi=_DPI)
 
 
-def draw_trajectories(path: Path, found: Mapping[float, dict], guide_clearance: float) -> None:
+def plot_trajectories(path: Path, found: Mapping[float, dict], guide_clearance: float) -> None:
     """Draw the orbit of the cage centre and the spin of a roller over its azimuth.
 
     Parameters
@@ -188,7 +188,7 @@ def draw_trajectories(path: Path, found: Mapping[float, dict], guide_clearance: 
     _finish(figure, path, axes.flat)
 
 
-def draw_reasons(path: Path, tables: Tables) -> None:
+def plot_reasons(path: Path, tables: Tables) -> None:
     """Draw slip over parameters that Deng does not give: mixture fraction and mass supported by the inner ring."""
     figure = new_figure(10, 4.0)
     axes = figure.subplots(1, 2)
@@ -216,7 +216,7 @@ def _finish(figure, path, axes) -> None:
         figure.savefig(draft, dpi=_DPI)
 
 
-def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Mapping, rings: Mapping[float, Machined]) -> list[Pictured]:
+def plot_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Mapping, rings: Mapping[float, Machined]) -> list[Pictured]:
     """Draw all figures into a folder and return their entries.
 
     Parameters
@@ -232,20 +232,20 @@ def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Ma
     def distributions(name):
         return [(value, one) for (sweep, value, level), one in profiles.items() if (sweep, level) == (name, "slip") and one["status"] == "ok"]
 
-    draw_contours(folder / "fig03_10.png", rings)
-    draw_lines(folder / "fig11_12.png", tables, "low_radius", LOW, distributions("low_radius"))
-    draw_lines(folder / "fig13_14.png", tables, "d_value", D_VALUE, distributions("d_value"))
-    draw_families(folder / "fig15_16.png", tables, "speed", SPEED, ("cage_slip", "inner_load_maximum", "outer_load_maximum"))
-    draw_families(folder / "fig17_18.png", tables, "load", LOAD, ("cage_slip", "rating_life", "inner_load_maximum"))
-    draw_lines(folder / "fig19_20.png", tables, "angle", ANGLE, distributions("angle"))
-    draw_map(folder / "fig21.png", tables)
-    draw_lines(folder / "fig22.png", tables, "roundness", ROUNDNESS)
-    draw_lines(folder / "fig23.png", tables, "table2", SPEED)
+    plot_contours(folder / "fig03_10.png", rings)
+    plot_lines(folder / "fig11_12.png", tables, "low_radius", LOW, distributions("low_radius"))
+    plot_lines(folder / "fig13_14.png", tables, "d_value", D_VALUE, distributions("d_value"))
+    plot_families(folder / "fig15_16.png", tables, "speed", SPEED, ("cage_slip", "inner_load_maximum", "outer_load_maximum"))
+    plot_families(folder / "fig17_18.png", tables, "load", LOAD, ("cage_slip", "rating_life", "inner_load_maximum"))
+    plot_lines(folder / "fig19_20.png", tables, "angle", ANGLE, distributions("angle"))
+    plot_map(folder / "fig21.png", tables)
+    plot_lines(folder / "fig22.png", tables, "roundness", ROUNDNESS)
+    plot_lines(folder / "fig23.png", tables, "table2", SPEED)
     moving = {low: one for low, one in trajectories.items() if one["status"] == "ok"}
     if moving:
         cage = load_scene("deng2017_table1").bearing.cage
-        draw_trajectories(folder / "trajectories.png", moving, 1e6 * cage.guide_clearance)
-    draw_reasons(folder / "reasons.png", tables)
+        plot_trajectories(folder / "trajectories.png", moving, 1e6 * cage.guide_clearance)
+    plot_reasons(folder / "reasons.png", tables)
     conditions = "45,000 rpm, 800 N, D = 0.098 mm unless varied"
     shown = [
         Pictured(

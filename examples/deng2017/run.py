@@ -19,7 +19,7 @@ from bearing_sim.sweep.table import Table, write_table
 from bearing_sim.sweep.tasks import Journal, run_tasks
 from deng2017.claims import Finding, contour_finding, judge, machined_rings, machining_table
 from deng2017.design import answer, write_answer
-from deng2017.pictures import draw_study
+from deng2017.pictures import plot_study
 from deng2017.study import LEVELS, STUDIES, plan_study
 
 STUDY_FILE = "study.json"
@@ -81,7 +81,7 @@ def run_study(
     rings = machined_rings()
     findings = [contour_finding(rings), *judge(tables, LEVELS)]
     _write_tables(folder / "tables", tables, profiles, trajectories, rings, findings)
-    pictured = [*draw_study(folder / "figures", tables, profiles, trajectories, rings), write_answer(folder, designed)]
+    pictured = [*plot_study(folder / "figures", tables, profiles, trajectories, rings), write_answer(folder, designed)]
     about = {
         "title": "Deng et al. 2017, Cage slip characteristics of a cylindrical roller bearing with a trilobe-raceway: the results with bearing_sim",
         "doi": "10.1016/j.cja.2017.07.001",

@@ -39,7 +39,7 @@ class Listener(Client):
         for name, _, _ in statuses_of(report):
             self.longest = max(self.longest, now - self._last.get(name, now))
             self._last[name] = now
-        self.aggregator.take(now, statuses_of(report))
+        self.aggregator.receive(now, statuses_of(report))
         self.worst = max(self.worst, self.aggregator.report(now)["/Plant"])
 
 

@@ -179,8 +179,8 @@ class _Bearing:
         for channel, publisher in self._publishers.items():
             publisher.publish(self._templates[channel].filled(now_ns, numbers[channel]))
 
-    def take(self) -> None:
-        """Take all outputs that have arrived."""
+    def receive(self) -> None:
+        """Receive all outputs that have arrived."""
         for which, subscription in enumerate(self._subscriptions):
             for cdr, info in taken(subscription):
                 if not self.counts[which]:
@@ -256,7 +256,7 @@ class Fleet:
             for bearing in self.bearings:
                 if bearing.is_matched:
                     bearing.send()
-                bearing.take()
+                bearing.receive()
             time.sleep(0.2)
 
     def drive(self, seconds: float, rate: float) -> int:
@@ -269,7 +269,7 @@ class Fleet:
                 bearing.send()
             if period % _TAKEN_EVERY == 0:
                 for bearing in self.bearings[turn::_TURNS]:
-                    bearing.take()
+                    bearing.receive()
             if turn == 0:
                 self._reported += [cdr for cdr, _ in taken(self._reports)]
             turns += 1
@@ -279,7 +279,7 @@ class Fleet:
         """Count from zero from now on."""
         self._reported.clear()
         for bearing in self.bearings:
-            bearing.take()
+            bearing.receive()
             bearing.restart()
 
     def reports(self) -> list:
@@ -344,7 +344,7 @@ def measure(
             seconds, spent = time.monotonic() - began, time.process_time() - had
             last = [cost_of(process) for process in processes]
             for bearing in fleet.bearings:
-                bearing.take()
+                bearing.receive()
             reports = fleet.reports()
         finally:
             fleet.close()

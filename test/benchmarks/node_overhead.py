@@ -99,8 +99,8 @@ class Driver:
                 self.sent.append(time.monotonic())
             publisher.publish(filled)
 
-    def take(self) -> None:
-        """Take all messages that have arrived."""
+    def receive(self) -> None:
+        """Receive all messages that have arrived."""
         for joints, _ in taken(self._joints, serialised=False):
             self.received.append(Received(time.monotonic(), joints.velocity[0], joints.position[0]))
         for report, _ in taken(self._reports, serialised=False):
@@ -116,7 +116,7 @@ class Driver:
             if now >= due:
                 self.send()
                 due = max(due + 1.0 / rate, now - 1.0 / rate)
-            self.take()
+            self.receive()
             time.sleep(min(1e-3, max(0.0, due - time.monotonic())))
 
     def latencies(self, since: float) -> list[float]:
@@ -196,7 +196,7 @@ def _wait_until_running(driver: Driver, node: subprocess.Popen, log: IO[bytes]) 
             raise RuntimeError(f"the node did not start; {log_tail(log)}")
         if driver.is_matched:
             driver.send()
-        driver.take()
+        driver.receive()
         time.sleep(0.02)
 
 

@@ -307,11 +307,11 @@ class Estimator:
         self._close_before(float(block["time"][0]))  # before time passes: it says nothing about what has changed since
         self._watch_conditions(block)
         before = self._updates
-        self._take_temperatures(block[-1])
+        self._learn_from_temperatures(block[-1])
         ready = bisect_right(self._waiting, (self._course.newest, math.inf))
         due, self._waiting = self._waiting[:ready], self._waiting[ready:]
         for time, kind, value, error in due:
-            self._take_reading(time, value, error) if kind == 0.0 else self._take_clearance(time, value, error)
+            self._learn_from_reading(time, value, error) if kind == 0.0 else self._learn_from_clearance(time, value, error)
         return self._updates != before
 
     def _posteriors(self) -> list[Posterior]:
@@ -340,7 +340,7 @@ class Estimator:
         speed, load_y, load_z, temperature = row[:4]
         return np.array([speed, math.hypot(load_y, load_z), temperature, math.atan2(load_z, load_y)])
 
-    def _take_reading(self, time: float, cage_speed: float, error: float) -> None:
+    def _learn_from_reading(self, time: float, cage_speed: float, error: float) -> None:
         row = self._course.at(time)
         conditions, (ideal, own) = self._conditions(row), row[4:6]
         usable = math.isfinite(own) and abs(conditions[0]) >= self._scene.thresholds.slip_from_speed and time >= self._settled_from
@@ -357,11 +357,11 @@ class Estimator:
             return
         self._readings = []
         residuals, errors = (np.array([getattr(each, name) for each in readings]) for name in ("residual", "error"))
-        told = np.isfinite(errors)
-        if told.all():
+        stated = np.isfinite(errors)
+        if stated.all():
             mean, variance = _weighted_mean(residuals, errors)
         else:
-            mean, variance = self._scatter.mean(residuals[~told])
+            mean, variance = self._scatter.mean(residuals[~stated])
         conditions = np.mean([each.conditions for each in readings], axis=0)
         batch = Batch(readings[-1].time, conditions, float(np.mean([each.own for each in readings])), mean, variance, len(readings))
         self._judge(batch)
@@ -418,7 +418,7 @@ class Estimator:
         self._updates += 1
         self._wild.append(outcome.wild > 0.5)
 
-    def _take_clearance(self, time: float, clearance: float, error: float) -> None:
+    def _learn_from_clearance(self, time: float, clearance: float, error: float) -> None:
         row = self._course.at(time)
         conditions, own = self._conditions(row), row[6]
         if not math.isfinite(own) or self._response.outside(conditions[None])[0]:
@@ -426,7 +426,7 @@ class Estimator:
         deviation = error if math.isfinite(error) else self._settings.noise.clearance
         self._learn_other(CLEARANCE, conditions, own, clearance - own, deviation)
 
-    def _take_temperatures(self, sample: np.void) -> None:
+    def _learn_from_temperatures(self, sample: np.void) -> None:
         """Learn from measured ring temperatures, while conditions are near what has warmed the rings."""
         now, speed = float(sample["time"]), abs(float(sample["shaft_speed"]))
         if now < self._temperatures_at or speed < self._scene.thresholds.slip_from_speed:
@@ -530,7 +530,7 @@ def explained(causes: Sequence[Cause], missing: Mapping[str, str]) -> str:
     rivals = [each for each in others if each.probability > first.probability / 3.0]
     text = f"likeliest cause: {first.text} (probability {100 * first.probability:.0f} %)"
     if rivals:
-        text += "; not told apart from it: " + ", ".join(f"{each.text} ({100 * each.probability:.0f} %)" for each in rivals)
+        text += "; also possible: " + ", ".join(f"{each.text} ({100 * each.probability:.0f} %)" for each in rivals)
     if missing:
         wanted = ", ".join(f"{group} (give uncertainty.{field})" for group, field in missing.items())
         text += f"; cannot be named without a range: {wanted}"

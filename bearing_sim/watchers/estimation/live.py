@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What a run says about how sure it is: bands of its results, and what measurements teach about its scene, for topics, recordings and diagnostics.
+"""Live uncertainty bands and calibration results, for topics, recordings and diagnostics.
 
 Samples and measurements in, bands, events and numbers out; all times are those of the samples.  A run has it where its scene asks for it (block
 ``estimation``).
@@ -176,10 +176,10 @@ class LiveEstimation(Watcher):
                 self._next_estimates = now + self.scene.estimation.interval * (1.0 - 1e-9)
                 found.append(self._estimates(now))
         if self.scene.estimation.bands:
-            found += self._take_bands(block)
+            found += self._bands_of(block)
         return found
 
-    def _take_bands(self, block: np.ndarray) -> list[Bands]:
+    def _bands_of(self, block: np.ndarray) -> list[Bands]:
         periods = np.floor(block["time"] / self._period + 1e-6)
         chosen = np.flatnonzero(np.diff(periods, prepend=self._last_period))
         if not len(chosen):

@@ -209,7 +209,7 @@ class StateKeeper(_StateMemory):
     @property
     def state(self) -> StoredState:
         """The state as counted so far."""
-        self._take_pending()
+        self._count_pending()
         return self._state
 
     @property
@@ -307,9 +307,9 @@ class StateKeeper(_StateMemory):
         counted = self._counter.count(block, times_ns, seconds)
         self._pending.append((block, times_ns, seconds, counted))
         if len(self._pending) >= _TOGETHER:
-            self._take_pending()
+            self._count_pending()
 
-    def _take_pending(self) -> None:
+    def _count_pending(self) -> None:
         """Count samples together: many cost little more than one."""
         pending, self._pending = self._pending, []
         if pending:
@@ -345,7 +345,7 @@ class StateKeeper(_StateMemory):
     def adjust(self, thresholds: Thresholds) -> None:
         """Class samples by other thresholds from now on."""
         super().adjust(thresholds)
-        self._take_pending()
+        self._count_pending()
         self._by = criteria(self.scene)
 
     def _write_if_due(self) -> None:
@@ -380,7 +380,7 @@ class StateKeeper(_StateMemory):
     def hold(self, newest: float) -> None:
         """Have the state written as it is now, once its samples up to the ``newest`` [s] are published."""
         self._due_from = self._clock() + WRITE_EVERY
-        self._take_moved()
+        self._forget_moved()
         self._held = newest, self._clock(), self._snapshot()
 
     def release(self, published: float) -> None:
@@ -430,7 +430,7 @@ class StateKeeper(_StateMemory):
     def save(self, timeout: float = _CLOSE_WITHIN) -> bool:
         """Write the state now and wait for it; return whether it was written within ``timeout`` [s]."""
         self._held = None
-        self._take_moved()
+        self._forget_moved()
         self._hand_over(self._snapshot(), self._clock())
         with self._changed:
             done = self._changed.wait_for(lambda: self._waiting is None and not self._is_writing, timeout)
@@ -499,7 +499,7 @@ class StateKeeper(_StateMemory):
             return not self._thread.is_alive()
         return True
 
-    def _take_moved(self) -> None:
+    def _forget_moved(self) -> None:
         """Forget the days that are in the history now."""
         moved, self._moved = self._moved, None
         if moved is not None:

@@ -179,10 +179,10 @@ class CageSpeedMeter(Watcher):
         speeds = np.interp(np.arange(self._count), np.cumsum(lengths) - lengths / 2.0, self._speeds)
         geometry = self._geometry._replace(largest_slip=min(max(self._geometry.largest_slip, self._slip), _MOST_SLIP))
         window = Window(samples, self._rate, speeds, self._settings.tolerance, geometry)
-        told = self._rate
+        rate = self._rate
         self._begin()
         if abs(arrived - lasted) > _LATE + _UNEVEN * lasted:
-            reason = f"{lasted:.3g} s of samples at {told:g} Hz arrived in {arrived:.3g} s"
+            reason = f"{lasted:.3g} s of samples at {rate:g} Hz arrived in {arrived:.3g} s"
             return [Event(now, Level.WARN, "vibration.rate", TOPIC, reason, "window left out: check the sampling rate that the blocks say")]
         if self._thread is None:
             self._thread = threading.Thread(target=self._work, name="vibration", daemon=True)
