@@ -12,9 +12,9 @@ from scipy.integrate import solve_ivp
 from bearing_sim import load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.scene.contour import outer_contour
-from bearing_sim.studies.machining import Pressing, RingSection, deflection, machine, pressure_harmonics
+from bearing_sim.studies.machining import Blank, Pressing, deflection, machine, pressure_harmonics
 
-SECTION = RingSection(mean_radius=35.8e-3, width=12e-3, thickness=3.4e-3, modulus=2.06e11)
+SECTION = Blank(mean_radius=35.8e-3, width=12e-3, thickness=3.4e-3, modulus=2.06e11)
 TURN = np.linspace(0, 2 * math.pi, 3601)
 
 

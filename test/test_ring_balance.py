@@ -15,7 +15,7 @@ from bearing_sim.physics.ring_balance import POINT, ROLLER, Seat, balance_elasti
 from bearing_sim.scene.contour import outer_contour
 
 SEAT_RADIUS, WIDTH = 37.5e-3, 10e-3
-SECTION = RingSection(35.8e-3, WIDTH * 3.4e-3**3 / 12, 34e-6, 206e9, math.inf, 7850.0)
+SECTION = RingSection(35.8e-3, WIDTH * 3.4e-3**3 / 12, 34e-6, 206e9, math.inf)
 
 
 def round_bore(azimuths):

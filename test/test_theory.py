@@ -23,7 +23,7 @@ from bearing_sim.physics.mixed import FULL_FILMS
 from bearing_sim.physics.rating_life import ring_ratings
 from bearing_sim.physics.traction import CONTACT, traction
 from bearing_sim.scene.ratings import load_rating
-from bearing_sim.studies.machining import Pressing, RingSection, machine
+from bearing_sim.studies.machining import Blank, Pressing, machine
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = {page.name: page.read_text() for page in sorted((ROOT / "doc" / "theory").glob("*.md"))}
@@ -153,7 +153,7 @@ CHECK_VALUES = {
         "raceway.md",
         "3.4 mm gives $D$ = 0.097 mm",
         0.097,
-        lambda: 1e3 * machine(RingSection(35.8e-3, 0.014, 3.4e-3, 2.06e11), Pressing(2e6), low_radius=34.8625e-3).d_value,
+        lambda: 1e3 * machine(Blank(35.8e-3, 0.014, 3.4e-3, 2.06e11), Pressing(2e6), low_radius=34.8625e-3).d_value,
     ),
     "force of the contour's slope": ("raceway.md", "2.8 N, nearly as much", 2.8, slope_force),
     "onset of vortices": ("drag.md", "$Ta$ = 25.2", 25.2, lambda: onset(1000.0, 0.03, 0.001) * math.sqrt(0.001 / 0.03)),

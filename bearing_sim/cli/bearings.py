@@ -443,7 +443,7 @@ def machine(
     The ring is thin and elastic, computed by the Fourier series of the pressure.  The high points are where it was pressed; without
     --arc-turn a low point is at 0 deg.  Pressures of turned arcs are rescaled until their resultant vanishes.
     """
-    from bearing_sim.studies.machining import Pressing, RingSection, contour_text, machine, plot_machined
+    from bearing_sim.studies.machining import Blank, Pressing, contour_text, machine, plot_machined
 
     if low_radius is not None and ground_radius is not None:
         raise UsageError("--low-radius and --ground-radius determine the same radius; give one of them")
@@ -452,37 +452,37 @@ def machine(
         raise UsageError(f"{widths}: the arcs overlap, or leave no gap")
     if ground_radius is None and low_radius is None:
         low_radius = 34.8625e-3
-    section, pressing = RingSection(mean_radius, width, thickness, modulus), Pressing(pressure, arc_turn, arc_width, arcs, pressed_width)
+    blank, pressing = Blank(mean_radius, width, thickness, modulus), Pressing(pressure, arc_turn, arc_width, arcs, pressed_width)
     with as_usage_error(ValueError):
-        machined = machine(section, pressing, ground_radius=ground_radius, low_radius=low_radius)
-    report = _report_machine(section, pressing, machined)
+        machined = machine(blank, pressing, ground_radius=ground_radius, low_radius=low_radius)
+    report = _report_machine(blank, pressing, machined)
     if out is not None:
-        out.write_text(contour_text(machined, _about(section, pressing)))
+        out.write_text(contour_text(machined, _about(blank, pressing)))
     lobes = f"note: {arcs} arcs give {len(machined.lows)} low points: the turned arc has removed a lobe"
     return Result(
         {**report, "out": out and str(out), "picture": None},
         lambda: _print_machine(report),
-        lambda draft: plot_machined(draft, section, pressing, machined),
+        lambda draft: plot_machined(draft, blank, pressing, machined),
         files=[out.path] if out is not None else [],
         after=(lambda: note(lobes)) if len(machined.lows) != arcs else None,
     )
 
 
-def _about(section, pressing) -> str:
+def _about(blank, pressing) -> str:
     pressed = f"{pressing.arcs} arcs of {math.degrees(pressing.arc_width):g} deg at {1e-6 * pressing.pressure:g} MPa"
-    ring = f"mean radius {1e3 * section.mean_radius:g} mm, equivalent thickness {1e3 * section.thickness:g} mm"
+    ring = f"mean radius {1e3 * blank.mean_radius:g} mm, equivalent thickness {1e3 * blank.thickness:g} mm"
     return (
         f"raceway by pre-deformation machining: {pressed}, one turned by {math.degrees(pressing.arc_turn):g} deg\n"
-        f"ring of {ring}, modulus {1e-9 * section.modulus:g} GPa"
+        f"ring of {ring}, modulus {1e-9 * blank.modulus:g} GPa"
     )
 
 
-def _report_machine(section, pressing, machined) -> dict:
+def _report_machine(blank, pressing, machined) -> dict:
     return {
         "pressures_mpa": [1e-6 * float(pressure) for pressure in pressing.pressures],
         "arc_centres_deg": [math.degrees(centre) for centre in pressing.centres],
-        "mean_radius_mm": 1e3 * section.mean_radius,
-        "thickness_mm": 1e3 * section.thickness,
+        "mean_radius_mm": 1e3 * blank.mean_radius,
+        "thickness_mm": 1e3 * blank.thickness,
         "ground_radius_mm": 1e3 * machined.ground_radius,
         "low_radius_mm": 1e3 * float(machined.lows[:, 1].min()),
         "d_value_mm": 1e3 * machined.d_value,

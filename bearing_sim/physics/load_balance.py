@@ -113,22 +113,28 @@ def squeezed_roller(approach, centrifugal, free, guess, stiffness, profile):
 
 
 @fused
+def press_roller(j, approach, stiffness, profile, loads):
+    """Balance a roller at an approach [m] and write what follows into ``loads``; return Q_i [N] and its slope [N/m], see `squeezed_roller`."""
+    guess = 0.0
+    if profile.crowned:  # a ring nearby tells more than straight rollers
+        known, share = loads[LOAD.approach, j] - loads[LOAD.outer_penetration, j], loads[LOAD.share, j]
+        guess = known + share * (approach - loads[LOAD.approach, j])
+    outer, inner_load, slope, share = squeezed_roller(approach, loads[LOAD.centrifugal, j], loads[LOAD.free, j], guess, stiffness, profile)
+    loads[LOAD.approach, j], loads[LOAD.share, j], loads[LOAD.slope, j] = approach, share, slope
+    loads[LOAD.outer_penetration, j] = outer
+    loads[LOAD.inner, j] = inner_load
+    loads[LOAD.outer, j] = inner_load + loads[LOAD.centrifugal, j]
+    return inner_load, slope
+
+
+@fused
 def _ring_forces(y, z, load_y, load_z, stiffness, profile, loads):
     """Balance all rollers at a ring position; return the ring's residual force and its stiffness matrix."""
     force_y, force_z = load_y - _CENTRING_STIFFNESS * y, load_z - _CENTRING_STIFFNESS * z
     k_yy, k_yz, k_zz = _CENTRING_STIFFNESS, 0.0, _CENTRING_STIFFNESS
     for j in range(loads.shape[1]):
         cosine, sine = loads[LOAD.cosine, j], loads[LOAD.sine, j]
-        approach = loads[LOAD.squeeze, j] + y * cosine + z * sine
-        guess = 0.0
-        if profile.crowned:  # a ring nearby tells more than straight rollers
-            known, share = loads[LOAD.approach, j] - loads[LOAD.outer_penetration, j], loads[LOAD.share, j]
-            guess = known + share * (approach - loads[LOAD.approach, j])
-        outer, inner_load, slope, share = squeezed_roller(approach, loads[LOAD.centrifugal, j], loads[LOAD.free, j], guess, stiffness, profile)
-        loads[LOAD.approach, j], loads[LOAD.share, j], loads[LOAD.slope, j] = approach, share, slope
-        loads[LOAD.outer_penetration, j] = outer
-        loads[LOAD.inner, j] = inner_load
-        loads[LOAD.outer, j] = inner_load + loads[LOAD.centrifugal, j]
+        inner_load, slope = press_roller(j, loads[LOAD.squeeze, j] + y * cosine + z * sine, stiffness, profile, loads)
         if slope == 0.0:
             continue
         force_y -= inner_load * cosine

@@ -45,7 +45,6 @@ class RingSection(NamedTuple):
     area: float  # A [m^2]
     modulus: float  # E [Pa]
     shear_modulus: float  # G [Pa]; infinite: no shear
-    density: float  # rho [kg/m^3]
 
 
 def ring_compliance(n, section: RingSection):
@@ -64,15 +63,15 @@ def ring_compliance(n, section: RingSection):
     return np.where(n == 0.0, radius / (2.0 * math.pi * modulus * section.area), np.where(n == 1.0, 0.0, bent))
 
 
-def modal_mass(n, section: RingSection):
-    """Return the mass that n >= 2 waves of the ring move [kg], of a coefficient a_n or b_n."""
+def modal_mass(n, section: RingSection, density: float):
+    """Return the mass that n >= 2 waves of a ring of a density [kg/m^3] move [kg], of a coefficient a_n or b_n."""
     n = np.asarray(n, float)
-    return math.pi * section.density * section.area * section.radius * (1.0 + 1.0 / (n * n))
+    return math.pi * density * section.area * section.radius * (1.0 + 1.0 / (n * n))
 
 
-def free_frequencies(n, section: RingSection):
-    """Return the angular frequencies of the free ring in n >= 2 waves [rad/s]."""
-    return 1.0 / np.sqrt(modal_mass(n, section) * ring_compliance(n, section))
+def free_frequencies(n, section: RingSection, density: float):
+    """Return the angular frequencies of the free ring in n >= 2 waves [rad/s]; ``density`` as of `modal_mass`."""
+    return 1.0 / np.sqrt(modal_mass(n, section, density) * ring_compliance(n, section))
 
 
 def bore_compliance(n, radius: float, modulus: float, poisson_ratio: float, outside: float = math.inf):

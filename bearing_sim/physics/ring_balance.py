@@ -33,7 +33,7 @@ import numpy as np
 
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.linear_algebra import back_substitute, decompose
-from bearing_sim.physics.load_balance import LOAD, squeezed_roller
+from bearing_sim.physics.load_balance import LOAD, press_roller, squeezed_roller
 from bearing_sim.physics.outer_ring import RingSection, ring_compliance
 from bearing_sim.physics.raceway import contour_at, contour_table
 
@@ -41,17 +41,16 @@ _CENTRING_STIFFNESS = 1e3  # N/m, of rings that nothing holds, as in `bearing_si
 _ITERATIONS, _HALVINGS = 100, 12
 _RELATIVE_RESIDUAL, _LEAST_RESIDUAL = 1e-6, 1e-3  # of the load, as for a rigid ring; N, of a light load
 _HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
-_PIVOTS = 2000  # changes of sides at most
+_PIVOTS, _ROUNDS = 2000, 20  # changes of sides at most; solutions of a problem, each after the changes that the one before asked for
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
-_SERVES = 0.2  # of the residual before, that a compliance of a moment ago has to leave at most
-_CLOSING, _LEAST_CLOSING = 1e-6, 1e-3  # m, over which a roller that closes is a spring; least load that it has then [N]
-_REFRESHED = 1000  # pivots after which rounding is removed
+_SERVES = 0.2  # of the residual before, that a compliance of a moment ago has to leave at most (assumption)
+_CLOSING, _LEAST_CLOSING = 1e-6, 1e-3  # m, over which a roller that closes is a spring; least load that it has then [N] (assumptions)
+_REFRESHED = 1000  # pivots after which rounding is removed (assumption)
 
 
 class ElasticRing(NamedTuple):
     """The ring and its seat, for Z rollers in even pitches and M points of the seat; without any (M = 0) the ring is free."""
 
-    on: bool  # False: a rigid ring
     between: np.ndarray  # F(psi) [m/N], periodic cubic table of `bearing_sim.physics.raceway`, shape (n, 4)
     rollers: np.ndarray  # F at multiples of the pitch [m/N], shape (Z,)
     turning: np.ndarray  # dF/dpsi there [m/(N rad)], shape (Z,)
@@ -145,7 +144,7 @@ def new_elastic_ring(section: RingSection, seat: Seat | None, rollers: int, poin
     among, turning = np.cos(np.outer(pitches, n)) @ compliances, -np.sin(np.outer(pitches, n)) @ (n * compliances)
     if seat is None:
         none = np.zeros(0)
-        return ElasticRing(True, table, among, turning, none, np.zeros((2, 0)), none, 0.0, 0.0, 0.0, 0.0)
+        return ElasticRing(table, among, turning, none, np.zeros((2, 0)), none, 0.0, 0.0, 0.0, 0.0)
     azimuths = 2.0 * math.pi / count * np.arange(count)
     housing = seat.compliances(n) / (math.pi * seat.radius * seat.width)  # by a force at one point
     housing[0] *= 0.5
@@ -153,7 +152,6 @@ def new_elastic_ring(section: RingSection, seat: Seat | None, rollers: int, poin
         housing[-1] *= 0.5  # the finest wave has one phase
     housing[1] += housing[2]  # makes the matrix regular; it moves x, which the balance of forces determines
     return ElasticRing(
-        True,
         table,
         among,
         turning,
@@ -167,16 +165,10 @@ def new_elastic_ring(section: RingSection, seat: Seat | None, rollers: int, poin
     )
 
 
-def rigid_ring() -> ElasticRing:
-    """Return what stands for a rigid ring."""
-    none = np.zeros(0)
-    return ElasticRing(False, np.zeros((0, 4)), none, none, none, np.zeros((2, 0)), none, 0.0, 0.0, 0.0, 0.0)
-
-
 def new_bending(elastic: ElasticRing) -> Bending:
     """Return the memory for a ring; the seat touches everywhere."""
     rollers, points = elastic.rollers.shape[0], elastic.seat.shape[0]
-    size = rollers + 2 if elastic.on else 0
+    size = rollers + 2
     bending = Bending(
         rollers=np.zeros((len(ROLLER), rollers)),
         points=np.zeros((len(POINT), points + 2)),
@@ -184,7 +176,7 @@ def new_bending(elastic: ElasticRing) -> Bending:
         tableau=np.zeros((points + 2, points + 2)),
         touching=np.zeros(points + 3, np.int64),
         compliance=np.zeros((rollers, rollers)),
-        system=np.zeros((size + points + 2, size + points + 2)) if elastic.on else np.zeros((0, 0)),
+        system=np.zeros((size + points + 2, size + points + 2)),
         sides=np.zeros(size + points + 2, np.int64),
         vectors=np.zeros((3, size + points + 2)),
         matrix=np.zeros((size, size)),
@@ -292,8 +284,7 @@ def _press_seat(elastic, bending):
     allowed = _WRONG_FORCE * (abs(rows[POINT.pushed, points]) + abs(rows[POINT.pushed, points + 1]) + 1.0)
     if touching[points + 2] >= _REFRESHED:
         _refresh(elastic, bending)
-    changes = 1
-    while changes > 0:
+    for _ in range(_ROUNDS):
         for i in range(points):
             given[i] = rows[POINT.pushed, i] - rows[POINT.gap, i] if touching[i] == 1 else 0.0
         given[points], given[points + 1] = rows[POINT.pushed, points], rows[POINT.pushed, points + 1]
@@ -304,8 +295,16 @@ def _press_seat(elastic, bending):
             if touching[i] == 0:
                 found[i] += rows[POINT.gap, i] - rows[POINT.pushed, i]
         changes = _settle(allowed, bending.tableau, touching, found, given)
+        if changes <= 0:
+            return changes == 0
         touching[points + 2] += changes
-    return changes == 0
+    return False
+
+
+@kernel
+def _between(among, j, k):
+    """Return F(phi_j - phi_k) or its derivative, from its values at multiples of the pitch."""
+    return among[j - k if j >= k else j - k + among.shape[0]]
 
 
 @kernel
@@ -315,8 +314,8 @@ def _deflect(among, to_points, row, elastic, bending):
     per_pitch, forces, pressed = points // rollers, bending.rollers[ROLLER.force], bending.points[POINT.force]
     for j in range(rollers):
         start, value = points - per_pitch * j, 0.0
-        for k in range(rollers):  # F(phi_j - phi_k)
-            value += among[j - k if j >= k else j - k + rollers] * forces[k]
+        for k in range(rollers):
+            value += _between(among, j, k) * forces[k]
         first, second, third, fourth = 0.0, 0.0, 0.0, 0.0
         for i in range(0, points - 3, 4):
             first += to_points[start + i] * pressed[i]
@@ -398,7 +397,7 @@ def _write_system(elastic, loads, bending):
     for j in range(rollers):
         start, row = points - per_pitch * j, first + j
         for k in range(rollers):
-            value = elastic.rollers[j - k if j >= k else j - k + rollers]
+            value = _between(elastic.rollers, j, k)
             for i in range(points):
                 if bending.touching[i] == 1:
                     value -= bending.by_roller[0, start + i] * system[first + k, i]
@@ -447,7 +446,7 @@ def _correct_all(load_y, load_z, shrunk, stiffness, profile, elastic, loads, ben
         right[j] = loads[LOAD.squeeze, j] - shrunk - opens
     for j in range(rollers):
         for k in range(rollers):
-            right[j] -= elastic.rollers[j - k if j >= k else j - k + rollers] * loads[LOAD.centrifugal, k]
+            right[j] -= _between(elastic.rollers, j, k) * loads[LOAD.centrifugal, k]
         given[first + j] = right[j]
     given[points] += _HOLDING_STIFFNESS * bending.state[1]
     given[points + 1] += _HOLDING_STIFFNESS * bending.state[2]
@@ -459,14 +458,11 @@ def _correct_all(load_y, load_z, shrunk, stiffness, profile, elastic, loads, ben
     for axis in range(2):
         _pivot(size - 2 + axis, system)
         sides[size - 2 + axis] = 2
-    allowed, changes = _WRONG_FORCE * (abs(load_y) + abs(load_z) + 1.0), 1
-    while changes > 0:
+    allowed, basic = _WRONG_FORCE * (abs(load_y) + abs(load_z) + 1.0), bending.vectors[2]
+    for _ in range(_ROUNDS):
         for i in range(size):
-            found[i] = 0.0
-        for k in range(size):
-            if sides[k] > 0:
-                for i in range(size):
-                    found[i] += given[k] * system[k, i]
+            basic[i] = given[i] if sides[i] > 0 else 0.0
+        _apply(basic, found, system)
         for j in range(rollers):
             pressed = found[first + j] if sides[first + j] == 1 else 0.0
             bending.rollers[ROLLER.correction, j] = pressed + loads[LOAD.centrifugal, j] - bending.rollers[ROLLER.start_force, j]
@@ -474,8 +470,10 @@ def _correct_all(load_y, load_z, shrunk, stiffness, profile, elastic, loads, ben
         for i in range(size):
             if sides[i] == 0:
                 found[i] -= given[i]
-        changes = _settle(allowed, system, sides, found, bending.vectors[2])
-    return changes == 0, y, z
+        changes = _settle(allowed, system, sides, found, basic)
+        if changes <= 0:
+            return changes == 0, y, z
+    return False, 0.0, 0.0
 
 
 @kernel
@@ -534,14 +532,7 @@ def _squeeze_rollers(y, z, stiffness, profile, loads, bending):
     for j in range(loads.shape[1]):
         cosine, sine = loads[LOAD.cosine, j], loads[LOAD.sine, j]
         approach = loads[LOAD.squeeze, j] - bending.rollers[ROLLER.deflection, j] + y * cosine + z * sine
-        guess = 0.0
-        if profile.crowned:
-            known, share = loads[LOAD.approach, j] - loads[LOAD.outer_penetration, j], loads[LOAD.share, j]
-            guess = known + share * (approach - loads[LOAD.approach, j])
-        outer, inner_load, slope, share = squeezed_roller(approach, loads[LOAD.centrifugal, j], loads[LOAD.free, j], guess, stiffness, profile)
-        loads[LOAD.approach, j], loads[LOAD.share, j], loads[LOAD.slope, j] = approach, share, slope
-        loads[LOAD.outer_penetration, j], loads[LOAD.inner, j] = outer, inner_load
-        loads[LOAD.outer, j] = inner_load + loads[LOAD.centrifugal, j]
+        inner_load, _ = press_roller(j, approach, stiffness, profile, loads)
         sum_y += inner_load * cosine
         sum_z += inner_load * sine
     return sum_y, sum_z

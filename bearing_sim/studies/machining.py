@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.physics import outer_ring
+from bearing_sim.physics.outer_ring import RingSection, ring_compliance
 from bearing_sim.scene.display import number
 from bearing_sim.sweep.pictures import new_figure, plain_numbers, save
 
@@ -22,7 +22,7 @@ _FINE = 10 * POINTS
 _TURN = 2.0 * math.pi
 
 
-class RingSection(NamedTuple):
+class Blank(NamedTuple):
     """A ring blank."""
 
     mean_radius: float  # R [m]
@@ -88,37 +88,35 @@ def pressure_harmonics(pressing: Pressing, highest: int = HARMONICS) -> np.ndarr
     return np.concatenate([[pressing.pressures.sum() * pressing.arc_width / _TURN], harmonics])
 
 
-def deflection(azimuths, section: RingSection, harmonics: np.ndarray, pressed_width: float | None = None) -> np.ndarray:
+def deflection(azimuths, blank: Blank, harmonics: np.ndarray, pressed_width: float | None = None) -> np.ndarray:
     """Return the inward deflection of the pressed ring at azimuths [m].
 
     Parameters
     ----------
     azimuths : [rad].
-    section : the ring.
+    blank : the ring.
     harmonics : of the pressure, see `pressure_harmonics`; the first is ignored: it moves the ring as a whole.
     pressed_width : [m]; None: the ring's width.
     """
-    force = math.pi * section.mean_radius * (section.width if pressed_width is None else pressed_width)  # by a wave of pressure
-    ring = outer_ring.RingSection(
-        section.mean_radius, section.second_moment, section.width * section.thickness, section.modulus, math.inf, density=0.0
-    )
+    force = math.pi * blank.mean_radius * (blank.width if pressed_width is None else pressed_width)  # by a wave of pressure
+    ring = RingSection(blank.mean_radius, blank.second_moment, blank.width * blank.thickness, blank.modulus, math.inf)
     n = np.arange(2, len(harmonics))
-    bent = force * harmonics[2:] * outer_ring.ring_compliance(n, ring)
-    shrunk = 2.0 * force * harmonics[0].real * float(outer_ring.ring_compliance(0, ring))
+    bent = force * harmonics[2:] * ring_compliance(n, ring)
+    shrunk = 2.0 * force * harmonics[0].real * float(ring_compliance(0, ring))
     return shrunk + (np.exp(1j * np.multiply.outer(azimuths, n)) @ bent).real
 
 
-def machine(section: RingSection, pressing: Pressing, *, ground_radius: float | None = None, low_radius: float | None = None) -> Machined:
+def machine(blank: Blank, pressing: Pressing, *, ground_radius: float | None = None, low_radius: float | None = None) -> Machined:
     """Return the raceway after pressing, grinding round and releasing.
 
     Parameters
     ----------
-    section, pressing : the blank and its load.
+    blank, pressing : the blank and its load.
     ground_radius : R_egm [m]; or
     low_radius : lowest radius of the released raceway [m].
     """
     fine = _TURN * np.arange(_FINE) / _FINE
-    sprung = deflection(fine, section, pressure_harmonics(pressing), pressing.width)
+    sprung = deflection(fine, blank, pressure_harmonics(pressing), pressing.width)
     ground = low_radius - sprung.min() if ground_radius is None else ground_radius
     radii = ground + sprung
     before, after = np.roll(radii, 1), np.roll(radii, -1)
@@ -138,14 +136,14 @@ _CONTOUR, _PRESSED, _ROUND = "#b2451f", "#c9d8ea", "#7a7a7a"
 _DRAWN = 0.22  # of the radius, as which D is drawn
 
 
-def plot_machined(path: Path, section: RingSection, pressing: Pressing, machined: Machined) -> None:
+def plot_machined(path: Path, blank: Blank, pressing: Pressing, machined: Machined) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     figure = new_figure(11, 5.2)
     shape, radius = figure.subplots(1, 2, width_ratios=(1, 1.35))
     _draw_shape(shape, pressing, machined)
     _draw_radius(radius, pressing, machined)
     pressed = f"{pressing.arcs} arcs of {math.degrees(pressing.arc_width):g}° pressed with {1e-6 * pressing.pressure:g} MPa"
-    ring = f"ring of mean radius {1e3 * section.mean_radius:g} mm and thickness {1e3 * section.thickness:g} mm"
+    ring = f"ring of mean radius {1e3 * blank.mean_radius:g} mm and thickness {1e3 * blank.thickness:g} mm"
     made = f"D value {number(1e6 * machined.d_value)} µm, roundness of the low points {number(round(1e6 * machined.roundness, 3))} µm"
     turn = f", one of them turned by {math.degrees(pressing.arc_turn):g}°" if pressing.arc_turn else ""
     save(figure, path, f"{pressed}{turn}, {ring}\n{made}", 11)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.studies.machining import Machined, Pressing, RingSection, machine
+from bearing_sim.studies.machining import Blank, Machined, Pressing, machine
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table
 from deng2017.study import ANGLE, D_VALUE, LOAD, LOW, LOW_RADII, MASS, MIXTURE, ROUNDNESS, SPEED
@@ -380,7 +380,7 @@ def judge(tables: Tables, levels: Sequence[str]) -> list[Finding]:
 
 
 ARC_TURNS = (0.0, 1.0, 2.0, 3.0, 4.0, 5.0)  # deg, rotation of one pressed arc in figures 3 and 10
-_SECTION = RingSection(35.8e-3, 12e-3, 3.4e-3, 206e9)  # defaults of `bearing-sim machine`
+_SECTION = Blank(35.8e-3, 12e-3, 3.4e-3, 206e9)  # defaults of `bearing-sim machine`
 _PRESSURE, _LOW_RADIUS = 2.0e6, 34.8625e-3
 
 

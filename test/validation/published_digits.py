@@ -19,7 +19,7 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.mounting import clearance_limits, tolerance_limits
 from bearing_sim.scene.ratings import load_rating
 from bearing_sim.scene.viscosity_index import reference_viscosities, viscosity_index
-from bearing_sim.studies.machining import Pressing, RingSection, machine
+from bearing_sim.studies.machining import Blank, Pressing, machine
 from validation.check import Check, Comparison, compared
 
 GROUP = "Published digits"
@@ -246,7 +246,7 @@ def _fits_and_clearances() -> list[Comparison]:
 
 
 def _machined_raceway() -> list[Comparison]:
-    section = RingSection(mean_radius=35.8e-3, width=12e-3, thickness=3.4e-3, modulus=2.06e11)
+    section = Blank(mean_radius=35.8e-3, width=12e-3, thickness=3.4e-3, modulus=2.06e11)
     found = machine(section, Pressing(2e6), low_radius=34.8625e-3)
     quantity = "D of a raceway machined under 2 MPa; the ring's equivalent thickness is given to two digits, and D goes with its cube"
     return [compared(quantity, "Deng 2017, Fig. 3, by finite elements", 0.098, 1e3 * found.d_value, unit="mm", relative=0.03)]
