@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.model.oil import oil_at, pressure_index, shear_strength
-from bearing_sim.model.running_clearance import mounted, running_play, uniform
+from bearing_sim.model.running_clearance import mounted, running_play, seat_compliance, uniform
 from bearing_sim.physics.contact import ContactDamping, iso_contact_stiffness, line_contact_stiffness
 from bearing_sim.physics.drag import LARGEST_FRACTION, Bath, bath_drag, swept_fraction
 from bearing_sim.physics.film import RollingResistance, resistance_constants
@@ -16,9 +16,11 @@ from bearing_sim.physics.flange import NO_FACE, Flanges, corner_stiffness, flang
 from bearing_sim.physics.growth import Growth, Mounted, Temperatures, growth_at
 from bearing_sim.physics.lamina_life import Laminae, new_laminae
 from bearing_sim.physics.mixed import FILM_RATIO, NONE, SKF, MixedFriction, hysteresis_constant, skf_constant
+from bearing_sim.physics.outer_ring import RingSection, bed_compliance, bore_compliance, ring_compliance
 from bearing_sim.physics.profile import Profile, new_profile
 from bearing_sim.physics.raceway import tabulated
 from bearing_sim.physics.rating_life import METHODS, cleanliness, reliability_factor, ring_ratings
+from bearing_sim.physics.ring_balance import ElasticRing, Seat, new_elastic_ring
 from bearing_sim.physics.squeeze_film import SqueezeFilm, new_squeeze_film
 from bearing_sim.physics.starvation import MinimumLoad, Starvation, starvation_rate
 from bearing_sim.physics.traction import TractionConstants, constant_constants, kragelskii_constants, oil_4109_constants, thermal_eyring_constants
@@ -28,6 +30,7 @@ from bearing_sim.scene.contour import outer_contour
 from bearing_sim.scene.crown import IsoLogCrown, NoCrown, StraightArcCrown, crown_drops, log_scale, slice_middles
 from bearing_sim.scene.flanges import flange_geometry
 from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, HydrodynamicRollingResistance, KragelskiiTraction
+from bearing_sim.scene.outer_ring import ring_geometry
 from bearing_sim.scene.ratings import minimum_load_law, rate
 from bearing_sim.scene.scene import Bearing, Lubricant, Scene
 from bearing_sim.scene.support import settled_support
@@ -213,6 +216,7 @@ class Params(NamedTuple):
     minimum_load: MinimumLoad
     starvation: Starvation
     mixed: MixedFriction
+    outer_ring: ElasticRing | None  # where it bends; None: it is rigid
 
 
 class Lubrication(NamedTuple):
@@ -312,7 +316,45 @@ def pack(scene: Scene) -> Params:
         minimum_load=MinimumLoad(*minimum_load_law(bearing)[:2]),
         starvation=_starvation(scene),
         mixed=_mixed(scene),
+        outer_ring=_outer_ring(scene),
     )
+
+
+def _outer_ring(scene: Scene) -> ElasticRing | None:
+    """Return the elastic outer ring and its seat; None where it is rigid."""
+    bearing, housing = scene.bearing, scene.mounting.housing
+    backing, section, material = housing.backing, ring_geometry(bearing), bearing.material
+    if backing.law == "rigid":
+        return None
+    shear = 0.5 * material.youngs_modulus / (1.0 + material.poisson_ratio) if bearing.outer_ring.shear else math.inf
+    ring = RingSection(section.radius, section.second_moment, section.area, material.youngs_modulus, shear)
+    if backing.law == "free":
+        return new_elastic_ring(ring, None, bearing.roller.count, bearing.outer_ring.points)
+
+    def compliances(n):
+        if backing.law == "bed":
+            return bed_compliance(n, backing.stiffness)
+        if backing.law == "rigid_bore":
+            return np.zeros(len(n))
+        outside = math.inf if backing.massive else housing.outside_radius
+        return bore_compliance(n, section.seat_radius, housing.material.youngs_modulus, housing.material.poisson_ratio, outside)
+
+    def bore(azimuths):
+        return sum((wave.amplitude * np.cos(wave.waves * (azimuths - wave.azimuth)) for wave in backing.bore_waves), 0.0 * azimuths)
+
+    around = 2.0 * math.pi * section.seat_radius * section.width
+    shrunk = around * float(ring_compliance(0, ring))
+    seat = Seat(
+        radius=section.seat_radius,
+        width=section.width,
+        compliances=compliances,
+        bore=bore,
+        play=math.nan if backing.play is None else backing.play,
+        loose=seat_compliance(bearing, scene.mounting) if backing.play is None else 0.0,
+        pressed=shrunk + float(compliances(np.zeros(1, int))[0]),
+        shrunk=shrunk,
+    )
+    return new_elastic_ring(ring, seat, bearing.roller.count, bearing.outer_ring.points)
 
 
 @functools.lru_cache(maxsize=64)

@@ -117,6 +117,11 @@ def _housing_fit(bearing: Bearing, mounting: Mounting) -> HousingFit:
     return HousingFit(-displacement(ring, ring.inner_radius, State(outer_pressure=1.0)), pressure, by_ring, by_housing)
 
 
+def seat_compliance(bearing: Bearing, mounting: Mounting) -> float:
+    """Return by how much a pressure between outer ring and housing parts them in the mean [m/Pa]."""
+    return float(compliance_matrix(housing_layers(bearing, mounting))[0, 0])
+
+
 def running_play(bearing: Bearing, mounting: Mounting, shaft_speed: float) -> float:
     """Return how far the cage's centre can move in its guidance [m] at a shaft speed [rad/s] and the reference temperature.
 

@@ -77,6 +77,7 @@ class Growth(NamedTuple):
     fitted: float  # by the pressure of the shaft's fit [m/Pa]
     pressure: float  # of that fit at rest; negative where it is loose [Pa]
     pressure_by_square_speed: float  # [Pa s^2]
+    housing_pressure: float  # of the fit in the housing; negative where it is loose [Pa]
 
 
 @kernel
@@ -88,7 +89,7 @@ def growth_at(mounted, temperatures):
     outside = housing.pressure + housing.by_ring * outer + housing.by_housing * (temperatures.housing - expansion.reference)
     inside = shaft.pressure + shaft.by_ring * inner + shaft.by_shaft * (temperatures.shaft - expansion.reference)
     shrunk = housing.shrunk * max(0.0, outside)
-    return Growth(heat, shrunk, shaft.free + mounted.roller_free, shaft.fitted, inside, shaft.by_square_speed)
+    return Growth(heat, shrunk, shaft.free + mounted.roller_free, shaft.fitted, inside, shaft.by_square_speed, outside)
 
 
 @kernel

@@ -14,6 +14,7 @@ from bearing_sim.scene.crown import Crown, IsoLogCrown, crown_errors
 from bearing_sim.scene.flanges import Flanges, flange_errors
 from bearing_sim.scene.material import Material
 from bearing_sim.scene.mounting import CLEARANCE_GROUPS, CLEARANCE_PARTS, OTHER_CLEARANCES, clearance_limits
+from bearing_sim.scene.outer_ring import OuterRing
 from bearing_sim.scene.quantity import Quantity, QuantityOrName, check, named_law, record
 from bearing_sim.scene.ratings import Ratings
 
@@ -332,6 +333,7 @@ class Bearing:
     # Instead of outer_raceway.low_radius; the middle of the limits is taken for a group.
     clearance: Annotated[float | str, _CLEARANCE] | None = None
     outer_raceway: OuterRaceway
+    outer_ring: OuterRing = field(default_factory=OuterRing)  # where it bends, see `mounting.housing.backing`
     inner_raceway: InnerRaceway
     roller: Roller
     cage: Cage

@@ -77,6 +77,12 @@ EFFECTS = (
         lambda scene: "full_complement" if scene.bearing.cage.is_absent else False,
     ),
     Effect("bearing.flanges", LEVELS, "whose rollers rub on flanges", lambda scene: scene.bearing.flanges.present),
+    Effect(
+        "mounting.housing.backing",
+        ("steady", "slip"),
+        "whose outer ring bends",
+        lambda scene: False if scene.mounting.housing.backing.law == "rigid" else scene.mounting.housing.backing.law,
+    ),
     Effect("bearing.dimensions_at", LEVELS, "whose rings grow", lambda scene: scene.bearing.dimensions_at == "cold"),
     Effect("support.unbalance", WHIRLING, "whose inner ring has inertia", lambda scene: scene.support.unbalance.amount > 0.0),
     *(Effect(f"wants.{name}", want.levels, want.because, lambda scene, name=name: name in scene.wants) for name, want in WANTS.items()),

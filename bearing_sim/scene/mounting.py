@@ -13,6 +13,7 @@ from typing import Annotated, NamedTuple
 
 from bearing_sim.scene.bundled import catalog_table
 from bearing_sim.scene.material import Material
+from bearing_sim.scene.outer_ring import Backing, RigidBacking
 from bearing_sim.scene.quantity import Quantity, check, record
 
 _CLASS = re.compile(r"^(js|[fghjkmnprs])([45678])$", re.IGNORECASE)
@@ -167,7 +168,8 @@ class Shaft:
 
 @record
 class Housing:
-    """The housing around the outer ring.  Without a fit or an interference it leaves the ring as it is."""
+    """The housing around the outer ring.  Without a fit or an interference it leaves the ring as it is, and the ring is rigid unless ``backing`` says
+    what it bends in."""
 
     fit: str | None = None  # class of the seat by ISO 286, such as H7; the mean interference is taken
     interference: (
@@ -177,6 +179,7 @@ class Housing:
     material: Material = field(default_factory=Material)
     roughness: Annotated[float, Quantity("m", "mean roughness depth of the seat, R_z", 0.0, 1e-4, "um")] = 6.3e-6
     ring_roughness: Annotated[float, Quantity("m", "mean roughness depth of the ring's outside, R_z", 0.0, 1e-4, "um")] = 2.5e-6
+    backing: Backing = field(default_factory=RigidBacking)  # what the outer ring bends in, at levels `steady` and `slip`
 
     @check
     def _fit_is_given_once(self) -> list[str]:

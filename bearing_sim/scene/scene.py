@@ -25,6 +25,7 @@ from bearing_sim.scene.flanges import axial_errors
 from bearing_sim.scene.heat import Heat, NoHeat, given_errors, sink_errors
 from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.mounting import Mounting, mounting_errors
+from bearing_sim.scene.outer_ring import backing_errors
 from bearing_sim.scene.quantity import Quantity, check, record
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.support import Support, support_errors
@@ -516,6 +517,7 @@ class Scene:
     @check
     def _operation_is_within_bounds(self) -> list[str]:
         errors = step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + support_errors(self)
+        errors += backing_errors(self)
         errors += axial_errors(self) + sink_errors(self.heat, self.lubricant) + given_errors(self.heat, self.bearing.dimensions_at)
         errors += cleanliness_errors(self)
         return errors + range_errors(self) + estimation_errors(self) + watcher_errors(self)

@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.model import write_growth
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import new_work
 from bearing_sim.physics.contact import EXPONENT
-from bearing_sim.physics.growth import total_growth
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, scene_inputs
@@ -80,7 +80,7 @@ def ring_resonance(scene: Scene, slip: float = 0.0, inputs: Inputs | None = None
     count, mass = params.rollers.count, params.ring.mass
     cage = 0.5 * speed * (1.0 - params.raceways.diameter_ratio) * (1.0 - min(slip, 0.999))
     work = new_work(params)
-    work.growth[0] = total_growth(speed, lubrication.growth)
+    write_growth(speed, lubrication.growth, work.growth)
     pitch, stiffness, damping = 2.0 * math.pi / count, [], []
     for k in range(_POSITIONS):
         if not balance_loads(math.copysign(pitch * k / _POSITIONS, cage), cage, load_y, load_z, params, work):

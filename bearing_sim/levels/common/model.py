@@ -87,6 +87,12 @@ def inner_growth(shaft_speed, model):
 
 
 @kernel
+def write_growth(shaft_speed, growth, present):
+    """Write a `bearing_sim.physics.growth.Growth` at a shaft speed [rad/s]: the growth [m], and the pressure of the outer ring's seat [Pa]."""
+    present[0], present[1] = total_growth(shaft_speed, growth), growth.housing_pressure
+
+
+@kernel
 def pitch_step(cage_speed, rollers, fraction):
     """Return the longest sensible step [s], a fraction of a roller pitch of cage rotation, so that no lobe is jumped over.
 

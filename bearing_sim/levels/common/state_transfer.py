@@ -12,12 +12,13 @@ import math
 
 import numpy as np
 
+from bearing_sim.levels.common.model import write_growth
 from bearing_sim.levels.common.support import place_support, resume_support, tail_of
 from bearing_sim.levels.slip import model as slip
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads, pitch_loads
 from bearing_sim.numerics.simd import LANES
-from bearing_sim.physics.growth import cold_growth, total_growth
+from bearing_sim.physics.growth import cold_growth
 from bearing_sim.physics.lamina_life import MOMENTS, write_lamina_means
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, OilFactors
@@ -41,7 +42,7 @@ def rolling_state(at, params, work, shaft_speed, load_y, load_z):
     count = params.rollers.count
     balance, rolling = slip_state.new_work(params), slip.initial_state(params, None, shaft_speed, load_y, load_z)
     cage_speed = rolling[slip_state.OMEGA]
-    balance.growth[0] = total_growth(shaft_speed, cold_growth(params.mounted))  # growth by heat, unknown here, comes with the first step
+    write_growth(shaft_speed, cold_growth(params.mounted), balance.growth)  # growth by heat, unknown here, comes with the first step
     balance_loads(0.0, cage_speed, load_y, load_z, params, balance)
     state, rollers = _new_state(at, params)
     state[at.RING_Y], state[at.RING_Z] = balance.ring
@@ -64,7 +65,7 @@ def start_means(model, work, cage_speed, sample=None):
     sample : scales the means so that the equivalent loads are those of this sample; as they are where absent.
     """
     params, drive, balance = model.params, model.drive, slip_state.new_work(model.params)
-    balance.growth[0] = total_growth(drive.shaft_speed, model.lubrication.growth)
+    write_growth(drive.shaft_speed, model.lubrication.growth, balance.growth)
     equivalent = pitch_loads(0.0, cage_speed, drive.load_y, drive.load_z, OilFactors(1.0, 1.0), params, balance)
     moments, laminae = balance.load_moments, np.zeros((2, len(params.life.laminae.positions)))
     write_lamina_means(moments, params.life.laminae, *laminae)

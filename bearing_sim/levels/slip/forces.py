@@ -23,7 +23,7 @@ What all rollers together give the cage is not changed: P_j = rho_j L_j + (1 - r
 
 import math
 
-from bearing_sim.levels.common.model import films_at, inner_growth, load_at, shaft_speed_at
+from bearing_sim.levels.common.model import films_at, load_at, shaft_speed_at, write_growth
 from bearing_sim.levels.common.rollers import drag, slides_up_to_rolling
 from bearing_sim.levels.slip.state import OMEGA, POCKET, SPIN, THETA
 from bearing_sim.numerics.compilation import fused, kernel
@@ -38,6 +38,7 @@ from bearing_sim.physics.load_balance import LOAD, balance_ring
 from bearing_sim.physics.pocket import FRICTION_SPIN, pocket_friction
 from bearing_sim.physics.profile import profile_depth, profile_force
 from bearing_sim.physics.raceway import contour_at
+from bearing_sim.physics.ring_balance import ROLLER, balance_elastic_ring
 
 _PITCH_POSITIONS, _MOST_PITCH_POSITIONS = 20, 320  # cage angles over one roller pitch for the equivalent loads, at first and at most
 # Time in which a roller gains or loses on the cage, times the cage speed, and least such speed [rad/s] (assumptions).
@@ -69,10 +70,34 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
         loads[LOAD.radius, j] = radius - rollers.radius + profile.highest
         loads[LOAD.centrifugal, j] = rollers.mass * loads[LOAD.radius, j] * cage_speed * cage_speed
         loads[LOAD.free, j] = free_at_pitch * (1.0 + by_force * (loads[LOAD.radius, j] / raceways.pitch_radius - 1.0))
-    converged = balance_ring(load_y, load_z, raceways.stiffness, profile, loads, work.ring)
+    converged = _balance_rollers(params.outer_ring, turns, load_y, load_z, params, work)
     for j in range(rollers.count):
         loads[LOAD.radius, j] += loads[LOAD.outer_penetration, j]
     return converged
+
+
+@fused
+def _balance_rollers(outer_ring, turns, load_y, load_z, params, work):
+    """Balance rollers and ring, and where it bends the outer ring and its housing; return whether that converged.
+
+    Parameters
+    ----------
+    outer_ring : ``params.outer_ring``; where it is None, numba compiles nothing of what bends.
+    turns : azimuth of roller 0 [turns].
+    load_y, load_z, params, work : as of `balance_loads`, which has written into ``work.loads`` how the rollers stand.
+    """
+    raceways, loads = params.raceways, work.loads
+    if outer_ring is None:
+        return balance_ring(load_y, load_z, raceways.stiffness, raceways.profile, loads, work.ring)
+    pressure, bending = work.growth[1], work.bending
+    if not balance_elastic_ring(load_y, load_z, turns, pressure, raceways.stiffness, raceways.profile, outer_ring, loads, work.ring, bending):
+        return False
+    for j in range(params.rollers.count):
+        deflection = bending.rollers[ROLLER.deflection, j]
+        loads[LOAD.squeeze, j] -= deflection
+        loads[LOAD.radius, j] += deflection
+        loads[LOAD.contour_slope, j] += bending.rollers[ROLLER.slope, j]
+    return True
 
 
 @fused
@@ -129,7 +154,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     rollers, cage = params.rollers, params.cage
     cage_speed, shaft_speed = y[OMEGA], shaft_speed_at(t, drive)
     films = films_at(t, shaft_speed, model)
-    work.growth[0] = inner_growth(shaft_speed, model)
+    write_growth(shaft_speed, model.lubrication.growth, work.growth)
     inner_radius = params.raceways.inner_radius + work.growth[0]
     load_y, load_z = load_at(t, drive)
     if not balance_loads(y[THETA], cage_speed, load_y, load_z, params, work):

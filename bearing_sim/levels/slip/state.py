@@ -15,6 +15,7 @@ from bearing_sim.numerics.simd import blocks_of, new_blocks
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.lamina_life import MOMENTS
 from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.ring_balance import Bending, new_bending
 
 THETA, OMEGA, SPIN = 0, 1, 2
 
@@ -41,13 +42,14 @@ class Work(NamedTuple):
     tangential: np.ndarray  # all forces along the orbit on each roller but the pocket's [N], shape (Z,)
     pockets: np.ndarray  # rows `POCKET`, shape (len(PocketRow), Z)
     flanges: np.ndarray  # on each roller: force along the orbit [N] and torque on its spin [N m] of the inner ring's, then of the outer's, (4, Z)
-    growth: np.ndarray  # of the inner raceway at present [m], shape (1,)
+    growth: np.ndarray  # of the inner raceway at present [m], and pressure of the outer ring's seat [Pa], see `write_growth`, shape (2,)
     pitch: np.ndarray  # rows cosine and sine of 2 pi j/Z, and the angle in intervals of the contour table, shape (3, Z)
     # of roller loads, running means over a cage turn, see `bearing_sim.physics.lamina_life.add_load_moments`, shape (2, MOMENTS)
     load_moments: np.ndarray
     last_moments: np.ndarray  # those powers at the end of the last step, likewise
     present_moments: np.ndarray  # and of the present one
     tally: np.ndarray  # sums over time, see `bearing_sim.levels.common.observation.Tally`
+    bending: Bending | None  # of the outer ring; None: it is rigid
     jacobian: Arrow
     factored: Arrow  # of I - gamma h J
 
@@ -63,12 +65,13 @@ def new_work(params):
         tangential=np.zeros(count),
         pockets=np.zeros((len(POCKET), count)),
         flanges=np.zeros((4, count)),
-        growth=np.zeros(1),
+        growth=np.zeros(2),
         pitch=np.array([np.cos(angles), np.sin(angles), params.raceways.contour.shape[0] * np.arange(count) / count]),
         load_moments=np.zeros((2, MOMENTS)),
         last_moments=np.zeros((2, MOMENTS)),
         present_moments=np.zeros((2, MOMENTS)),
         tally=np.zeros(len(Tally._fields)),
+        bending=None if params.outer_ring is None else new_bending(params.outer_ring),
         jacobian=new_arrow(count),
         factored=new_arrow(count),
     )

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.levels.common.model import Drive, Model, inner_growth, load_at, shaft_speed_at
+from bearing_sim.levels.common.model import Drive, Model, load_at, shaft_speed_at, write_growth
 from bearing_sim.levels.common.observation import TALLY, Tally, damage_rate, mean_rate, observe_course, observe_rest, oil_at_speed
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
@@ -227,7 +227,7 @@ def _write_sample(t, y, model, work, interval, previous, row):
     for column in range(ANSWER.flange_power - ANSWER.shaft_power + 1):
         row[COLUMN.shaft_power + column] = answer[ANSWER.shaft_power + column]
     load_y, load_z = load_at(t, model.drive)
-    work.bearing.growth[0] = inner_growth(shaft_speed_at(t, model.drive), model)
+    write_growth(shaft_speed_at(t, model.drive), model.lubrication.growth, work.bearing.growth)
     balance_loads(cage_angle, cage_speed, load_y, load_z, params, work.bearing)
     observe_orbits(cage_angle, cage_speed, count, work.bearing, row)
     for column in (COLUMN.roller_spin, COLUMN.roller_rotation, COLUMN.pocket_force):

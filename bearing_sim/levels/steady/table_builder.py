@@ -355,7 +355,7 @@ def table_numbers(scene: Scene, span: Span) -> list[np.ndarray]:
     oils = [lubricate(scene.lubricant, params, float(kelvin)) for kelvin in np.linspace(span.minimum_temperature, span.maximum_temperature, _OILS)]
     life = params.life._replace(method=0, reliability_factor=1.0)  # which choose among lives, and change no operating point
     bearing = params.rollers, params.raceways, params.cage, params.mounted, params.variants, params.envelope, life
-    return list(_numbers((bearing, oils, span, scene.table.tolerance)))
+    return list(_numbers((bearing, params.outer_ring or (), oils, span, scene.table.tolerance)))
 
 
 def corrected_by(scene: Scene) -> str:

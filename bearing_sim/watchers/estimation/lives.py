@@ -13,13 +13,14 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
+from bearing_sim.levels.common.model import write_growth
 from bearing_sim.levels.slip.forces import pitch_loads
 from bearing_sim.levels.slip.state import new_work
 from bearing_sim.model.params import pack
 from bearing_sim.model.running_clearance import uniform
 from bearing_sim.model.temperatures import given_temperatures
 from bearing_sim.numerics.compilation import compiled_for, kernel
-from bearing_sim.physics.growth import growth_at, total_growth
+from bearing_sim.physics.growth import growth_at
 from bearing_sim.physics.lamina_life import equivalent_loads
 from bearing_sim.physics.rating_life import (
     LARGEST_VISCOSITY_RATIO,
@@ -214,7 +215,7 @@ def _write_factors(films, found, slip, shaft_speed, load_y, load_z, solids, para
 @kernel
 def _take_place(shaft_speed, solids, params, work, ring):
     """Let the rings of a bearing be where and as large as they are before its loads are balanced; parameters as of `_write_lives`."""
-    work.growth[0] = total_growth(shaft_speed, growth_at(params.mounted, solids))
+    write_growth(shaft_speed, growth_at(params.mounted, solids), work.growth)
     work.ring[0], work.ring[1] = ring[0], ring[1]
 
 
