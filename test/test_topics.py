@@ -217,7 +217,7 @@ WIRE = {
         ],
     ),
     "running_clearance": (
-        "running, initial, fits, rotation, heat, contour",
+        "running, initial, fits, rotation, heat, contour, bending",
         [
             ("running_clearance", "m"),
             ("initial_clearance", "m"),
@@ -225,6 +225,7 @@ WIRE = {
             ("rotation_clearance", "m"),
             ("heat_clearance", "m"),
             ("contour_clearance", "m"),
+            ("bending_clearance", "m"),
         ],
     ),
     "centre_positions": (
@@ -264,7 +265,7 @@ WIRE = {
     "roller_tilts": ("inclination: outwards, along the orbit", [("roller_tilt", "rad"), ("roller_skew", "rad")]),
     "roller_loads": ("ring", [("inner_load", "N"), ("outer_load", "N")]),
     "operating_point": (
-        "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load, largest inner and outer roller load",
+        "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load, largest inner and outer roller load, arc of the seat",
         [
             ("load_y", "N"),
             ("load_z", "N"),
@@ -275,6 +276,7 @@ WIRE = {
             ("flange_load", "N"),
             ("inner_load_maximum", "N"),
             ("outer_load_maximum", "N"),
+            ("seat_arc", "rad"),
         ],
     ),
     "predicted_temperatures": (
@@ -298,6 +300,7 @@ WIRE = {
             ("outer_ring_temperature_uncorrected", "K"),
         ],
     ),
+    "raceway_deflections": ("deflection", [("raceway_deflection", "m")]),
     "roller_places": ("angle, radius, rotation", [("roller_angle", "rad"), ("roller_radius", "m"), ("roller_rotation", "rad")]),
 }
 NUMBERS = {"cage_slip": "", "rating_life": "h", "modified_rating_life": "h", "level": "", "damage": ""}

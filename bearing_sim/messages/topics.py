@@ -64,6 +64,7 @@ class Topic(NamedTuple):
         exactly as in the sample.
     of_tilting_levels : whether levels without tilts and slices omit it.
     of_heat : whether scenes without a law of heat omit it.
+    of_bending : whether scenes with a rigid outer ring omit it.
     computed : of an output topic, numbers that are not observables themselves.
     of_scene : returns the topic of a scene, where its messages depend on the scene.
     repeats : whether its numbers follow from those of the other topics: a recording has it for `REPEATING_RATE` samples a second at most, and
@@ -77,6 +78,7 @@ class Topic(NamedTuple):
     observables: Mapping[str, tuple[str, ...]] = MappingProxyType({})
     of_tilting_levels: bool = False
     of_heat: bool = False
+    of_bending: bool = False
     computed: Computed | None = None
     of_scene: Callable[[Any], "Topic"] | None = None
     repeats: bool = False
@@ -295,7 +297,7 @@ def _array(name: str, entry: Mapping[str, Any]) -> Topic:
             dim.append({"label": "roller", "size": data.shape[1], "stride": data.shape[1]})
         return {"layout": {"dim": dim, "data_offset": 0}, "data": data.ravel()}
 
-    flags = {flag: entry.get(flag, False) for flag in ("of_tilting_levels", "of_heat")}
+    flags = {flag: entry.get(flag, False) for flag in ("of_tilting_levels", "of_heat", "of_bending")}
     return Topic(name, "std_msgs/msg/Float64MultiArray", entry["meaning"], message, {"data": fields}, **flags)
 
 
@@ -441,6 +443,7 @@ def inputs(scene) -> dict[str, Topic]:
 def _of_scene(table: Mapping[str, Topic], scene) -> dict[str, Topic]:
     absent = [topic.name for topic in table.values() if topic.of_tilting_levels and not scene.bodies_tilt]
     absent += [topic.name for topic in table.values() if topic.of_heat and not scene.uses_ring_temperatures]
+    absent += [topic.name for topic in table.values() if topic.of_bending and not scene.outer_ring_bends]
     return {name: topic if topic.of_scene is None else topic.of_scene(scene) for name, topic in table.items() if name not in absent}
 
 

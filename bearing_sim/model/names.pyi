@@ -23,6 +23,7 @@ BearingObservable = Literal[
     "rotation_clearance",
     "heat_clearance",
     "contour_clearance",
+    "bending_clearance",
     "level",
     "cage_angle",
     "cage_speed",
@@ -63,6 +64,7 @@ BearingObservable = Literal[
     "outer_edge_pressure",
     "outer_ring_y",
     "outer_ring_z",
+    "seat_arc",
     "shaft_y",
     "shaft_z",
     "inner_flange_force",
@@ -101,6 +103,7 @@ RollerObservable = Literal[
     "roller_rotation",
     "inner_load",
     "outer_load",
+    "raceway_deflection",
     "orbital_speed",
     "pocket_force",
     "roller_tilt",
@@ -186,6 +189,8 @@ class SettledResults:
     def heat_clearance(self) -> float: ...
     @property
     def contour_clearance(self) -> float: ...
+    @property
+    def bending_clearance(self) -> float: ...
     @property
     def equivalent_load(self) -> float: ...
     @property
@@ -293,6 +298,8 @@ class SettledResults:
     @property
     def outer_ring_z(self) -> float: ...
     @property
+    def seat_arc(self) -> float: ...
+    @property
     def shaft_y(self) -> float: ...
     @property
     def shaft_z(self) -> float: ...
@@ -336,6 +343,8 @@ class SettledResults:
     def inner_load(self) -> NDArray[np.float64]: ...
     @property
     def outer_load(self) -> NDArray[np.float64]: ...
+    @property
+    def raceway_deflection(self) -> NDArray[np.float64]: ...
     @property
     def orbital_speed(self) -> NDArray[np.float64]: ...
     @property

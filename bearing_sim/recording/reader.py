@@ -59,6 +59,7 @@ _ESTIMATED = {f"/{name}": name for name in ESTIMATED}
 _LAST_OF_SAMPLE = "/roller_loads"
 _LABEL = 12  # first byte of the first label in a serialised Float64MultiArray
 _OF_TILTING_LEVELS = tuple(field for name, topic in OUTPUTS.items() if topic.of_tilting_levels for field in ARRAYS[name].fields)
+_OF_BENDING = tuple(field for name, topic in RECORDED.items() if topic.of_bending for field in ARRAYS[name].fields)
 
 
 class Recording:
@@ -379,6 +380,9 @@ class _Samples:
         self.complete, self.incomplete = self.complete + len(block), self.incomplete + int((~is_complete).sum())
         if not self._scene.bodies_tilt:
             for field in _OF_TILTING_LEVELS:
+                block[field] = 0.0
+        if not self._scene.outer_ring_bends:
+            for field in (*_OF_BENDING, "bending_clearance"):  # the second is younger than some recordings
                 block[field] = 0.0
         return block
 

@@ -81,7 +81,7 @@ EFFECTS = (
         "mounting.housing.backing",
         ("steady", "slip"),
         "whose outer ring bends",
-        lambda scene: False if scene.mounting.housing.backing.law == "rigid" else scene.mounting.housing.backing.law,
+        lambda scene: scene.outer_ring_bends and scene.mounting.housing.backing.law,
     ),
     Effect("bearing.dimensions_at", LEVELS, "whose rings grow", lambda scene: scene.bearing.dimensions_at == "cold"),
     Effect("support.unbalance", WHIRLING, "whose inner ring has inertia", lambda scene: scene.support.unbalance.amount > 0.0),

@@ -31,9 +31,7 @@ class OuterRing:
     ) = None
     area: Annotated[float, Quantity("m^2", "area of the section; None: of wall and ribs", 1e-8, 1.0, "mm^2")] | None = None
     neutral_radius: Annotated[float, Quantity("m", "radius of the neutral line; None: of wall and ribs", 1e-3, 2.0, "mm")] | None = None
-    seat_radius: Annotated[float, Quantity("m", "radius of the seat; None: outer_raceway.outside_radius", 1e-3, 2.0, "mm")] | None = (
-        None
-    )
+    seat_radius: Annotated[float, Quantity("m", "radius of the seat; None: outer_raceway.outside_radius", 1e-3, 2.0, "mm")] | None = None
     shear: bool = True  # whether shear makes the ring softer, which counts from n t/R of about 0.3 on
     points: Annotated[int, Field(ge=2, le=16)] = 4  # of the seat to a roller pitch; the ring bends in up to Z points/2 waves
 

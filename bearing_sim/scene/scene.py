@@ -501,6 +501,11 @@ class Scene:
         return self.heat.law != "none"
 
     @property
+    def outer_ring_bends(self) -> bool:
+        """Whether the outer ring is elastic."""
+        return self.mounting.housing.backing.law != "rigid"
+
+    @property
     def cage_whirls(self) -> bool:
         """Whether the level moves the cage's centre."""
         return self.level not in ("steady", "slip")

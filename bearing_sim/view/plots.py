@@ -95,6 +95,7 @@ def features(scene: Scene, measured: Collection[str] = ()) -> set[str]:
         "seals": bearing.seals.law != "none",
         "flanges": bearing.flanges.present,
         "support": scene.support.is_active,
+        "bending": scene.outer_ring_bends,
         "measured_cage": MEASURED in measured,
         "measured_clearance": MEASURED_CLEARANCE in measured,
     }

@@ -166,6 +166,7 @@ def _write_clearance(clearance, row):
     row[COLUMN.rotation_clearance] = clearance.rotation
     row[COLUMN.heat_clearance] = clearance.heat
     row[COLUMN.contour_clearance] = clearance.contour
+    row[COLUMN.bending_clearance], row[COLUMN.seat_arc] = 0.0, math.nan  # of a rigid ring
 
 
 @kernel
