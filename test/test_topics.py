@@ -265,7 +265,8 @@ WIRE = {
     "roller_tilts": ("inclination: outwards, along the orbit", [("roller_tilt", "rad"), ("roller_skew", "rad")]),
     "roller_loads": ("ring", [("inner_load", "N"), ("outer_load", "N")]),
     "operating_point": (
-        "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load, largest inner and outer roller load, arc of the seat",
+        "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load, largest inner and outer roller load, "
+        "arc of the seat",
         [
             ("load_y", "N"),
             ("load_z", "N"),
