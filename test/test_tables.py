@@ -18,7 +18,7 @@ from bearing_sim.cli.main import main
 from bearing_sim.levels.steady import shared_table
 from bearing_sim.levels.steady import table_builder as store
 from bearing_sim.levels.steady.operating_point import ANSWER
-from bearing_sim.levels.steady.table import contour_period, empty_table, mirror_axis, monotone_slopes, radius_at
+from bearing_sim.levels.steady.table import common_period, empty_table, mirror_axis, monotone_slopes, radius_at
 from bearing_sim.levels.steady.table_builder import (
     assembled,
     build_table,
@@ -425,7 +425,7 @@ def raceway(*overrides):
 )
 def test_symmetry_of_the_contour_is_found(overrides, period, mirrored):
     contour, outer = raceway(*overrides)
-    assert math.degrees(contour_period(contour)) == pytest.approx(period)
+    assert math.degrees(common_period(contour)) == pytest.approx(period)
     axis = mirror_axis(contour)
     assert math.isfinite(axis) == mirrored
     azimuths = np.linspace(0.0, 7.0, 50)
@@ -458,7 +458,7 @@ def test_round_bearing_needs_one_direction():
 
 def test_tabulated_contour_is_the_one_that_the_symmetry_is_looked_for_in():
     table = tabulated(lambda azimuth: (1.0 + 0.1 * np.cos(4 * azimuth), -0.4 * np.sin(4 * azimuth)))
-    assert contour_period(table) == pytest.approx(math.pi / 2)
+    assert common_period(table) == pytest.approx(math.pi / 2)
 
 
 def test_replay_without_a_recording_comes_to_the_same_as_with_one(small, tmp_path):

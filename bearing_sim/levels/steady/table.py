@@ -10,6 +10,7 @@ and held between the least and the largest value at the cell's corners, so that 
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +20,7 @@ from bearing_sim.numerics.compilation import kernel
 
 _SYMMETRY_TOLERANCE = 1e-9  # m; tables of a contour are good to a fifth of it
 _MOST_LOBES = 12
-_PROBES = 997  # azimuths, a prime number: none falls together with its image
+_PROBED = np.arange(997) * (2.0 * math.pi / 997)  # azimuths, a prime number of them: none falls together with its image
 AXES = ("shaft_speed", "load", "oil_temperature", "load_angle", "growth")
 _NODE = 1 + len(AXES)  # rows of a node: values, and slopes along each axis
 _CORNERS = 2 ** len(AXES)
@@ -36,31 +37,39 @@ def radius_at(contour: np.ndarray, azimuths: np.ndarray) -> np.ndarray:
     return ((a * x + b) * x + c) * x + d
 
 
-def contour_period(contour: np.ndarray) -> float:
-    """Return the smallest turn that leaves a contour as it is, 2 pi over a whole number up to 12 [rad]; 0 where any turn does."""
-    probes = np.arange(_PROBES) * (2.0 * math.pi / _PROBES)
-    radii = radius_at(contour, probes)
-    if np.ptp(radii) <= _SYMMETRY_TOLERANCE:
+def symmetric_parts(params) -> tuple[np.ndarray, ...]:
+    """Return what stands still and may be out of round, as periodic tables: the contour, and the bore round an outer ring that bends."""
+    return (params.raceways.contour,) if params.outer_ring is None else (params.raceways.contour, params.outer_ring.bore)
+
+
+def _varying(contours: Sequence[np.ndarray]) -> list[np.ndarray]:
+    return [contour for contour in contours if np.ptp(radius_at(contour, _PROBED)) > _SYMMETRY_TOLERANCE]
+
+
+def common_period(*contours: np.ndarray) -> float:
+    """Return the smallest turn that leaves contours as they are, 2 pi over a whole number up to 12 [rad]; 0 where any turn does."""
+    varying = _varying(contours)
+    if not varying:
         return 0.0
     for lobes in range(_MOST_LOBES, 0, -1):
         period = 2.0 * math.pi / lobes
-        if np.abs(radius_at(contour, probes + period) - radii).max() <= _SYMMETRY_TOLERANCE:
+        if all(np.abs(radius_at(contour, _PROBED + period) - radius_at(contour, _PROBED)).max() <= _SYMMETRY_TOLERANCE for contour in varying):
             return period
     return 2.0 * math.pi
 
 
-def mirror_axis(contour: np.ndarray) -> float:
-    """Return the azimuth of an axis about which a contour is its own mirror image [rad]; NaN where there is none."""
-    probes = np.arange(_PROBES) * (2.0 * math.pi / _PROBES)
-    waves = np.fft.rfft(radius_at(contour, probes))
+def mirror_axis(*contours: np.ndarray) -> float:
+    """Return the azimuth of an axis about which all contours are their own mirror images [rad]; NaN where there is none."""
+    varying = _varying(contours)
+    if not varying:
+        return 0.0
+    waves = np.fft.rfft(radius_at(varying[0], _PROBED))
     waves[0] = 0.0
     strongest = int(np.abs(waves).argmax())
-    if 2.0 * abs(waves[strongest]) / _PROBES <= _SYMMETRY_TOLERANCE:
-        return 0.0
     # cos(n phi + a) is even about -a/n and every half wave further on
     for half in range(2 * strongest):
         axis = (half * math.pi - np.angle(waves[strongest])) / strongest
-        if np.abs(radius_at(contour, axis + probes) - radius_at(contour, axis - probes)).max() <= _SYMMETRY_TOLERANCE:
+        if all(np.abs(radius_at(contour, axis + _PROBED) - radius_at(contour, axis - _PROBED)).max() <= _SYMMETRY_TOLERANCE for contour in varying):
             return float(axis)
     return math.nan
 

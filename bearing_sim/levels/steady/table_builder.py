@@ -29,7 +29,7 @@ from bearing_sim.files.limits import KEPT_TABLE_FILE
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.steady.model import look_up_conditions, new_work, solve_conditions
 from bearing_sim.levels.steady.operating_point import ANSWER
-from bearing_sim.levels.steady.table import AXES, Table, contour_period, mirror_axis, monotone_slopes, new_look_up
+from bearing_sim.levels.steady.table import AXES, Table, common_period, mirror_axis, monotone_slopes, new_look_up, symmetric_parts
 from bearing_sim.model.params import Lubrication, Params, lubricate, pack
 from bearing_sim.model.table_span import Span, span_of
 from bearing_sim.model.temperatures import lubricate_scene
@@ -234,9 +234,10 @@ class _Grid:
 
     def __init__(self, params: Params, solver: Solver, span: Span, tolerance: float):
         self._params, self._solver, self._tolerance = params, solver, tolerance
-        turn = contour_period(params.raceways.contour)
+        parts = symmetric_parts(params)
+        turn = common_period(*parts)
         self.period = turn or 2.0 * math.pi
-        self.mirror = mirror_axis(params.raceways.contour)
+        self.mirror = mirror_axis(*parts)
         self._senses = (1.0, -1.0) if span.reverse and math.isnan(self.mirror) else (1.0,)
         warm = span.maximum_temperature > span.minimum_temperature
         self.knots = [
@@ -451,8 +452,15 @@ def obtain_table(
     Raises
     ------
     ValueError
-        The scene asks for a correction, no such table is on disk, and nothing is given to make one.
+        The scene asks for a correction, no such table is on disk, and nothing is given to make one; or the play of an outer ring that bends varies
+        with temperatures that no axis of the table has.
     """
+    housing = scene.mounting.housing
+    if scene.outer_ring_bends and housing.backing.law != "free" and housing.backing.play is None and scene.heat.law != "none":
+        raise ValueError(
+            f"{scene.name}: the outer ring bends, and with heat.law = {scene.heat.law} its play in the housing varies with the temperatures of ring "
+            "and housing, of which a table has no axis; run without a table, give mounting.housing.backing.play, or set heat: none"
+        )
     span = span_of(scene, temperatures)
     path = table_path(scene, span)
     found = None if rebuild else read_table(path)

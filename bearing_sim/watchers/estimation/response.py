@@ -24,7 +24,7 @@ import numpy as np
 
 from bearing_sim.files.kept import Damaged, packed, read_kept, unpacked, write_kept
 from bearing_sim.files.limits import RESPONSE_FILE
-from bearing_sim.levels.steady.table import contour_period, mirror_axis
+from bearing_sim.levels.steady.table import common_period, mirror_axis, symmetric_parts
 from bearing_sim.levels.steady.table_builder import FOLDER
 from bearing_sim.model.params import pack
 from bearing_sim.model.table_span import span_of
@@ -106,8 +106,8 @@ def domain_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> 
     scene : of any level.
     temperatures : lowest and highest oil temperature [K], instead of the scene's.
     """
-    span, contour = span_of(scene, temperatures), pack(scene).raceways.contour
-    period, mirror = contour_period(contour), mirror_axis(contour)
+    span, parts = span_of(scene, temperatures), symmetric_parts(pack(scene))
+    period, mirror = common_period(*parts), mirror_axis(*parts)
     return Domain(
         (_SLOWEST * span.maximum_speed, span.maximum_speed),
         (_LIGHTEST * span.maximum_load, span.maximum_load),
