@@ -14,19 +14,23 @@ and the seat's points meet the housing where
 x the motion of the ring in its housing, which follows from sum of f e = sum of Q e.  Everything is measured from the centre of the ring, in axes that
 turn with the cage: so the equations are the same at all times but for the bore, the load and how far rollers are squeezed.
 
-**Seat.** For given roller forces the seat forces are the solution of a linear complementarity problem with a positive definite matrix.  A change of
-sides of a point is a principal pivot (A. W. Tucker, Principal pivotal transforms of square matrices, SIAM Review 5, 1963); as long as no point
-changes, a solution is one product with the transformed matrix.  With the signs of A. P. Dempster's sweep operator (Elements of Continuous
-Multivariate Analysis, 1969) it stays symmetric.  It holds the equations of rollers and inner ring too, and so their compliance.  Where signs are
-wrong, what is wrong is taken away bit by bit and the point that first reaches zero changes sides: the parametric method of R. W. Cottle (Monotone
-solutions of the parametric linear complementarity problem, Mathematical Programming 3, 1972), which ends after finitely many changes, as many as
-there are wrong signs or a few more.
+Rollers and inner ring obey the same kind of equations as long as a roller is a spring of the compliance s that presses from an approach o on,
 
-**Rollers.** Unknown are the forces q_j that press the ring outwards and the position y of the inner ring from the housing's centre:
-q_j = Q_j(squeeze_j - w_j(q) - e_j.x(q) + e_j.y), sum of the inner loads = load.  These are the gradient of a convex potential of w + x.e and y.
-A correction solves the same equations with rollers that are springs of the stiffness they have now.  Mostly the points that touch and the rollers that
-carry now are enough; else rollers and seat still let go and close: one problem of complementarity.  A correction is halved until what is left of the
-gradient does not push back by more than half of what it pushed forward.
+    w(phi_j) + x.e(phi_j) + s (Q_j - F_c) + o_j - squeeze_j - y.e(phi_j) >= 0,    Q_j - F_c >= 0,    one of them zero,
+
+y the position of the inner ring from the housing's centre, which follows from the load.
+
+**Complementarity.** All of this is one linear complementarity problem with a positive definite matrix that never changes.  A change of sides of a
+point or a roller is a principal pivot (A. W. Tucker, Principal pivotal transforms of square matrices, SIAM Review 5, 1963); as long as nothing
+changes, a solution is one product with the transformed matrix.  With the signs of A. P. Dempster's sweep operator (Elements of Continuous
+Multivariate Analysis, 1969) it stays symmetric.  Where signs are wrong, what is wrong is taken away bit by bit and what first reaches zero changes
+sides: the parametric method of R. W. Cottle (Monotone solutions of the parametric linear complementarity problem, Mathematical Programming 3, 1972),
+which ends after finitely many changes, as many as there are wrong signs or a few more.
+
+**Rollers.** A solution is the answer where the law of the contacts has the spring's force at the same approach.  Newton's method moves each o to
+where the spring meets the tangent of the law, with all that touches and carries now.  Where that does not serve, o is moved to where the spring meets
+the law at the approach found: as springs are at least as stiff as contacts, the convex potential of the rollers lies below that of springs that touch
+it there, so that each such step descends in it.
 """
 
 import math
@@ -42,13 +46,12 @@ from bearing_sim.physics.outer_ring import RingSection, ring_compliance
 from bearing_sim.physics.raceway import contour_at, contour_table
 
 _CENTRING_STIFFNESS = 1e3  # N/m, of rings that nothing holds, as in `bearing_sim.physics.load_balance` (assumption)
-_ITERATIONS, _HALVINGS = 100, 12
+_ITERATIONS = 400
 _RELATIVE_RESIDUAL, _LEAST_RESIDUAL = 1e-6, 1e-3  # of the load, as for a rigid ring; N, of a light load
 _HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
 _PIVOTS, _ROUNDS = 2000, 20  # changes of sides at most; solutions of a problem, each after the changes that the one before asked for
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
-_SERVES = 0.2  # of the residual before, that a correction by what touches and carries now has to leave at most (assumption)
-_CLOSING, _LEAST_CLOSING = 1e-6, 1e-3  # m, over which a roller that closes is a spring; least load that it has then [N] (assumptions)
+_TYPICAL, _STIFFER = 2e-5, 1.1  # m, an approach beyond the first touch at which contacts are as stiff as springs; and by what factor these are stiffer
 _REFRESHED = 1000  # pivots after which rounding is removed (assumption)
 _OPEN, _TOUCHING, _UNSIGNED = 0, 1, 2  # sides: where the gap may be anything from zero, where the force may; neither
 
@@ -70,20 +73,18 @@ class ElasticRing(NamedTuple):
 class Bending(NamedTuple):
     """Memory of the balance; see `new_bending`.
 
-    Tableaus are transforms of N = M + Z + 4 equations by what touches: points, rollers, x, y; of the square the rows of the points end at the diagonal.
-    Three rows follow: constants, solution, and what is added to it while sides change.
+    The tableau is the transform of N = M + Z + 4 equations by what touches: points, rollers, x, y; of the square the rows of the points end at the
+    diagonal.  Three rows follow: constants by the gaps, solution, and what is added to it while sides change.
     """
 
     rollers: np.ndarray  # rows `ROLLER`, shape (len(ROLLER), Z)
     points: np.ndarray  # rows `POINT`, shape (len(POINT), M + 2); the last two columns belong to x, in axes that stand still
-    tableau: np.ndarray  # where points touch and rollers press by forces that are given, shape (N + 3, N)
+    tableau: np.ndarray  # shape (N + 3, N)
     sides: np.ndarray  # `_OPEN`, `_TOUCHING` or `_UNSIGNED`, and how many pivots there were, int64, shape (N + 1,)
-    system: np.ndarray  # of a correction where rollers are springs, shape (N + 3, N)
-    system_sides: np.ndarray  # int64, shape (N + 1,)
-    matrix: np.ndarray  # of a correction by what touches and carries, shape (Z + 2, Z + 2)
-    right: np.ndarray  # shape (Z + 2,)
-    order: np.ndarray  # int64, shape (Z + 2,)
-    held: np.ndarray  # x an iteration ago [m], shape (2,)
+    matrix: np.ndarray  # of Newton's method, shape (Z, Z)
+    right: np.ndarray  # shape (Z,)
+    order: np.ndarray  # int64, shape (Z,)
+    held: np.ndarray  # x an iteration ago [m]; compliance of the springs [m/N]; shape (3,)
     scratch: np.ndarray  # shape (N,)
 
 
@@ -93,10 +94,7 @@ class RollerRow(NamedTuple):
     deflection: int = 0  # w [m]
     slope: int = 1  # dw/dphi [m/rad]
     force: int = 2  # q, on the ring outwards [N]
-    start_force: int = 3  # where an iteration began
-    start_moved: int = 4  # w + x.e there [m]
-    start_left: int = 5  # q less the load that it should be
-    correction: int = 6  # of q [N]
+    opens: int = 3  # o less the approach at which an inner contact begins [m]
 
 
 ROLLER = RollerRow()
@@ -164,20 +162,18 @@ def new_elastic_ring(section: RingSection, seat: Seat | None, rollers: int, poin
 def new_bending(elastic: ElasticRing) -> Bending:
     """Return the memory for a ring; the seat touches everywhere."""
     rollers, points = elastic.turning.shape[1] // 2, elastic.seat.shape[0]
-    size, equations = rollers + 2, points + rollers + 4
+    equations = points + rollers + 4
     sides = np.full(equations + 1, _UNSIGNED)
-    sides[:points], sides[-1] = _TOUCHING, _REFRESHED
+    sides[: points + rollers], sides[-1] = _TOUCHING, _REFRESHED
     return Bending(
         rollers=np.zeros((len(ROLLER), rollers)),
         points=np.zeros((len(POINT), points + 2)),
         tableau=np.zeros((equations + 3, equations)),
         sides=sides,
-        system=np.zeros((equations + 3, equations)),
-        system_sides=sides.copy(),
-        matrix=np.zeros((size, size)),
-        right=np.zeros(size),
-        order=np.zeros(size, np.int64),
-        held=np.zeros(2),
+        matrix=np.zeros((rollers, rollers)),
+        right=np.zeros(rollers),
+        order=np.zeros(rollers, np.int64),
+        held=np.zeros(3),
         scratch=np.zeros(equations),
     )
 
@@ -221,6 +217,7 @@ def _refresh(elastic, bending):
             tableau[row, i] = -elastic.between[abs(parts * j - i)]
         for k in range(rollers):
             tableau[row, points + k] = elastic.between[parts * abs(j - k)]
+        tableau[row, row] += bending.held[2]
     for axis in range(2):
         for i in range(points):
             tableau[x + axis, i] = -elastic.directions[axis, i]
@@ -230,11 +227,9 @@ def _refresh(elastic, bending):
                 tableau[x + axis, points + j] = tableau[points + j, x + axis] = direction
             tableau[x + 2 + axis, points + j] = tableau[points + j, x + 2 + axis] = -direction
         tableau[x + axis, x + axis], tableau[x + 2 + axis, x + 2 + axis] = -_HOLDING_STIFFNESS, -_CENTRING_STIFFNESS
-    for i in range(points):
-        if bending.sides[i] == _TOUCHING:
+    for i in range(size):
+        if bending.sides[i] != _OPEN:
             _pivot(i, 1.0, points, bending.scratch, tableau)
-    for axis in range(2):
-        _pivot(x + axis, 1.0, points, bending.scratch, tableau)
     bending.sides[size] = 0
 
 
@@ -255,13 +250,13 @@ def _settle(allowed, points, column, tableau, sides):
     if not wrong:
         return 0
     for i in range(size):
-        offsets[i] = 0.0
-        if (sides[i] == _OPEN and values[i] < -_WRONG_GAP) or (sides[i] == _TOUCHING and values[i] > allowed):
-            offsets[i] = -values[i] * (1.0 + 1e-3 * ((i * 37) % 101))  # no two alike, so that no two reach zero together
-        elif sides[i] == _OPEN:
+        if sides[i] == _OPEN and values[i] >= -_WRONG_GAP:
             values[i] = max(values[i], 0.0)
-        elif sides[i] == _TOUCHING:
+        elif sides[i] == _TOUCHING and values[i] <= allowed:
             values[i] = min(values[i], 0.0)
+        elif abs(offsets[i]) <= 1e-3 * ((i * 37) % 101) * abs(values[i]):  # no two alike, so that no two reach zero together
+            offsets[i] = -1e-3 * ((i * 37) % 101) * values[i]
+        offsets[i] -= values[i]
     for change in range(_PIVOTS):
         first, highest = -1, 0.0
         for i in range(size):
@@ -310,18 +305,61 @@ def _look_at_bore(turn, play, elastic, bending):
 
 
 @kernel
-def _solve(forces, row, held, tableau):
-    """Write the solution of a tableau for roller forces [N], the first of which belongs to a row, and x an iteration ago."""
-    size = tableau.shape[1]
-    constants, values = tableau[size], tableau[size + 1]
-    first, second = tableau[size - 4], tableau[size - 3]
-    held_y, held_z = _HOLDING_STIFFNESS * held[0], _HOLDING_STIFFNESS * held[1]
-    for i in range(size):
-        values[i] = constants[i] - held_y * first[i] - held_z * second[i]
-    for j in range(forces.shape[0]):
-        force, pushed = forces[j], tableau[row + j]
+def _add(factor, row, values):
+    """Add a multiple of a row."""
+    for i in range(values.shape[0]):
+        values[i] += factor * row[i]
+
+
+@kernel
+def _solve(load_y, load_z, shrunk, elastic, loads, bending):
+    """Write the solution for the springs as they are; return whether there is one."""
+    points, rollers, parts, size = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0], bending.tableau.shape[1]
+    tableau, sides, values, compliance = bending.tableau, bending.sides, bending.tableau[size + 1], bending.held[2]
+    allowed = abs(load_y) + abs(load_z) + 1.0
+    for j in range(rollers):
+        carried = loads[LOAD.centrifugal, j]
+        allowed += carried
+        load_y += carried * elastic.directions[0, parts * j]
+        load_z += carried * elastic.directions[1, parts * j]
+    for _ in range(_ROUNDS):
         for i in range(size):
-            values[i] += force * pushed[i]
+            tableau[size + 2, i], values[i] = values[i], tableau[size, i]
+        _add(-_HOLDING_STIFFNESS * bending.held[0], tableau[size - 4], values)
+        _add(-_HOLDING_STIFFNESS * bending.held[1], tableau[size - 3], values)
+        _add(-load_y, tableau[size - 2], values)
+        _add(-load_z, tableau[size - 1], values)
+        for j in range(rollers):
+            row, carried = points + j, loads[LOAD.centrifugal, j]
+            gap = bending.rollers[ROLLER.opens, j] + loads[LOAD.free, j] + shrunk - loads[LOAD.squeeze, j] - compliance * carried
+            touches = sides[row] == _TOUCHING
+            _add(-gap if touches else carried, tableau[row], values)
+            values[row] += carried if touches else gap
+        changes = _settle(_WRONG_FORCE * allowed, points, bending.scratch, tableau, sides)
+        if changes <= 0:
+            return changes == 0
+    return False
+
+
+@kernel
+def _press_rollers(stiffness, profile, elastic, loads, bending):
+    """Balance all rollers at the approaches of the solution; return the largest force that it misses [N], of a roller or of the inner ring."""
+    points, parts, sides, rows = elastic.seat.shape[0], elastic.turning.shape[0], bending.sides, bending.rollers
+    values, force_y, force_z, residual = bending.tableau[bending.tableau.shape[1] + 1], 0.0, 0.0, 0.0
+    for j in range(loads.shape[1]):
+        approach, pressed, value = loads[LOAD.free, j] + rows[ROLLER.opens, j], 0.0, values[points + j]
+        if sides[points + j] == _TOUCHING:
+            pressed = -value
+            approach += bending.held[2] * pressed
+        else:
+            approach -= value
+        rows[ROLLER.force, j] = loads[LOAD.centrifugal, j] + pressed
+        inner_load, _ = press_roller(j, approach, stiffness, profile, loads)
+        missed = inner_load - pressed
+        force_y += missed * elastic.directions[0, parts * j]
+        force_z += missed * elastic.directions[1, parts * j]
+        residual = max(residual, abs(missed))
+    return max(residual, abs(force_y), abs(force_z))
 
 
 @kernel
@@ -341,137 +379,46 @@ def seat_gap(pressure, elastic):
 
 
 @kernel
-def _evaluate(y, z, load_y, load_z, shrunk, stiffness, profile, elastic, loads, bending):
-    """Evaluate ring, seat and rollers; return whether that was possible, what the load leaves y, z [N], and the largest residual force [N]."""
-    points, rollers, parts = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0]
-    forces, tableau = bending.rollers[ROLLER.force], bending.tableau
-    values, allowed, changes = tableau[tableau.shape[1] + 1], 1.0, 1
+def _move_springs(newton, points, loads, bending):
+    """Move the springs to the tangents of the rollers' laws, by Newton's method, or to the laws themselves; return whether that was possible."""
+    rollers, opens, compliance, sides = loads.shape[1], bending.rollers[ROLLER.opens], bending.held[2], bending.sides
+    matrix, right, count = bending.matrix, bending.right, 0
     for j in range(rollers):
-        allowed += abs(forces[j])
-    for _ in range(_ROUNDS):
-        _solve(forces, points, bending.held, tableau)
-        changes = _settle(_WRONG_FORCE * allowed, points, bending.scratch, tableau, bending.sides)
-        if changes <= 0:
-            break
-    if changes != 0:
-        return False, 0.0, 0.0, 0.0
-    force_y, force_z, residual = load_y - _CENTRING_STIFFNESS * y, load_z - _CENTRING_STIFFNESS * z, 0.0
-    for j in range(rollers):
-        cosine, sine = elastic.directions[0, parts * j], elastic.directions[1, parts * j]
-        approach = loads[LOAD.squeeze, j] - shrunk - values[points + j] + y * cosine + z * sine
-        inner_load, _ = press_roller(j, approach, stiffness, profile, loads)
-        force_y -= inner_load * cosine
-        force_z -= inner_load * sine
-        residual = max(residual, abs(forces[j] - loads[LOAD.outer, j]))
-    return True, force_y, force_z, max(residual, abs(force_y), abs(force_z))
-
-
-@kernel
-def _correct_all(load_y, load_z, shrunk, stiffness, profile, elastic, loads, bending):
-    """Write the correction by all equations with rollers as springs; return whether it was found, and the inner ring's position y, z [m].
-
-    Parameters
-    ----------
-    load_y, load_z : radial load on the inner ring [N].
-    shrunk, stiffness, profile, elastic, loads, bending : as of `balance_elastic_ring`.
-    """
-    points, rollers, size = elastic.seat.shape[0], loads.shape[1], bending.tableau.shape[1]
-    system, sides, scratch = bending.system, bending.system_sides, bending.scratch
-    constants, values = system[size], system[size + 1]
-    _solve(loads[LOAD.centrifugal], points, bending.held, bending.tableau)
-    for j in range(size):
-        sides[j] = bending.sides[j]
-        constants[j] = bending.tableau[size + 1, j]
-        for i in range(size):
-            system[j, i] = bending.tableau[j, i]
-    constants[size - 2], constants[size - 1] = load_y, load_z
-    for j in range(rollers):
-        row, slope = points + j, loads[LOAD.slope, j]
-        if slope > 0.0:
-            opens = loads[LOAD.approach, j] - loads[LOAD.inner, j] / slope
+        missed, slope, touches = bending.rollers[ROLLER.force, j] - loads[LOAD.outer, j], loads[LOAD.slope, j], sides[points + j] == _TOUCHING
+        if slope > 0.0 and not (newton and touches):
+            opens[j] = loads[LOAD.approach, j] - loads[LOAD.free, j] - compliance * loads[LOAD.inner, j]
+        elif not (newton and touches):
+            opens[j] = 0.0
         else:
-            opens = loads[LOAD.free, j]
-            _, pressed, _, _ = squeezed_roller(opens + _CLOSING, loads[LOAD.centrifugal, j], opens, 0.0, stiffness, profile)
-            slope = max(pressed, _LEAST_CLOSING) / _CLOSING
-        system[row, row] += 1.0 / slope
-        constants[row] += opens + shrunk - loads[LOAD.squeeze, j]
-        sides[row] = _OPEN
-    for j in range(rollers):
-        if loads[LOAD.slope, j] > 0.0:
-            _pivot(points + j, 1.0, points, scratch, system)
-            sides[points + j] = _TOUCHING
-    for axis in range(2):
-        _pivot(size - 2 + axis, 1.0, points, scratch, system)
-    allowed, changes = _WRONG_FORCE * (abs(load_y) + abs(load_z) + 1.0), 1
-    for _ in range(_ROUNDS):
-        for i in range(size):
-            values[i] = constants[i]
-        changes = _settle(allowed, points, scratch, system, sides)
-        if changes <= 0:
-            break
-    for j in range(rollers):
-        pressed = -values[points + j] if sides[points + j] == _TOUCHING else 0.0
-        bending.rollers[ROLLER.correction, j] = pressed + loads[LOAD.centrifugal, j] - bending.rollers[ROLLER.start_force, j]
-    return changes == 0, -values[size - 2], -values[size - 1]
-
-
-@kernel
-def _correct_carrying(force_y, force_z, elastic, loads, bending):
-    """Write the correction by what touches and carries now; return whether it was found, and the inner ring's step y, z [m].
-
-    Parameters
-    ----------
-    force_y, force_z : what the load leaves of the rollers' forces on the inner ring [N].
-    elastic, loads, bending : as of `balance_elastic_ring`.
-    """
-    points, rollers, parts = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0]
-    matrix, right, left, correction = bending.matrix, bending.right, bending.rollers[ROLLER.start_left], bending.rollers[ROLLER.correction]
+            softer, column = 1.0 / slope - compliance if slope > 0.0 else 0.0, 0
+            for k in range(rollers):
+                if sides[points + k] == _TOUCHING:
+                    matrix[count, column] = -softer * bending.tableau[points + j, points + k]
+                    column += 1
+            matrix[count, count] += 1.0
+            right[count] = missed / slope if slope > 0.0 else -opens[j]
+            count += 1
+    if not decompose(count, matrix, bending.order):
+        return False
+    back_substitute(count, matrix, bending.order, right)
     count = 0
     for j in range(rollers):
-        count += 1 if loads[LOAD.slope, j] > 0.0 else 0
-    row = 0
-    right[count], right[count + 1] = -force_y, -force_z
-    for j in range(rollers):
-        correction[j] = -left[j]
-        if loads[LOAD.slope, j] == 0.0:
-            continue
-        compliance, column = bending.tableau[points + j], 0
-        right[row] = -left[j] / loads[LOAD.slope, j]
-        for k in range(rollers):
-            if loads[LOAD.slope, k] > 0.0:
-                matrix[row, column] = compliance[points + k]
-                column += 1
-            else:
-                right[row] += compliance[points + k] * left[k]
-        matrix[row, row] += 1.0 / loads[LOAD.slope, j]
-        for axis in range(2):
-            direction = elastic.directions[axis, parts * j]
-            matrix[row, count + axis] = matrix[count + axis, row] = -direction
-            right[count + axis] += direction * left[j]
-        row += 1
-    for axis in range(2):
-        matrix[count + axis, count + axis], matrix[count + axis, count + 1 - axis] = -_CENTRING_STIFFNESS, 0.0
-    if not decompose(count + 2, matrix, bending.order):
-        return False, 0.0, 0.0
-    back_substitute(count + 2, matrix, bending.order, right)
-    row = 0
-    for j in range(rollers):
-        if loads[LOAD.slope, j] > 0.0:
-            correction[j] = right[row]
-            row += 1
-    return True, right[count], right[count + 1]
+        if newton and sides[points + j] == _TOUCHING:
+            opens[j] += right[count]
+            count += 1
+    return True
 
 
 @kernel
-def _conclude(shrunk, elastic, loads, bending):
-    """Write what follows from a solution: forces of the seat, deflections at the rollers and their slopes."""
+def _conclude(y, z, elastic, loads, bending):
+    """Write what follows from a solution: forces of the seat, deflections at the rollers and their slopes; y, z is the position of the inner ring."""
     points, rollers, parts = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0]
     rows, pressed, values = bending.rollers, bending.points[POINT.force], bending.tableau[bending.tableau.shape[1] + 1]
-    slopes, x_y, x_z = rows[ROLLER.slope], -values[points + rollers], -values[points + rollers + 1]
+    slopes = rows[ROLLER.slope]
     for j in range(rollers):
         slopes[j] = 0.0
-        moved = x_y * elastic.directions[0, parts * j] + x_z * elastic.directions[1, parts * j]
-        rows[ROLLER.deflection, j] = values[points + j] - moved + shrunk
+        moved = y * elastic.directions[0, parts * j] + z * elastic.directions[1, parts * j]
+        rows[ROLLER.deflection, j] = loads[LOAD.squeeze, j] - loads[LOAD.approach, j] + moved
     for i in range(points):
         pressed[i] = -values[i] if bending.sides[i] == _TOUCHING else 0.0
     for k in range(rollers):
@@ -483,8 +430,6 @@ def _conclude(shrunk, elastic, loads, bending):
                 start = rollers - k
                 for j in range(rollers):
                     slopes[j] += force * elastic.turning[part, start + j]
-    pressed[points], pressed[points + 1] = _turned(x_y, x_z, loads[LOAD.cosine, 0], -loads[LOAD.sine, 0])
-
 
 @kernel
 def _turned(y, z, cosine, sine):
@@ -509,58 +454,37 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     -------
     converged : bool
     """
-    points, rollers, rows, held = elastic.seat.shape[0], loads.shape[1], bending.rollers, bending.held
-    values, x = bending.tableau[bending.tableau.shape[1] + 1], points + rollers
-    cosine, sine = loads[LOAD.cosine, 0], loads[LOAD.sine, 0]
+    points, size, held = elastic.seat.shape[0], bending.tableau.shape[1], bending.held
+    values, cosine, sine = bending.tableau[size + 1], loads[LOAD.cosine, 0], loads[LOAD.sine, 0]
     play, shrunk = seat_gap(pressure, elastic)
     _look_at_bore(turn, play, elastic, bending)
     held[0], held[1] = _turned(bending.points[POINT.force, points], bending.points[POINT.force, points + 1], cosine, sine)
     load_y, load_z = _turned(load_y, load_z, cosine, sine)
-    y, z = _turned(ring[0], ring[1], cosine, sine)
-    y, z, before = y + held[0], z + held[1], math.inf
-    allowed = _RELATIVE_RESIDUAL * math.hypot(load_y, load_z) + _LEAST_RESIDUAL
-    if bending.sides[bending.tableau.shape[1]] >= _REFRESHED:
-        _refresh(elastic, bending)
-    fine, force_y, force_z, residual = _evaluate(y, z, load_y, load_z, shrunk, stiffness, profile, elastic, loads, bending)
+    allowed, before, descents, patience = _RELATIVE_RESIDUAL * math.hypot(load_y, load_z) + _LEAST_RESIDUAL, math.inf, 0, 1
+    _, _, slope, _ = squeezed_roller(loads[LOAD.free, 0] + _TYPICAL, loads[LOAD.centrifugal, 0], loads[LOAD.free, 0], 0.0, stiffness, profile)
     for _ in range(_ITERATIONS):
-        if not fine:
+        for j in range(loads.shape[1]):
+            slope = max(slope, loads[LOAD.slope, j])
+        if not slope * held[2] <= 1.0 or bending.sides[size] >= _REFRESHED or held[2] == 0.0:
+            held[2] = 1.0 / (_STIFFER * slope)
+            _refresh(elastic, bending)
+        if not _solve(load_y, load_z, shrunk, elastic, loads, bending):
             return False
-        x_y, x_z = -values[x], -values[x + 1]
+        residual = _press_rollers(stiffness, profile, elastic, loads, bending)
+        x_y, x_z = -values[size - 4], -values[size - 3]
         moved = max(abs(x_y - held[0]), abs(x_z - held[1]))
         if residual <= allowed and _HOLDING_STIFFNESS * moved <= allowed:
-            ring[0], ring[1] = _turned(y - x_y, z - x_z, cosine, -sine)
-            _conclude(shrunk, elastic, loads, bending)
+            y, z = -values[size - 2] - x_y, -values[size - 1] - x_z
+            _conclude(y, z, elastic, loads, bending)
+            ring[0], ring[1] = _turned(y, z, cosine, -sine)
+            bending.points[POINT.force, points], bending.points[POINT.force, points + 1] = _turned(x_y, x_z, cosine, -sine)
             return True
         held[0], held[1] = x_y, x_z
-        for j in range(rollers):
-            rows[ROLLER.start_force, j], rows[ROLLER.start_moved, j] = rows[ROLLER.force, j], values[points + j]
-            rows[ROLLER.start_left, j] = rows[ROLLER.force, j] - loads[LOAD.outer, j]
-        serves = residual <= _SERVES * before
-        if serves:
-            fine, step_y, step_z = _correct_carrying(force_y, force_z, elastic, loads, bending)
-        else:
-            fine, step_y, step_z = _correct_all(load_y, load_z, shrunk, stiffness, profile, elastic, loads, bending)
-            step_y, step_z = step_y - y, step_z - z
-        if not fine:
+        if descents > 0:
+            descents -= 1
+        elif residual > before:  # Newton's method does not serve: longer and longer without it
+            descents, patience = patience, 2 * patience
+        before = residual if descents == 0 else math.inf
+        if not _move_springs(descents == 0, points, loads, bending):
             return False
-        before, start_y, start_z, scale = residual, y, z, 1.0
-        for _ in range(_HALVINGS):
-            for j in range(rollers):
-                rows[ROLLER.force, j] = rows[ROLLER.start_force, j] + scale * rows[ROLLER.correction, j]
-            y, z = start_y + scale * step_y, start_z + scale * step_z
-            fine, next_y, next_z, residual = _evaluate(y, z, load_y, load_z, shrunk, stiffness, profile, elastic, loads, bending)
-            if not fine:
-                break
-            forward, back = -force_y * (y - start_y) - force_z * (z - start_z), -next_y * (y - start_y) - next_z * (z - start_z)
-            for j in range(rollers):
-                moved = values[points + j] - rows[ROLLER.start_moved, j]
-                forward += rows[ROLLER.start_left, j] * moved
-                back += (rows[ROLLER.force, j] - loads[LOAD.outer, j]) * moved
-            if back <= 0.5 * abs(forward) or residual <= allowed or scale == 0.0:
-                break
-            if serves:  # not so well: begin again with all equations
-                scale, before = 0.0, 0.0
-            else:
-                scale *= 0.5
-        force_y, force_z = next_y, next_z
     return False
