@@ -112,7 +112,7 @@ def check_equations(rollers, compliances, bore, play, load, angle, turn):
     """Assert that an answer fulfils all equations, by sums over waves as they stand in the docstring of the module."""
     count, points = rollers.count, rollers.ring.seat.shape[0]
     n, azimuths = np.arange((points or 4 * count) // 2 + 1), 2 * math.pi * (turn + np.arange(count) / count)
-    at, deflection = 2 * math.pi * np.arange(points) / points, rollers.bending.rollers[ROLLER.deflection]
+    at, deflection = 2 * math.pi * (turn + np.arange(points) / max(points, 1)), rollers.bending.rollers[ROLLER.deflection]
     pressed, outwards = rollers.bending.points[POINT.force, :points], rollers.loads[LOAD.outer]
     ring = ring_compliance(n, SECTION)
 
