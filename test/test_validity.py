@@ -113,6 +113,12 @@ def carried(stiffness, length, clearance):
     return "level=planar", f"support.outer_ring={{stiffness: {stiffness} N/m, squeeze_film: {film}}}"
 
 
+def backed(play, thickness=4.0, shear="true"):
+    """Overrides for an outer ring that bends in a massive housing with a radial play [um]."""
+    ring = f"{{width: 20 mm, equivalent_thickness: {thickness} mm, seat_radius: 45 mm, shear: {shear}}}"
+    return f"bearing.outer_ring={ring}", f"mounting.housing.backing={{law: elastic, massive: true, play: {play} um}}"
+
+
 NJ = "bearing.flanges={inner: one, outer: both}"
 CASES = {
     "table_correction": (("loads", PAPER, *CORRECTED, "table.maximum_load=400 N"), ("loads", PAPER, *CORRECTED)),
@@ -239,6 +245,9 @@ CASES = {
     "squeeze_film_eccentricity": (("run", PAPER, *carried(8e6, 12, 150)), ("run", PAPER, *carried(4e7, 12, 150))),
     "squeeze_film_length": (("run", PAPER, *carried(4e7, 60, 60)), ("run", PAPER, *carried(4e7, 12, 60))),
     "squeeze_film_reynolds": (("run", PAPER, *carried(4e7, 12, 150)), ("run", PAPER, *carried(4e7, 12, 60))),
+    "outer_ring_thickness": (("run", "motor", *backed(-2, 9.0)), ("run", "motor", *backed(-2, 6.0))),
+    "seat_arc": (("run", "motor", *backed(200)), ("run", "motor", *backed(0))),
+    "ring_loose": (("run", "motor", *backed(5)), ("run", "motor", *backed(-2))),
     "limiting_speed": (
         ("run", "motor", "bearing.ratings.limiting_speed=2900 rpm"),
         ("run", "motor", "bearing.ratings.limiting_speed=9000 rpm"),
@@ -373,6 +382,9 @@ RANGES = {  # low and high; temperatures in degC
     "flange_axial_ratio": (-INF, 0.5),
     "flange_axial_load": (-INF, 1.0),
     "flange_gap": (-INF, 1440.0),
+    "outer_ring_thickness": (-INF, BY_SCENE),
+    "seat_arc": (60.0, INF),
+    "ring_loose": (-INF, 0.0),
     "limiting_speed": (-INF, BY_SCENE),
     "estimated_rollers": (-INF, 0.0),
     "full_complement_play": (-INF, 1.5),
@@ -389,6 +401,8 @@ RANGES_OF_SCENES = [  # limit, overrides, low, high; in SI units where the table
     ("ring_stabilisation", ("bearing=NU 210 ECP/S1",), -INF, 473.15),
     ("ring_stabilisation", ("bearing=NU 210 ECP/S2",), -INF, 523.15),
     ("inner_ring_stress", ("bearing.material.strength=1500 MPa",), -INF, 1500.0),
+    ("outer_ring_thickness", backed(0), -INF, 1.0),
+    ("outer_ring_thickness", backed(0, shear="false"), -INF, 0.28),
     ("limiting_speed", ("bearing.ratings.limiting_speed=9000 rpm",), -INF, 9000.0),
 ]
 

@@ -362,10 +362,9 @@ def _lives(scene, slices, found) -> dict:
 
 
 def _clearance(scene, found) -> dict:
-    from bearing_sim.studies.sheet import CLEARANCES, clearance_of
+    from bearing_sim.studies.sheet import clearance_report
 
-    at = found.clearance
-    return clearance_of(scene, dict(zip(CLEARANCES, (at.running, at.initial, at.fits, at.rotation, at.heat, at.contour))))
+    return clearance_report(scene, found.sample)
 
 
 def _print_loads(scene, slices, found) -> None:

@@ -37,6 +37,7 @@ from bearing_sim.scene.designation import readable_designation
 from bearing_sim.scene.display import number, unit_sign
 from bearing_sim.scene.flanges import flange_geometry
 from bearing_sim.scene.lubricant import ConstantTraction, CustomOil, EyringTraction, KragelskiiTraction, Oil, Oil4109Traction
+from bearing_sim.scene.outer_ring import ring_geometry
 from bearing_sim.scene.ratings import minimum_load_law, rate
 from bearing_sim.scene.scene import Scene
 
@@ -324,6 +325,30 @@ def _flange_speed(at: "Conditions") -> np.ndarray:
 def _has_squeeze_film(scene: Scene) -> bool:
     outer = scene.support.outer_ring
     return scene.cage_whirls and outer is not None and outer.squeeze_film is not None
+
+
+def _has_seat(scene: Scene) -> bool:
+    return scene.outer_ring_bends and scene.mounting.housing.backing.law != "free"
+
+
+_THICK_WITH_SHEAR, _THICK_WITHOUT = 1.0, 0.28  # n t/R up to which the law is within 2.5 %, see the table of limits
+_WAVES = 6  # of a raceway that bends between six rollers or lobes, the finest that counts for much (assumption)
+_LINE_TO_LINE = ("mounting.housing.fit=null", "mounting.housing.interference=null", "mounting.housing.backing.play=0 um")
+
+
+def _thickness_of_waves(scene: Scene) -> float:
+    """Return n t/R of an outer ring that bends in some waves."""
+    section = ring_geometry(scene.bearing)
+    return _WAVES * section.equivalent_thickness / section.radius
+
+
+def _seat_play(at: "Conditions") -> np.ndarray:
+    """Return the radial play of the outer ring in its housing [um], negative for an interference."""
+    ring, fit, cold = at.params.outer_ring, at.params.mounted.housing, at.params.mounted.expansion.reference
+    warmer = [part_temperature(at.samples, f"{part}_temperature") - cold for part in ("outer_ring", "housing")]
+    pressure = fit.pressure + fit.by_ring * warmer[0] + fit.by_housing * warmer[1]
+    by_fit = np.where(pressure > 0.0, -pressure * ring.pressed, -pressure * ring.loose)
+    return 1e6 * (by_fit if math.isnan(ring.play) else np.full(len(at.samples), ring.play))
 
 
 class Grade(StrEnum):
@@ -979,6 +1004,15 @@ LAWS = (
         lambda scene: scene.bearing.flanges.present,
         lambda at: at.while_turning(_flange_speed(at) * flange_geometry(at.scene.bearing).end_clearance * at.density / at.viscosity),
     ),
+    _law(
+        "outer_ring_thickness",
+        lambda scene: scene.outer_ring_bends,
+        _thickness_of_waves,
+        of_scene=True,
+        high=lambda scene: _THICK_WITH_SHEAR if scene.bearing.outer_ring.shear else _THICK_WITHOUT,
+    ),
+    _law("seat_arc", _has_seat, lambda at: np.degrees(at.samples["seat_arc"])),
+    _law("ring_loose", _has_seat, _seat_play, Variation("line to line", overrides=_LINE_TO_LINE)),
     _law(
         "limiting_speed",
         lambda scene: scene.bearing.ratings.limiting_speed is not None,

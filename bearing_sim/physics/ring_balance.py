@@ -51,7 +51,10 @@ _RELATIVE_RESIDUAL, _LEAST_RESIDUAL = 1e-6, 1e-3  # of the load, as for a rigid 
 _HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
 _PIVOTS, _ROUNDS = 2000, 20  # changes of sides at most; solutions of a problem, each after the changes that the one before asked for
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
-_TYPICAL, _STIFFER = 2e-5, 1.1  # m, an approach beyond the first touch at which contacts are as stiff as springs; and by what factor these are stiffer
+_TYPICAL, _STIFFER = (
+    2e-5,
+    1.1,
+)  # m, an approach beyond the first touch at which contacts are as stiff as springs; and by what factor these are stiffer
 _REFRESHED = 1000  # pivots after which rounding is removed (assumption)
 _OPEN, _TOUCHING, _UNSIGNED = 0, 1, 2  # sides: where the gap may be anything from zero, where the force may; neither
 
@@ -430,6 +433,7 @@ def _conclude(y, z, elastic, loads, bending):
                 start = rollers - k
                 for j in range(rollers):
                     slopes[j] += force * elastic.turning[part, start + j]
+
 
 @kernel
 def _turned(y, z, cosine, sine):

@@ -268,8 +268,9 @@ def clearance_text(scene: Scene, report: Mapping) -> str:
     """Return the running clearance with its parts in words, from `clearance_report`."""
     shown = {name.removesuffix("_clearance"): report[f"{name}_um"] for name in CLEARANCES}
     running, text = shown.pop("running"), ""
-    if not shown["contour"]:
-        del shown["contour"]
+    for part in ("contour", "bending"):
+        if not shown[part]:
+            del shown[part]
     if scene.bearing.dimensions_at == "running":
         del shown["fit"], shown["rotation"], shown["heat"]
         text = "; the dimensions are those of the running bearing: fits, rotation and heat change nothing"

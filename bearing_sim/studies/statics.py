@@ -3,19 +3,24 @@
 
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.model import write_growth
 from bearing_sim.levels.common.slice_balance import about_yz, balance, leaning, roller_loads, roller_tilts
-from bearing_sim.model.params import Life
-from bearing_sim.model.sample import NODE_OBSERVABLES
+from bearing_sim.levels.slip.forces import balance_loads
+from bearing_sim.levels.slip.model import observe_bending
+from bearing_sim.levels.slip.state import new_work
+from bearing_sim.model.params import Life, Params
+from bearing_sim.model.sample import NODE_OBSERVABLES, flat
 from bearing_sim.model.validity import still_sample
-from bearing_sim.physics.growth import Clearance, clearance_at, total_growth
+from bearing_sim.physics.growth import clearance_at
 from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, OilFactors, oil_factors, rate_lives
+from bearing_sim.physics.ring_balance import ROLLER
 from bearing_sim.scene.display import hours, larger_unit
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import scene_inputs
@@ -44,7 +49,6 @@ class Statics(NamedTuple):
     moment: tuple[float, float]  # on the inner ring: magnitude [N m], and azimuth towards which it tilts the +x end [rad]
     equivalent_loads: EquivalentLoads  # over one roller pitch; those by laminae are of the slices
     lives: Lives  # with the lives in hours; infinite at rest
-    clearance: Clearance  # of the running bearing, with its parts
     film: float  # least film thickness [m]; NaN at rest and without load
     sample: np.ndarray  # block of one sample with all this in it, for laws and reports; its cage does not slip
 
@@ -72,10 +76,13 @@ def statics(scene: Scene, slices: int) -> Statics:
     load = scene_inputs(scene)[1:3]
     moment = about_yz(operating.moment or 0.0, operating.moment_angle)
     tilts = about_yz(operating.misalignment, operating.misalignment_angle) if operating.moment is None else None
-    growth = total_growth(operating.shaft_speed, lubrication.growth)
+    aligned = new_work(params)
+    write_growth(operating.shaft_speed, lubrication.growth, aligned.growth)
 
     def balance_at(turned, start=None):
-        return balance(params, operating.load_angle + turned, cage_speed, load, moment, tilts, start, growth)
+        angle = operating.load_angle + turned
+        deflections = _deflections(angle, cage_speed, load, params, aligned)
+        return balance(params, angle, cage_speed, load, moment, tilts, start, aligned.growth[0], deflections)
 
     oil = oil_factors(speed, lubrication.kinematic_viscosity, 2 * raceways.pitch_radius, params.starvation, params.life)
     equivalent, lives = _over_pitch(balance_at, oil, params.life, operating.radial_load, 2 * math.pi / count)
@@ -92,6 +99,10 @@ def statics(scene: Scene, slices: int) -> Statics:
     sample["inner_load"], sample["outer_load"] = inner, outer
     sample["reference_load"], sample["viscosity_ratio"] = lives.reference_load, lives.viscosity_ratio
     sample["inner_pressure"], sample["outer_pressure"] = pressures
+    for name, part in clearance_at(operating.shaft_speed, lubrication.growth, params)._asdict().items():
+        sample[name.replace("fits", "fit") + "_clearance"] = part
+    sample["seat_arc"] = math.nan
+    observe_bending(aligned.bending, count, aligned, flat(sample)[0])
     for name, temperature in zip(NODE_OBSERVABLES, temperatures):
         sample[name] = temperature
     return Statics(
@@ -109,10 +120,24 @@ def statics(scene: Scene, slices: int) -> Statics:
         moment=leaning(*at.reaction[2:].tolist()),
         equivalent_loads=equivalent,
         lives=lives,
-        clearance=clearance_at(operating.shaft_speed, lubrication.growth, params),
         film=float(ThinnestFilm(scene).least(sample)[0]) if speed > 0.0 else math.nan,
         sample=sample,
     )
+
+
+def _deflections(angle: float, cage_speed: float, load: Sequence[float], params: Params, work) -> np.ndarray | None:
+    """Return how far an outer ring that bends gives way to rollers that stay aligned [m], shape (Z,); None of a rigid ring.
+
+    Raises
+    ------
+    ArithmeticError
+        No balance was found.
+    """
+    if work.bending is None:
+        return None
+    if not balance_loads(angle, cage_speed, load[0], load[1], params, work):
+        raise ArithmeticError(f"the balance of rollers and an outer ring that bends did not converge at load {load} N, cage {cage_speed:.6g} rad/s")
+    return work.bending.rollers[ROLLER.deflection]
 
 
 def _over_pitch(balance_at: Callable, oil: OilFactors, life: Life, radial_load: float, pitch: float) -> tuple[EquivalentLoads, Lives]:

@@ -22,7 +22,8 @@ from bearing_sim.model.params import replenishment
 from bearing_sim.scene import display, fidelity
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.fidelity import WHIRLING
-from bearing_sim.scene.mounting import clearance_limits, clearance_source
+from bearing_sim.scene.mounting import clearance_limits, clearance_source, housing_interference
+from bearing_sim.scene.outer_ring import ring_geometry
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.scene.uncertainty import Range, messages, number_at, quantities, ranges_of, ring_ranges, shown, with_values, without_dimensions
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
@@ -324,6 +325,7 @@ def varied_ranges(scene: Scene) -> tuple[Range, ...]:
 def _assumed_ranges(scene: Scene) -> Iterator[Range]:
     """Yield the ranges of what every bearing in service is uncertain about; none for a scene with full films alone, such as those of the paper."""
     bearing, lubricant = scene.bearing, scene.lubricant
+    yield from _bending_ranges(scene)
     if lubricant.starvation.law == lubricant.mixed_friction.law == "none":
         return
     if isinstance(bearing.clearance, str):
@@ -345,9 +347,46 @@ def _assumed_ranges(scene: Scene) -> Iterator[Range]:
             yield Range(field=field, low=low, high=high, distribution=shape, source=source)
 
 
+_UNSURE_PLAY = 2e-6  # m; assumption
+_UNSURE_MODULUS = 0.1  # relative; assumption
+_THICKNESSES = (0.9, 1.35)  # of the equivalent thickness by wall and ribs
+
+
+def _bending_ranges(scene: Scene) -> Iterator[Range]:
+    """Yield the ranges of what decides how an outer ring bends: play, the housing's modulus and the ring's stiffness; none of a rigid ring."""
+    if not scene.outer_ring_bends:
+        return
+    housing, backing = scene.mounting.housing, scene.mounting.housing.backing
+    if scene.bearing.outer_ring.equivalent_thickness is None:
+        low, high = (factor * ring_geometry(scene.bearing).equivalent_thickness for factor in _THICKNESSES)
+        source = "assumption: by wall and ribs; the ring of Deng 2017 has the D that was measured with 1.3 times as much"
+        yield Range(field="bearing.outer_ring.equivalent_thickness", low=low, high=high, source=source)
+    if backing.law == "elastic":
+        modulus = housing.material.youngs_modulus
+        low, high = (1.0 - _UNSURE_MODULUS) * modulus, (1.0 + _UNSURE_MODULUS) * modulus
+        yield Range(field="mounting.housing.material.youngs_modulus", low=low, high=high, source="assumption: 10 % to either side")
+    if backing.law == "free":
+        return
+    if backing.play is not None:
+        low, high, source = backing.play - _UNSURE_PLAY, backing.play + _UNSURE_PLAY, "assumption: 2 um to either side"
+        yield Range(field="mounting.housing.backing.play", low=low, high=high, source=source)
+    elif housing.fit is not None:
+        limits = housing_interference(housing, scene.bearing.outside_diameter)
+        source = f"limits of {housing.fit} (ISO 286) and of the ring (ISO 492)"
+        yield Range(field="mounting.housing.interference", low=limits.least, high=limits.largest, source=source)
+
+
 def filled_in(scene: Scene) -> Scene:
-    """Return a scene with numbers where it has names or nothing, for fields of `varied_ranges`: the mean of a clearance group, the supply's K_rs."""
+    """Return a scene with numbers where it has names or nothing, for fields of `varied_ranges`.
+
+    The mean of a clearance group and of a housing's fit, the supply's K_rs, the equivalent thickness of an outer ring.
+    """
     values, (bearing, law) = {}, (scene.bearing, scene.lubricant.starvation)
+    if scene.outer_ring_bends and bearing.outer_ring.equivalent_thickness is None:
+        values["bearing.outer_ring.equivalent_thickness"] = ring_geometry(bearing).equivalent_thickness
+    if scene.outer_ring_bends and scene.mounting.housing.fit is not None:
+        mean = housing_interference(scene.mounting.housing, bearing.outside_diameter).mean
+        values |= {"mounting.housing.fit": None, "mounting.housing.interference": mean}
     if isinstance(bearing.clearance, str):
         values["bearing.clearance"] = clearance_limits(bearing.clearance, bearing.bore_diameter).mean
     if law.law != "none" and law.constant is None:

@@ -46,6 +46,7 @@ def balance(
     tilts: tuple[float, float] | None = None,
     slices=None,
     growth: float = 0.0,
+    deflections: np.ndarray | None = None,
 ):
     """Return the bearing in balance, as `bearing_sim.physics.lamina.Slices`.
 
@@ -58,6 +59,7 @@ def balance(
     tilts : the ring's tilts about (y, z) [rad]; None lets it tilt until the moments balance.
     slices : a balance nearby to start from, overwritten.
     growth : of the inner raceway's radius [m], see `bearing_sim.levels.common.model.inner_growth`.
+    deflections : how far an outer ring that bends stands further outwards at the rollers [m], shape (Z,); None: it is rigid.
 
     Raises
     ------
@@ -72,6 +74,8 @@ def balance(
     if tilts is not None:
         slices.ring[2:] = tilts
     place_rollers(float(cage_angle), float(cage_speed), float(growth), params, slices)
+    if deflections is not None:
+        slices.roller[ROLLER_ROW.squeeze] -= deflections
     if not balance_slices(float(load[0]), float(load[1]), float(moment[0]), float(moment[1]), tilts is None, slices):
         raise ArithmeticError(f"the balance by slices did not converge at load {load} N, moment {moment} N m, cage {cage_speed:.6g} rad/s")
     return slices

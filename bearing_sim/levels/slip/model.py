@@ -136,12 +136,15 @@ def observe_orbits(cage_angle, cage_speed, count, work, row):
         row[first + COLUMN.inner_load * count] = loads[LOAD.inner, j]
         row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
         row[first + COLUMN.orbital_speed * count] = cage_speed
-    _observe_bending(work.bending, count, work, row)
+    observe_bending(work.bending, count, work, row)
 
 
 @kernel
-def _observe_bending(bending, count, work, row):
-    """Write how the outer ring bends and sits in its seat; ``bending`` is that of ``work``, where None stands for a rigid ring."""
+def observe_bending(bending, count, work, row):
+    """Write how the outer ring bends and sits in its seat into a flat sample that has the clearance of a rigid ring.
+
+    ``bending`` is that of ``work``, where None stands for a rigid ring.
+    """
     if bending is None:
         return
     points, loads, touching, carried, bent = bending.points.shape[1] - 2, work.loads, 0, 0.0, 0.0
