@@ -91,7 +91,7 @@ class SectionDrawing(_Drawing):
 
     def __init__(self, recording: rr.RecordingStream, scene: Scene, load_scale: float):
         super().__init__(recording, SECTION_ROOT)
-        self._bearing = scene.bearing
+        self._bearing, self._bends = scene.bearing, scene.outer_ring_bends
         self._cage_factor = section.cage_magnification(scene)
         self._guide, self._guiding_ring = section.drawn_guide_radius(scene.bearing, self._cage_factor), scene.bearing.cage.guidance
         self._pocket_scale, self._pocket_legend_scale = FIRST_POCKET_SCALE, 0.0
@@ -137,6 +137,9 @@ class SectionDrawing(_Drawing):
         if self.load_scale != self._legend_scale:
             self._draw_legend()
         self._draw_inner_ring(sample)
+        if self._bends:
+            bent = section.bent_contour(self._bearing, self.factor, _CONTOUR_TURN, sample)
+            self._log("outer_ring/bent_raceway", strips=[polar(bent, _CONTOUR_TURN)])
         cage = section.cage_displacement(self._cage_factor, sample)
         self._log("cage/rims", centers=np.tile(picture(*cage), (2, 1)))
         bars = section.cage_bars(self._bearing, sample["cage_angle"], cage)

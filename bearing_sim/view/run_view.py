@@ -42,6 +42,9 @@ def _whirl(scene: Scene) -> str:
 _HEAT = """**Temperatures** colour shaft, rings, rollers and housing; the housing is drawn as thick as a ring.
 
 """
+_BENDING = """Blue line: the outer raceway as its ring has bent, by the same factor; between rollers it is interpolated. The red line is the raceway
+without load.
+"""
 _TILTS = """The solid picture draws tilts of ring and rollers and skews by factors of their own, which its title says, and the cage's tilt by
 the cage's factor. Pressures are Hertz's of laminae, largest
 of all rollers; those of the end laminae say how hard edges press, without the rise at a sharp edge.
@@ -78,7 +81,7 @@ is drawn x{factor}. Seen against the x axis: Y right, Z up; azimuth runs from +Y
 round raceway; {_GUIDES[bearing.cage.guidance]}Rollers are coloured by inner contact load, grey ones carry none. Arrows at the raceways: contact
 forces on the rings, full scale of the colours = longest; yellow: radial load on the inner ring, twice that scale as far as there is room.
 The orange cage bar and the white marks show rotation. Purple arrows: forces of the pockets on the rollers, scale in the middle.
-{_whirl(scene)}{_TILTS if scene.bodies_tilt else ""}
+{_BENDING if scene.outer_ring_bends else ""}{_whirl(scene)}{_TILTS if scene.bodies_tilt else ""}
 **Power** by cause: what the shaft puts in by the tractions on the inner ring, the mixture in the cage's bore and guide lands of its own is lost, or
 stored for a moment in motion and elastic contacts; the bars are means of the newest samples.
 

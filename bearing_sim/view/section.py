@@ -127,6 +127,16 @@ def drawn_contour(bearing: Bearing, factor: float, azimuth) -> np.ndarray:
     return (ideal + factor * (outer_contour(bearing.outer_raceway, azimuth)[0] - ideal)) / MILLIMETRE
 
 
+def bent_contour(bearing: Bearing, factor: float, azimuth, sample) -> np.ndarray:
+    """Return the drawn radius [mm] of an outer raceway that has bent, at azimuths [rad]: between rollers by a periodic cubic spline."""
+    from scipy.interpolate import CubicSpline  # takes a third of a second to import, needed for rings that bend only
+
+    order = np.argsort(np.mod(sample["roller_angle"], 2 * math.pi))
+    angles, deflections = np.mod(sample["roller_angle"], 2 * math.pi)[order], sample["raceway_deflection"][order]
+    spline = CubicSpline(np.append(angles, angles[0] + 2 * math.pi), np.append(deflections, deflections[0]), bc_type="periodic")
+    return drawn_contour(bearing, factor, azimuth) + factor * spline(azimuth) / MILLIMETRE
+
+
 def outer_surface_radius(bearing: Bearing, factor: float) -> float:
     """Return the drawn outside radius [mm] of the outer ring; the scene does not give the true one."""
     highest = drawn_contour(bearing, factor, np.linspace(0.0, 2 * math.pi, CONTOUR_POINTS)).max()
