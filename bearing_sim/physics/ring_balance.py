@@ -39,8 +39,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import back_substitute, decompose
+from bearing_sim.numerics.simd import load_run, new_blocks, store_run
+from bearing_sim.numerics.vector_width import LANES
 from bearing_sim.physics.load_balance import LOAD, press_roller, squeezed_roller
 from bearing_sim.physics.outer_ring import RingSection, ring_compliance
 from bearing_sim.physics.raceway import contour_at, contour_table
@@ -56,6 +58,7 @@ _TYPICAL, _STIFFER = (
     1.1,
 )  # m, an approach beyond the first touch at which contacts are as stiff as springs; and by what factor these are stiffer
 _REFRESHED = 1000  # pivots after which rounding is removed (assumption)
+_GROUP = 4 * LANES  # columns of a product that are computed at once
 _OPEN, _TOUCHING, _UNSIGNED = 0, 1, 2  # sides: where the gap may be anything from zero, where the force may; neither
 
 
@@ -63,7 +66,7 @@ class ElasticRing(NamedTuple):
     """The ring and its seat, for Z rollers in even pitches and M points of the seat, P to a pitch; without any the ring is free, and P = 1."""
 
     between: np.ndarray  # F at multiples of pitch/P [m/N], shape (P Z,)
-    turning: np.ndarray  # dF/dpsi at k pitches less p parts of P in column Z + k of row p [m/(N rad)], shape (P, 2 Z)
+    turning: np.ndarray  # dF/dpsi at k pitches less p parts of P in column Z + k of row p [m/(N rad)], and a `_GROUP` more of them, shape (P, 2 Z + `_GROUP`)
     directions: np.ndarray  # cosine and sine of multiples of pitch/P, shape (2, P Z)
     seat: np.ndarray  # F + H at multiples of 2 pi/M, and a part in one wave that makes it regular and moves x alone [m/N], shape (M,)
     bore: np.ndarray  # how far the bore lies outside of its mean [m], periodic cubic table of `bearing_sim.physics.raceway`, shape (n, 4)
@@ -77,18 +80,20 @@ class Bending(NamedTuple):
     """Memory of the balance; see `new_bending`.
 
     The tableau is the transform of N = M + Z + 4 equations by what touches: points, rollers, x, y; of the square the rows of the points end at the
-    diagonal.  Three rows follow: constants by the gaps, solution, and what is added to it while sides change.
+    diagonal.  Three rows follow: constants by the gaps, solution, and what is added to it while sides change.  Columns are filled up to a multiple C of
+    `_GROUP`.
     """
 
     rollers: np.ndarray  # rows `ROLLER`, shape (len(ROLLER), Z)
     points: np.ndarray  # rows `POINT`, shape (len(POINT), M + 2); the last two columns belong to x, in axes that stand still
-    tableau: np.ndarray  # shape (N + 3, N)
+    tableau: np.ndarray  # shape (N + 3, C)
     sides: np.ndarray  # `_OPEN`, `_TOUCHING` or `_UNSIGNED`, and how many pivots there were, int64, shape (N + 1,)
     matrix: np.ndarray  # of Newton's method, shape (Z, Z)
     right: np.ndarray  # shape (Z,)
     order: np.ndarray  # int64, shape (Z,)
     held: np.ndarray  # x an iteration ago [m]; compliance of the springs [m/N]; shape (3,)
-    scratch: np.ndarray  # shape (N,)
+    given: np.ndarray  # to rollers, x and y, shape (Z + 4,)
+    scratch: np.ndarray  # shape (C,)
 
 
 class RollerRow(NamedTuple):
@@ -145,7 +150,7 @@ def new_elastic_ring(section: RingSection, seat: Seat | None, rollers: int, poin
     count = parts * rollers
     azimuths = 2.0 * math.pi / count * np.arange(count)
     waves, compliances = np.cos(np.outer(azimuths, n)), ring_compliance(n, section)
-    apart = 2.0 * math.pi / count * (parts * np.arange(-rollers, rollers) - np.arange(parts)[:, None])
+    apart = 2.0 * math.pi / count * (parts * np.arange(-rollers, rollers + _GROUP) - np.arange(parts)[:, None])
     turning = -np.sin(np.multiply.outer(apart, n)) @ (n * compliances)
     common = waves @ compliances, turning, np.stack([np.cos(azimuths), np.sin(azimuths)])
     if seat is None:
@@ -164,28 +169,37 @@ def new_elastic_ring(section: RingSection, seat: Seat | None, rollers: int, poin
 
 def new_bending(elastic: ElasticRing) -> Bending:
     """Return the memory for a ring; the seat touches everywhere."""
-    rollers, points = elastic.turning.shape[1] // 2, elastic.seat.shape[0]
+    rollers, points = (elastic.turning.shape[1] - _GROUP) // 2, elastic.seat.shape[0]
     equations = points + rollers + 4
+    groups = -(-equations // _GROUP)
     sides = np.full(equations + 1, _UNSIGNED)
     sides[: points + rollers], sides[-1] = _TOUCHING, _REFRESHED
     return Bending(
         rollers=np.zeros((len(ROLLER), rollers)),
         points=np.zeros((len(POINT), points + 2)),
-        tableau=np.zeros((equations + 3, equations)),
+        tableau=new_blocks(4, (equations + 3) * groups).reshape(equations + 3, -1),
         sides=sides,
         matrix=np.zeros((rollers, rollers)),
         right=np.zeros(rollers),
         order=np.zeros(rollers, np.int64),
         held=np.zeros(3),
-        scratch=np.zeros(equations),
+        given=np.zeros(rollers + 4),
+        scratch=np.zeros(_GROUP * groups),
     )
+
+
+@fused
+def _add(factor, row, first, count, values):
+    """Add a multiple of a row, from an index on, to ``count`` values, or a few more that fill up a `_GROUP`."""
+    for start in range(0, count, _GROUP):
+        for i in range(start, start + _GROUP, LANES):
+            store_run(values, i, load_run(values, i) + factor * load_run(row, first + i))
 
 
 @kernel
 def _pivot(k, sense, points, column, tableau):
     """Exchange what is given and what is found at an index, forwards (``sense`` 1) or back (-1); ``column`` is scratch."""
-    rows, size = tableau.shape
-    inverse = 1.0 / tableau[k, k]
+    rows, size, inverse = tableau.shape[0], tableau.shape[0] - 3, 1.0 / tableau[k, k]
     complete = size if k >= points else k + 1
     for i in range(complete):
         column[i] = tableau[k, i]
@@ -193,10 +207,8 @@ def _pivot(k, sense, points, column, tableau):
         column[i] = tableau[i, k]
     for j in range(rows):
         part = inverse * (column[j] if j < size else tableau[j, k])
-        if part != 0.0:
-            for i in range(j + 1 if j < points else size):
-                tableau[j, i] -= part * column[i]
-            tableau[j, k] = sense * part
+        _add(-part, column, 0, j + 1 if j < points else size, tableau[j])
+        tableau[j, k] = sense * part
     for i in range(complete):
         tableau[k, i] = sense * inverse * column[i]
     tableau[k, k] = -inverse
@@ -205,10 +217,10 @@ def _pivot(k, sense, points, column, tableau):
 @kernel
 def _refresh(elastic, bending):
     """Write the tableau anew for the points that touch."""
-    points, rollers, tableau = elastic.seat.shape[0], elastic.turning.shape[1] // 2, bending.tableau
+    points, rollers, tableau = elastic.seat.shape[0], (elastic.turning.shape[1] - _GROUP) // 2, bending.tableau
     parts, x, size = elastic.turning.shape[0], points + rollers, points + rollers + 4
     for j in range(size + 3):
-        for i in range(size):
+        for i in range(tableau.shape[1]):
             tableau[j, i] = 0.0
     for i in range(points):
         for k in range(i + 1):
@@ -237,16 +249,15 @@ def _refresh(elastic, bending):
 
 
 @kernel
-def _settle(allowed, points, column, tableau, sides):
+def _settle(allowed, points, bending):
     """Change sides until no force pulls and no gap is negative in the solution; return how many did, -1 where there was no end.
 
     Parameters
     ----------
     allowed : force that counts as none [N].
-    points, column, tableau : as of `_pivot`.
-    sides : of the equations; how many changed is added to the last.
+    points : their number.
     """
-    size, wrong = tableau.shape[1], False
+    tableau, sides, size, wrong = bending.tableau, bending.sides, bending.sides.shape[0] - 1, False
     values, offsets = tableau[size + 1], tableau[size + 2]  # of what touches: negative
     for i in range(size):
         wrong = wrong or (sides[i] == _OPEN and values[i] < -_WRONG_GAP) or (sides[i] == _TOUCHING and values[i] > allowed)
@@ -270,7 +281,7 @@ def _settle(allowed, points, column, tableau, sides):
         if first < 0:
             sides[size] += change
             return change
-        _pivot(first, 1.0 if sides[first] == _OPEN else -1.0, points, column, tableau)
+        _pivot(first, 1.0 if sides[first] == _OPEN else -1.0, points, bending.scratch, tableau)
         sides[first] = _TOUCHING if sides[first] == _OPEN else _OPEN
     return -1
 
@@ -278,7 +289,7 @@ def _settle(allowed, points, column, tableau, sides):
 @kernel
 def _look_at_bore(turn, play, elastic, bending):
     """Write the gaps of the seat's points at a cage angle [turns], and what they change in the tableau's constants."""
-    points, intervals, tableau, size = elastic.seat.shape[0], elastic.bore.shape[0], bending.tableau, bending.tableau.shape[1]
+    points, intervals, tableau, size = elastic.seat.shape[0], elastic.bore.shape[0], bending.tableau, bending.sides.shape[0] - 1
     changes, constants, changed = bending.scratch, tableau[size], False
     for i in range(points):
         at = turn + i / points
@@ -308,37 +319,52 @@ def _look_at_bore(turn, play, elastic, bending):
 
 
 @kernel
-def _add(factor, row, values):
-    """Add a multiple of a row."""
-    for i in range(values.shape[0]):
-        values[i] += factor * row[i]
+def _multiply(given, points, tableau):
+    """Write the solution for what is given to all equations but the points'."""
+    size = tableau.shape[0] - 3
+    constants, values = tableau[size], tableau[size + 1]
+    for i in range(0, size, _GROUP):
+        first, second = load_run(constants, i), load_run(constants, i + LANES)
+        third, fourth = load_run(constants, i + 2 * LANES), load_run(constants, i + 3 * LANES)
+        for k in range(points, size):
+            factor, row = given[k - points], tableau[k]
+            first += factor * load_run(row, i)
+            second += factor * load_run(row, i + LANES)
+            third += factor * load_run(row, i + 2 * LANES)
+            fourth += factor * load_run(row, i + 3 * LANES)
+        store_run(values, i, first)
+        store_run(values, i + LANES, second)
+        store_run(values, i + 2 * LANES, third)
+        store_run(values, i + 3 * LANES, fourth)
 
 
 @kernel
 def _solve(load_y, load_z, shrunk, elastic, loads, bending):
     """Write the solution for the springs as they are; return whether there is one."""
-    points, rollers, parts, size = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0], bending.tableau.shape[1]
+    points, rollers, parts, size = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0], bending.sides.shape[0] - 1
     tableau, sides, values, compliance = bending.tableau, bending.sides, bending.tableau[size + 1], bending.held[2]
+    own = bending.right
     allowed = abs(load_y) + abs(load_z) + 1.0
     for j in range(rollers):
         carried = loads[LOAD.centrifugal, j]
         allowed += carried
         load_y += carried * elastic.directions[0, parts * j]
         load_z += carried * elastic.directions[1, parts * j]
+    given = bending.given
+    given[rollers], given[rollers + 1] = -_HOLDING_STIFFNESS * bending.held[0], -_HOLDING_STIFFNESS * bending.held[1]
+    given[rollers + 2], given[rollers + 3] = -load_y, -load_z
     for _ in range(_ROUNDS):
         for i in range(size):
-            tableau[size + 2, i], values[i] = values[i], tableau[size, i]
-        _add(-_HOLDING_STIFFNESS * bending.held[0], tableau[size - 4], values)
-        _add(-_HOLDING_STIFFNESS * bending.held[1], tableau[size - 3], values)
-        _add(-load_y, tableau[size - 2], values)
-        _add(-load_z, tableau[size - 1], values)
+            tableau[size + 2, i] = values[i]
         for j in range(rollers):
-            row, carried = points + j, loads[LOAD.centrifugal, j]
+            carried = loads[LOAD.centrifugal, j]
             gap = bending.rollers[ROLLER.opens, j] + loads[LOAD.free, j] + shrunk - loads[LOAD.squeeze, j] - compliance * carried
-            touches = sides[row] == _TOUCHING
-            _add(-gap if touches else carried, tableau[row], values)
-            values[row] += carried if touches else gap
-        changes = _settle(_WRONG_FORCE * allowed, points, bending.scratch, tableau, sides)
+            touches = sides[points + j] == _TOUCHING
+            given[j], own[j] = (-gap, carried) if touches else (carried, gap)
+        _multiply(given, points, tableau)
+        for j in range(rollers):
+            values[points + j] += own[j]
+        changes = _settle(_WRONG_FORCE * allowed, points, bending)
         if changes <= 0:
             return changes == 0
     return False
@@ -348,7 +374,7 @@ def _solve(load_y, load_z, shrunk, elastic, loads, bending):
 def _press_rollers(stiffness, profile, elastic, loads, bending):
     """Balance all rollers at the approaches of the solution; return the largest force that it misses [N], of a roller or of the inner ring."""
     points, parts, sides, rows = elastic.seat.shape[0], elastic.turning.shape[0], bending.sides, bending.rollers
-    values, force_y, force_z, residual = bending.tableau[bending.tableau.shape[1] + 1], 0.0, 0.0, 0.0
+    values, force_y, force_z, residual = bending.tableau[bending.sides.shape[0]], 0.0, 0.0, 0.0
     for j in range(loads.shape[1]):
         approach, pressed, value = loads[LOAD.free, j] + rows[ROLLER.opens, j], 0.0, values[points + j]
         if sides[points + j] == _TOUCHING:
@@ -416,8 +442,8 @@ def _move_springs(newton, points, loads, bending):
 def _conclude(y, z, elastic, loads, bending):
     """Write what follows from a solution: forces of the seat, deflections at the rollers and their slopes; y, z is the position of the inner ring."""
     points, rollers, parts = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0]
-    rows, pressed, values = bending.rollers, bending.points[POINT.force], bending.tableau[bending.tableau.shape[1] + 1]
-    slopes = rows[ROLLER.slope]
+    rows, pressed, values = bending.rollers, bending.points[POINT.force], bending.tableau[bending.sides.shape[0]]
+    slopes = bending.scratch
     for j in range(rollers):
         slopes[j] = 0.0
         moved = y * elastic.directions[0, parts * j] + z * elastic.directions[1, parts * j]
@@ -430,9 +456,10 @@ def _conclude(y, z, elastic, loads, bending):
             if points > 0:
                 force -= pressed[k * parts + part]
             if force != 0.0:
-                start = rollers - k
-                for j in range(rollers):
-                    slopes[j] += force * elastic.turning[part, start + j]
+                _add(force, elastic.turning[part], rollers - k, rollers, slopes)
+    for j in range(rollers):
+        rows[ROLLER.slope, j] = slopes[j]
+
 
 
 @kernel
@@ -458,7 +485,7 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     -------
     converged : bool
     """
-    points, size, held = elastic.seat.shape[0], bending.tableau.shape[1], bending.held
+    points, size, held = elastic.seat.shape[0], bending.sides.shape[0] - 1, bending.held
     values, cosine, sine = bending.tableau[size + 1], loads[LOAD.cosine, 0], loads[LOAD.sine, 0]
     play, shrunk = seat_gap(pressure, elastic)
     _look_at_bore(turn, play, elastic, bending)
