@@ -45,6 +45,7 @@ from bearing_sim.numerics.simd import load_run, new_blocks, store_run
 from bearing_sim.numerics.vector_width import LANES
 from bearing_sim.physics.load_balance import LOAD, press_roller, squeezed_roller
 from bearing_sim.physics.outer_ring import RingSection, ring_compliance
+from bearing_sim.physics.profile import profile_force
 from bearing_sim.physics.raceway import contour_at, contour_table
 
 _CENTRING_STIFFNESS = 1e3  # N/m, of rings that nothing holds, as in `bearing_sim.physics.load_balance` (assumption)
@@ -53,20 +54,22 @@ _RELATIVE_RESIDUAL, _LEAST_RESIDUAL = 1e-6, 1e-3  # of the load, as for a rigid 
 _HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
 _PIVOTS, _ROUNDS = 2000, 20  # changes of sides at most; solutions of a problem, each after the changes that the one before asked for
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
-_TYPICAL, _STIFFER = (
-    2e-5,
-    1.1,
-)  # m, an approach beyond the first touch at which contacts are as stiff as springs; and by what factor these are stiffer
+_TYPICAL = 2e-5  # m, an approach beyond the first touch at which contacts are as stiff as springs
+_STIFFER = 1.1  # by what factor springs are stiffer than contacts
 _REFRESHED = 1000  # pivots after which rounding is removed (assumption)
 _GROUP = 4 * LANES  # columns of a product that are computed at once
-_OPEN, _TOUCHING, _UNSIGNED = 0, 1, 2  # sides: where the gap may be anything from zero, where the force may; neither
+# sides: where the gap may be anything from zero, where the force may, where neither has a sign, and what is given
+_OPEN, _TOUCHING, _UNSIGNED, _GIVEN = 0, 1, 2, 3
+_RATE_ITERATIONS = 3  # of speeds; springs and contacts differ by a third at most, so that each leaves less than a tenth
 
 
 class ElasticRing(NamedTuple):
     """The ring and its seat, for Z rollers in even pitches and M points of the seat, P to a pitch; without any the ring is free, and P = 1."""
 
     between: np.ndarray  # F at multiples of pitch/P [m/N], shape (P Z,)
-    turning: np.ndarray  # dF/dpsi at k pitches less p parts of P in column Z + k of row p [m/(N rad)], and a `_GROUP` more of them, shape (P, 2 Z + `_GROUP`)
+    turning: (
+        np.ndarray
+    )  # dF/dpsi at k pitches less p parts of P in column Z + k of row p [m/(N rad)], and a `_GROUP` more of them, shape (P, 2 Z + `_GROUP`)
     directions: np.ndarray  # cosine and sine of multiples of pitch/P, shape (2, P Z)
     seat: np.ndarray  # F + H at multiples of 2 pi/M, and a part in one wave that makes it regular and moves x alone [m/N], shape (M,)
     bore: np.ndarray  # how far the bore lies outside of its mean [m], periodic cubic table of `bearing_sim.physics.raceway`, shape (n, 4)
@@ -103,6 +106,9 @@ class RollerRow(NamedTuple):
     slope: int = 1  # dw/dphi [m/rad]
     force: int = 2  # q, on the ring outwards [N]
     opens: int = 3  # o less the approach at which an inner contact begins [m]
+    moved: int = 4  # from here on, of `deflect_elastic_ring`: w + x.e [m]
+    rate: int = 5  # its derivative by time, along the roller's way [m/s]
+    share: int = 6  # of a further approach, which the contact takes while all other rollers stay where they are
 
 
 ROLLER = RollerRow()
@@ -167,13 +173,21 @@ def new_elastic_ring(section: RingSection, seat: Seat | None, rollers: int, poin
     return ElasticRing(*common, waves @ (compliances + housing), table, seat.play, seat.loose, seat.pressed, seat.shrunk)
 
 
-def new_bending(elastic: ElasticRing) -> Bending:
-    """Return the memory for a ring; the seat touches everywhere."""
+def new_bending(elastic: ElasticRing, rollers_move: bool = False) -> Bending:
+    """Return the memory for a ring; the seat touches everywhere.
+
+    Parameters
+    ----------
+    elastic : the ring.
+    rollers_move : whether it is for `deflect_elastic_ring`, which knows where the rollers are.
+    """
     rollers, points = (elastic.turning.shape[1] - _GROUP) // 2, elastic.seat.shape[0]
     equations = points + rollers + 4
     groups = -(-equations // _GROUP)
     sides = np.full(equations + 1, _UNSIGNED)
     sides[: points + rollers], sides[-1] = _TOUCHING, _REFRESHED
+    if rollers_move:
+        sides[-3:-1] = _GIVEN
     return Bending(
         rollers=np.zeros((len(ROLLER), rollers)),
         points=np.zeros((len(POINT), points + 2)),
@@ -243,7 +257,7 @@ def _refresh(elastic, bending):
             tableau[x + 2 + axis, points + j] = tableau[points + j, x + 2 + axis] = -direction
         tableau[x + axis, x + axis], tableau[x + 2 + axis, x + 2 + axis] = -_HOLDING_STIFFNESS, -_CENTRING_STIFFNESS
     for i in range(size):
-        if bending.sides[i] != _OPEN:
+        if bending.sides[i] == _TOUCHING or bending.sides[i] == _UNSIGNED:
             _pivot(i, 1.0, points, bending.scratch, tableau)
     bending.sides[size] = 0
 
@@ -371,8 +385,11 @@ def _solve(load_y, load_z, shrunk, elastic, loads, bending):
 
 
 @kernel
-def _press_rollers(stiffness, profile, elastic, loads, bending):
-    """Balance all rollers at the approaches of the solution; return the largest force that it misses [N], of a roller or of the inner ring."""
+def _press_rollers(outer_alone, stiffness, profile, elastic, loads, bending):
+    """Balance all rollers at the approaches of the solution; return the largest force that it misses [N], of a roller or of the inner ring.
+
+    Where ``outer_alone``, an approach is that of a roller and the outer raceway, and its force the elastic one of that contact.
+    """
     points, parts, sides, rows = elastic.seat.shape[0], elastic.turning.shape[0], bending.sides, bending.rollers
     values, force_y, force_z, residual = bending.tableau[bending.sides.shape[0]], 0.0, 0.0, 0.0
     for j in range(loads.shape[1]):
@@ -383,8 +400,12 @@ def _press_rollers(stiffness, profile, elastic, loads, bending):
         else:
             approach -= value
         rows[ROLLER.force, j] = loads[LOAD.centrifugal, j] + pressed
-        inner_load, _ = press_roller(j, approach, stiffness, profile, loads)
-        missed = inner_load - pressed
+        if outer_alone:
+            force, slope = profile_force(approach, stiffness, profile) if approach > 0.0 else (0.0, 0.0)
+            loads[LOAD.approach, j], loads[LOAD.slope, j], loads[LOAD.inner, j], loads[LOAD.outer, j] = approach, slope, force, force
+        else:
+            force, _ = press_roller(j, approach, stiffness, profile, loads)
+        missed = force - pressed
         force_y += missed * elastic.directions[0, parts * j]
         force_z += missed * elastic.directions[1, parts * j]
         residual = max(residual, abs(missed))
@@ -401,7 +422,7 @@ def seat_gap(pressure, elastic):
     elastic : `ElasticRing`.
     """
     if not math.isnan(elastic.play):
-        return elastic.play, 0.0
+        return elastic.play, max(-elastic.play, 0.0) * elastic.shrunk / elastic.pressed if elastic.pressed > 0.0 else 0.0
     if pressure > 0.0:
         return -pressure * elastic.pressed, pressure * elastic.shrunk
     return -pressure * elastic.loose, 0.0
@@ -461,11 +482,48 @@ def _conclude(y, z, elastic, loads, bending):
         rows[ROLLER.slope, j] = slopes[j]
 
 
-
 @kernel
 def _turned(y, z, cosine, sine):
     """Return a vector in axes that are turned by an angle of that cosine and sine."""
     return y * cosine + z * sine, z * cosine - y * sine
+
+
+@kernel
+def _find_balance(load_y, load_z, slope, shrunk, outer_alone, stiffness, profile, elastic, loads, bending):
+    """Solve for all equations, in axes that turn with the cage; return whether that converged.
+
+    Parameters
+    ----------
+    slope : stiffness of a contact under a usual load [N/m].
+    shrunk : see `seat_gap`.
+    outer_alone : see `_press_rollers`.
+    load_y, load_z, stiffness, profile, elastic, loads, bending : as of `balance_elastic_ring`.
+    """
+    points, size, held = elastic.seat.shape[0], bending.sides.shape[0] - 1, bending.held
+    values = bending.tableau[size + 1]
+    allowed, before, descents, patience = _RELATIVE_RESIDUAL * math.hypot(load_y, load_z) + _LEAST_RESIDUAL, math.inf, 0, 1
+    for _ in range(_ITERATIONS):
+        for j in range(loads.shape[1]):
+            slope = max(slope, loads[LOAD.slope, j])
+        if not slope * held[2] <= 1.0 or bending.sides[size] >= _REFRESHED or held[2] == 0.0:
+            held[2] = 1.0 / (_STIFFER * slope)
+            _refresh(elastic, bending)
+        if not _solve(load_y, load_z, shrunk, elastic, loads, bending):
+            return False
+        residual = _press_rollers(outer_alone, stiffness, profile, elastic, loads, bending)
+        x_y, x_z = -values[size - 4], -values[size - 3]
+        moved = max(abs(x_y - held[0]), abs(x_z - held[1]))
+        held[0], held[1] = x_y, x_z
+        if residual <= allowed and _HOLDING_STIFFNESS * moved <= allowed:
+            return True
+        if descents > 0:
+            descents -= 1
+        elif residual > before:  # Newton's method does not serve: longer and longer without it
+            descents, patience = patience, 2 * patience
+        before = residual if descents == 0 else math.inf
+        if not _move_springs(descents == 0, points, loads, bending):
+            return False
+    return False
 
 
 @kernel
@@ -486,36 +544,86 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     converged : bool
     """
     points, size, held = elastic.seat.shape[0], bending.sides.shape[0] - 1, bending.held
-    values, cosine, sine = bending.tableau[size + 1], loads[LOAD.cosine, 0], loads[LOAD.sine, 0]
+    cosine, sine, free = loads[LOAD.cosine, 0], loads[LOAD.sine, 0], loads[LOAD.free, 0]
+    shrunk = _turn_seat(turn, cosine, sine, pressure, elastic, bending)
+    load_y, load_z = _turned(load_y, load_z, cosine, sine)
+    _, _, slope, _ = squeezed_roller(free + _TYPICAL, loads[LOAD.centrifugal, 0], free, 0.0, stiffness, profile)
+    if not _find_balance(load_y, load_z, slope, shrunk, False, stiffness, profile, elastic, loads, bending):
+        return False
+    values = bending.tableau[size + 1]
+    y, z = -values[size - 2] - held[0], -values[size - 1] - held[1]
+    _conclude(y, z, elastic, loads, bending)
+    ring[0], ring[1] = _turned(y, z, cosine, -sine)
+    bending.points[POINT.force, points], bending.points[POINT.force, points + 1] = _turned(held[0], held[1], cosine, -sine)
+    return True
+
+
+@kernel
+def _turn_seat(turn, cosine, sine, pressure, elastic, bending):
+    """Turn the axes of the seat to a cage angle; parameters as of `deflect_elastic_ring`; return what the ring has shrunk, see `seat_gap`."""
+    points = elastic.seat.shape[0]
     play, shrunk = seat_gap(pressure, elastic)
     _look_at_bore(turn, play, elastic, bending)
-    held[0], held[1] = _turned(bending.points[POINT.force, points], bending.points[POINT.force, points + 1], cosine, sine)
-    load_y, load_z = _turned(load_y, load_z, cosine, sine)
-    allowed, before, descents, patience = _RELATIVE_RESIDUAL * math.hypot(load_y, load_z) + _LEAST_RESIDUAL, math.inf, 0, 1
-    _, _, slope, _ = squeezed_roller(loads[LOAD.free, 0] + _TYPICAL, loads[LOAD.centrifugal, 0], loads[LOAD.free, 0], 0.0, stiffness, profile)
-    for _ in range(_ITERATIONS):
-        for j in range(loads.shape[1]):
-            slope = max(slope, loads[LOAD.slope, j])
-        if not slope * held[2] <= 1.0 or bending.sides[size] >= _REFRESHED or held[2] == 0.0:
-            held[2] = 1.0 / (_STIFFER * slope)
-            _refresh(elastic, bending)
-        if not _solve(load_y, load_z, shrunk, elastic, loads, bending):
-            return False
-        residual = _press_rollers(stiffness, profile, elastic, loads, bending)
-        x_y, x_z = -values[size - 4], -values[size - 3]
-        moved = max(abs(x_y - held[0]), abs(x_z - held[1]))
-        if residual <= allowed and _HOLDING_STIFFNESS * moved <= allowed:
-            y, z = -values[size - 2] - x_y, -values[size - 1] - x_z
-            _conclude(y, z, elastic, loads, bending)
-            ring[0], ring[1] = _turned(y, z, cosine, -sine)
-            bending.points[POINT.force, points], bending.points[POINT.force, points + 1] = _turned(x_y, x_z, cosine, -sine)
-            return True
-        held[0], held[1] = x_y, x_z
-        if descents > 0:
-            descents -= 1
-        elif residual > before:  # Newton's method does not serve: longer and longer without it
-            descents, patience = patience, 2 * patience
-        before = residual if descents == 0 else math.inf
-        if not _move_springs(descents == 0, points, loads, bending):
-            return False
-    return False
+    x_y, x_z = bending.points[POINT.force, points], bending.points[POINT.force, points + 1]
+    bending.held[0], bending.held[1] = _turned(x_y, x_z, cosine, sine)
+    return shrunk
+
+
+@kernel
+def deflect_elastic_ring(turn, cosine, sine, pressure, stiffness, profile, elastic, loads, rates, bending):
+    """Find the deflections of the outer ring under rollers whose places are known.
+
+    Parameters
+    ----------
+    turn, cosine, sine : azimuth of the pocket of roller 0 [turns]; rollers count as if they stood in the middles of their pockets.
+    pressure, stiffness, profile, elastic : as of `balance_elastic_ring`.
+    loads : array with rows `LOAD`; the squeeze goes in, of a roller against a rigid ring [m]; centrifugal and free are zeros.
+    rates : derivative of the squeeze by time [m/s], shape (Z,).
+    bending : `Bending`, start and result: rows `ROLLER`.
+
+    Returns
+    -------
+    converged : bool
+    """
+    points, rollers, parts, held, rows = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0], bending.held, bending.rollers
+    shrunk = _turn_seat(turn, cosine, sine, pressure, elastic, bending)
+    _, slope = profile_force(_TYPICAL, stiffness, profile)
+    if not _find_balance(0.0, 0.0, slope, shrunk, True, stiffness, profile, elastic, loads, bending):
+        return False
+    _conclude(-held[0], -held[1], elastic, loads, bending)
+    bending.points[POINT.force, points], bending.points[POINT.force, points + 1] = _turned(held[0], held[1], cosine, -sine)
+    for j in range(rollers):
+        along = held[1] * elastic.directions[0, parts * j] - held[0] * elastic.directions[1, parts * j]
+        rows[ROLLER.moved, j] = loads[LOAD.squeeze, j] - loads[LOAD.approach, j]
+        rows[ROLLER.slope, j] += along
+    _follow(points, loads, rates, bending)
+    return True
+
+
+@kernel
+def _follow(points, loads, rates, bending):
+    """Write how fast the ring follows the rollers, and which share of a further approach is the contact's.
+
+    With B the springs' response of forces to approaches, S the contacts' stiffness and s the springs' compliance, forces change by
+    q' = B (rate - (1/S - s) q').
+    """
+    rollers, tableau, sides, rows = loads.shape[1], bending.tableau, bending.sides, bending.rollers
+    changes, softer = bending.right, bending.scratch
+    for j in range(rollers):
+        slope = loads[LOAD.slope, j]
+        presses = slope > 0.0 and sides[points + j] == _TOUCHING
+        softer[j] = 1.0 / slope - bending.held[2] if presses else 0.0
+        changes[j] = slope * rates[j] if presses else 0.0
+        response = -tableau[points + j, points + j]
+        rows[ROLLER.share, j] = response / (1.0 + softer[j] * response) / slope if presses else 1.0
+    for _ in range(_RATE_ITERATIONS):
+        for j in range(rollers):
+            if loads[LOAD.slope, j] > 0.0 and sides[points + j] == _TOUCHING:
+                change = 0.0
+                for k in range(rollers):
+                    if sides[points + k] == _TOUCHING:
+                        change -= tableau[points + j, points + k] * (rates[k] - softer[k] * changes[k])
+                changes[j] = change
+    for j in range(rollers):
+        slope = loads[LOAD.slope, j]
+        rows[ROLLER.rate, j] = rates[j] - changes[j] / slope if slope > 0.0 and sides[points + j] == _TOUCHING else 0.0

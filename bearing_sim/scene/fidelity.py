@@ -79,9 +79,15 @@ EFFECTS = (
     Effect("bearing.flanges", LEVELS, "whose rollers rub on flanges", lambda scene: scene.bearing.flanges.present),
     Effect(
         "mounting.housing.backing",
-        ("steady", "slip"),
+        ("steady", "slip", "planar"),
         "whose outer ring bends",
         lambda scene: scene.outer_ring_bends and scene.mounting.housing.backing.law,
+    ),
+    Effect(
+        "mounting.housing.backing",
+        ("steady", "slip"),
+        "at which the masses of a ring that nothing backs do not matter",
+        lambda scene: scene.mounting.housing.backing.law == "free" and "free",
     ),
     Effect("bearing.dimensions_at", LEVELS, "whose rings grow", lambda scene: scene.bearing.dimensions_at == "cold"),
     Effect("support.unbalance", WHIRLING, "whose inner ring has inertia", lambda scene: scene.support.unbalance.amount > 0.0),

@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.bending import observe_bending
 from bearing_sim.levels.common.model import write_growth
 from bearing_sim.levels.common.slice_balance import about_yz, balance, leaning, roller_loads, roller_tilts
 from bearing_sim.levels.slip.forces import balance_loads
-from bearing_sim.levels.slip.model import observe_bending
 from bearing_sim.levels.slip.state import new_work
 from bearing_sim.model.params import Life, Params
 from bearing_sim.model.sample import NODE_OBSERVABLES, flat
@@ -102,7 +102,7 @@ def statics(scene: Scene, slices: int) -> Statics:
     for name, part in clearance_at(operating.shaft_speed, lubrication.growth, params)._asdict().items():
         sample[name.replace("fits", "fit") + "_clearance"] = part
     sample["seat_arc"] = math.nan
-    observe_bending(aligned.bending, count, aligned, flat(sample)[0])
+    observe_bending(aligned.bending, count, flat(sample)[0])
     for name, temperature in zip(NODE_OBSERVABLES, temperatures):
         sample[name] = temperature
     return Statics(

@@ -22,6 +22,7 @@ from bearing_sim.physics.growth import cold_growth
 from bearing_sim.physics.lamina_life import MOMENTS, write_lamina_means
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, OilFactors
+from bearing_sim.physics.ring_balance import POINT
 from bearing_sim.scene.fidelity import NUMBERS, WHIRLING
 
 _VIBRATING = tuple(NUMBERS[level] for level in WHIRLING)
@@ -45,9 +46,10 @@ def rolling_state(at, params, work, shaft_speed, load_y, load_z):
     write_growth(shaft_speed, cold_growth(params.mounted), balance.growth)  # growth by heat, unknown here, comes with the first step
     balance_loads(0.0, cage_speed, load_y, load_z, params, balance)
     state, rollers = _new_state(at, params)
-    state[at.RING_Y], state[at.RING_Z] = balance.ring
+    own_y, own_z = (0.0, 0.0) if balance.bending is None else balance.bending.points[POINT.force, -2:]  # of the outer ring in its housing
+    state[at.RING_Y], state[at.RING_Z] = balance.ring + (own_y, own_z)
     state[at.OMEGA] = cage_speed
-    rollers[at.R] = balance.loads[LOAD.radius]
+    rollers[at.R] = balance.loads[LOAD.radius] + own_y * balance.loads[LOAD.cosine] + own_z * balance.loads[LOAD.sine]
     rollers[at.PHI] = 2.0 * math.pi * np.arange(count) / count
     rollers[at.PHI_SPEED] = cage_speed
     rollers[at.SPIN] = rolling[slip_state.SPIN :]

@@ -27,6 +27,7 @@ orbit: what the other walls do, turned by a right angle.
 
 import math
 
+from bearing_sim.levels.common.bending import bend_outer_ring, soften_contacts
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, total_load
 from bearing_sim.levels.common.model import films_at, inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import carry_normal_forces, drag, linear_churning, place_in_pockets, place_outwards, place_rollers
@@ -255,6 +256,12 @@ def equations(t, y, model, work, rate, with_jacobian):
     place_rollers(ROLLER, CONTACT, ring, shaft_speed, inner_radius, params, rows, contacts)
     for k in range(4):
         work.evaluated_ring[k] = ring[k]
+    pressure = model.lubrication.growth.housing_pressure
+    if not bend_outer_ring(
+        ROLLER, CONTACT, params.outer_ring, y[THETA], pressure, params.raceways, rows, contacts, work.ring_loads, work.ring_rates, work.bending
+    ):
+        return False
+    work.bent_at[0] = y[THETA]
     normal_forces(params, contacts)
     drag(params.raceways, model.lubrication, films, contacts)
     _pocket_forces(y, films.pocket_friction, params, rows)
@@ -264,6 +271,7 @@ def equations(t, y, model, work, rate, with_jacobian):
         guide_accelerations(params, rows, rate)
     if params.flanges.on:
         flange_accelerations(shaft_speed, films.flange_friction, model, rows, contacts, rate)
+    soften_contacts(CONTACT, rows.shape[0], contacts, work.bending)
     if with_jacobian:
         roller_jacobian(y, inner_radius, churning, model.lubrication.rolling_resistance.on, params, rows, contacts, work.jacobian)
     if work.support.shape[0] > 0:

@@ -6,6 +6,7 @@ implicit steps: `bearing_sim.levels.planar.jacobian`.
 """
 
 from bearing_sim.levels.common.advance import advance_by
+from bearing_sim.levels.common.bending import observe_ring
 from bearing_sim.levels.common.dynamic import average_step, dynamic_kernels, observe_level
 from bearing_sim.levels.common.model import shaft_speed_at
 from bearing_sim.levels.common.observation import count_damage, oil_at_speed, turn_is_over
@@ -64,6 +65,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
     oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
     equivalent = equivalent_loads(work.load_moments, oil, model.params.life)
     observe_level(LAYOUT, ROLLER, CONTACT, rhs, planar_powers, t, y, oil, equivalent, model, work, interval, previous, row, memory)
+    observe_ring(work.bending, model.params.rollers.count, row)
 
 
 KERNELS = dynamic_kernels(LAYOUT, ROLLER, CONTACT, RUNS, equations, rhs, predict, sum_up, observe)

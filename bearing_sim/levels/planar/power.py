@@ -12,6 +12,7 @@ shaft, which pays for what they take and for what they give the cage.
 
 import math
 
+from bearing_sim.levels.common.bending import bending_loss
 from bearing_sim.levels.common.flanges import flange_powers
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.power import Powers, rolling_power, seal_power, shaft_traction_power, sliding_power, windage_powers
@@ -157,7 +158,7 @@ def planar_powers(t, y, shaft_speed, model, work):
         windage,
         land,
         pocket,
-        _raceway_damping(params, work) + walls + touching,
+        _raceway_damping(params, work) + bending_loss(CONTACT, blocks, params.raceways, contacts, work.bending) + walls + touching,
         seals,
         rubbing,
         support,

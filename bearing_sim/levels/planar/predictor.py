@@ -11,16 +11,18 @@ is scalar and rises monotonically: a few Newton iterations for all rollers at on
 
 import math
 
+from bearing_sim.levels.common.bending import predict_bending
 from bearing_sim.levels.common.dynamic import extrapolate, write_guess
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.rollers import follow_contour
 from bearing_sim.levels.planar.forces import normal_forces
-from bearing_sim.levels.planar.state import BORDER, LAYOUT, PHI, PHI_SPEED, R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
+from bearing_sim.levels.planar.state import BORDER, LAYOUT, PHI, PHI_SPEED, R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, THETA, R
 from bearing_sim.numerics.compilation import fused
 from bearing_sim.numerics.simd import highest, larger, load, magnitude, spread, spread_run, square_root, store, where_positive
 from bearing_sim.physics.contact import CONTACT
 
 _ITERATIONS = 4
+_TURNS = 1.0  # rad/s; a slower cage does not tell how long ago something was
 _SETTLED = 0.2  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system
 
 
@@ -91,6 +93,8 @@ def predict(known, shift, slope, model, work, guess):
     inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # where the inputs start: a guess needs no more
     extrapolate(LAYOUT, known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
+    omega = guess[BORDER + THETA]
+    predict_bending(ROLLER, (guess[THETA] - work.bent_at[0]) / omega if abs(omega) > _TURNS else 0.0, rows, work.bending)
     enough = _SETTLED * model.tolerances.position
     for _ in range(_ITERATIONS):
         if _balance(guess, shift, enough, inner_radius, params, rows, work.contacts) < enough:

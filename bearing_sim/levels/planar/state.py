@@ -19,6 +19,8 @@ from bearing_sim.numerics.block_arrow import Factored, block_arrow, new_factored
 from bearing_sim.numerics.simd import new_blocks, new_rows
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.lamina_life import MOMENTS
+from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.ring_balance import Bending, new_bending
 
 RING, CAGE = 2, 3  # positions of ring and cage
 LAYOUT = block_arrow(2, 3, (RING, CAGE))  # of rollers that touch them
@@ -101,6 +103,10 @@ class Work(NamedTuple):
     load_moments: np.ndarray
     last_moments: np.ndarray  # those powers at the end of the last step, shape (2, MOMENTS)
     tally: np.ndarray  # sums over time, see `bearing_sim.levels.common.observation.Tally`
+    bending: Bending | None  # of the outer ring; None: it is rigid
+    ring_loads: np.ndarray  # of its balance, rows `bearing_sim.physics.load_balance.LOAD`
+    ring_rates: np.ndarray  # rates of the penetrations of a rigid ring [m/s], shape (Z,)
+    bent_at: np.ndarray  # cage angle at which it was found last [rad], shape (1,)
 
 
 def new_work(params):
@@ -119,4 +125,8 @@ def new_work(params):
         np.zeros((2, MOMENTS)),
         np.zeros((2, MOMENTS)),
         np.zeros(len(Tally._fields)),
+        None if params.outer_ring is None else new_bending(params.outer_ring, rollers_move=True),
+        np.zeros((len(LOAD), count)),
+        np.zeros(count),
+        np.zeros(1),
     )

@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.advance import advance_by
+from bearing_sim.levels.common.bending import observe_bending
 from bearing_sim.levels.common.model import HALF_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import TALLY, count_damage, fade_moment, observe_course, observe_rest, oil_at_speed, turn_is_over
 from bearing_sim.levels.common.power import write_powers
@@ -25,7 +26,6 @@ from bearing_sim.numerics.linear_algebra import factor_shifted, solve_factored
 from bearing_sim.numerics.time_stepping import Kernels
 from bearing_sim.physics.lamina_life import MOMENTS, add_load_moments, equivalent_loads
 from bearing_sim.physics.load_balance import LOAD
-from bearing_sim.physics.ring_balance import POINT, ROLLER
 
 _CAGE_WEIGHT = 10.0  # slip is a small part of the cage's speed (assumption)
 _CORRECTION_WEIGHT = 1.0 / 3.0  # most of the error of a spin is gone within a step (assumption)
@@ -136,30 +136,8 @@ def observe_orbits(cage_angle, cage_speed, count, work, row):
         row[first + COLUMN.inner_load * count] = loads[LOAD.inner, j]
         row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
         row[first + COLUMN.orbital_speed * count] = cage_speed
-    observe_bending(work.bending, count, work, row)
-
-
-@kernel
-def observe_bending(bending, count, work, row):
-    """Write how the outer ring bends and sits in its seat into a flat sample that has the clearance of a rigid ring.
-
-    ``bending`` is that of ``work``, where None stands for a rigid ring.
-    """
-    if bending is None:
-        return
-    points, loads, touching, carried, bent = bending.points.shape[1] - 2, work.loads, 0, 0.0, 0.0
-    for i in range(points):
-        touching += 1 if bending.points[POINT.force, i] > 0.0 else 0
-    row[COLUMN.seat_arc] = 2.0 * math.pi * touching / points if points > 0 else math.nan
-    row[COLUMN.outer_ring_y], row[COLUMN.outer_ring_z] = bending.points[POINT.force, points], bending.points[POINT.force, points + 1]
-    for j in range(count):
-        deflection = bending.rollers[ROLLER.deflection, j]
-        row[SCALARS + j + COLUMN.raceway_deflection * count] = deflection
-        carried += loads[LOAD.inner, j]
-        bent += 2.0 * loads[LOAD.inner, j] * deflection
-    if carried > 0.0:
-        row[COLUMN.bending_clearance] = bent / carried
-        row[COLUMN.running_clearance] += row[COLUMN.bending_clearance]
+    row[COLUMN.outer_ring_y], row[COLUMN.outer_ring_z] = 0.0, 0.0
+    observe_bending(work.bending, count, row)
 
 
 @kernel

@@ -1,0 +1,130 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The outer ring that bends, at levels whose rollers move, and what every level observes of it.
+
+Masses of ring and housing are left out: the ring follows the rollers at once (`bearing_sim.physics.ring_balance.deflect_elastic_ring`), under the
+elastic part of their loads.  So a roller is pressed by R_e + w + x.e, which leans as that does; the position of the ring in its housing, x, is
+among what follows.  What damps a contact acts on its rate of penetration, to which the moving ring adds.  The damping part of a load does not
+bend the ring: what it does to a ring that moves is lost in ring and housing, whose damping it stands for.
+
+Rollers count as if they stood in the middles of their pockets.  The guide lands of the outer ring stay where they are.
+"""
+
+import math
+
+from bearing_sim.model.sample import COLUMN, SCALARS
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.simd import LANES
+from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.profile import profile_force
+from bearing_sim.physics.ring_balance import POINT, ROLLER, deflect_elastic_ring
+
+
+@kernel
+def bend_outer_ring(row, contact, outer_ring, cage_angle, pressure, raceways, rows, contacts, ring_loads, rates, bending):
+    """Let the outer ring give way to the rollers; return whether that was found.
+
+    Parameters
+    ----------
+    row, contact : rows of ``rows`` and ``contacts``, see `bearing_sim.levels.common.rollers`; penetrations, their rates and slopes are changed.
+    outer_ring : `bearing_sim.physics.ring_balance.ElasticRing`, or None of a rigid ring.
+    cage_angle : [rad].
+    pressure : of the seat by fit and temperatures [Pa].
+    raceways : of the bearing.
+    ring_loads, rates, bending : memory, see `bearing_sim.physics.ring_balance.deflect_elastic_ring`; the last is None of a rigid ring.
+    """
+    if outer_ring is None:
+        return True
+    count, blocks, highest = ring_loads.shape[1], rows.shape[0], raceways.profile.highest
+    for j in range(count):
+        block, lane = blocks + j // LANES, j % LANES
+        ring_loads[LOAD.squeeze, j] = contacts[block, contact.penetration, lane] - highest
+        rates[j] = contacts[block, contact.rate, lane]
+    turn = cage_angle / (2.0 * math.pi)
+    cosine, sine = math.cos(cage_angle), math.sin(cage_angle)
+    if not deflect_elastic_ring(turn, cosine, sine, pressure, raceways.stiffness, raceways.profile, outer_ring, ring_loads, rates, bending):
+        return False
+    for j in range(count):
+        block, lane = j // LANES, j % LANES
+        contacts[blocks + block, contact.penetration, lane] -= bending.rollers[ROLLER.moved, j]
+        contacts[blocks + block, contact.rate, lane] -= bending.rollers[ROLLER.rate, j]
+        rows[block, row.slope, lane] += bending.rollers[ROLLER.slope, j]
+    return True
+
+
+@kernel
+def soften_contacts(contact, blocks, contacts, bending):
+    """Let the derivatives of the outer contacts be those of a ring that gives way; ``bending`` is None of a rigid ring.
+
+    What a roller does to its neighbours through the ring is left to the iteration.
+    """
+    if bending is None:
+        return
+    for j in range(bending.rollers.shape[1]):
+        block, lane = blocks + j // LANES, j % LANES
+        contacts[block, contact.stiffness, lane] *= bending.rollers[ROLLER.share, j]
+        contacts[block, contact.damping, lane] *= bending.rollers[ROLLER.share, j]
+
+
+@kernel
+def predict_bending(row, time, rows, bending):
+    """Add to the contour at the rollers how far the ring will have bent a time [s] after it was known last; ``bending`` is None of a rigid ring."""
+    if bending is None:
+        return
+    for j in range(bending.rollers.shape[1]):
+        rows[j // LANES, row.contour, j % LANES] += bending.rollers[ROLLER.moved, j] + time * bending.rollers[ROLLER.rate, j]
+
+
+@kernel
+def bending_loss(contact, blocks, raceways, contacts, bending):
+    """Return the power lost by the damping of ring and housing [W], see the docstring of the module; 0 of a rigid ring."""
+    if bending is None:
+        return 0.0
+    lost = 0.0
+    for j in range(bending.rollers.shape[1]):
+        block, lane = blocks + j // LANES, j % LANES
+        elastic, _ = profile_force(contacts[block, contact.penetration, lane] - raceways.profile.highest, raceways.stiffness, raceways.profile)
+        lost += (contacts[block, contact.load, lane] - elastic) * bending.rollers[ROLLER.rate, j]
+    return lost
+
+
+@kernel
+def observe_bending(bending, count, row):
+    """Write how the outer ring bends and sits in its seat into a flat sample that has the loads and the clearance of a rigid ring.
+
+    Parameters
+    ----------
+    bending : of the level; None of a rigid ring.
+    count : of rollers.
+    row : see `bearing_sim.model.sample.flat`.
+    """
+    if bending is None:
+        return
+    points, touching, carried, bent = bending.points.shape[1] - 2, 0, 0.0, 0.0
+    for i in range(points):
+        touching += 1 if bending.points[POINT.force, i] > 0.0 else 0
+    row[COLUMN.seat_arc] = 2.0 * math.pi * touching / points if points > 0 else math.nan
+    row[COLUMN.outer_ring_y] += bending.points[POINT.force, points]
+    row[COLUMN.outer_ring_z] += bending.points[POINT.force, points + 1]
+    for j in range(count):
+        deflection, load = bending.rollers[ROLLER.deflection, j], row[SCALARS + j + COLUMN.inner_load * count]
+        row[SCALARS + j + COLUMN.raceway_deflection * count] = deflection
+        carried += load
+        bent += 2.0 * load * deflection
+    if carried > 0.0:
+        row[COLUMN.bending_clearance] = bent / carried
+        row[COLUMN.running_clearance] += row[COLUMN.bending_clearance]
+
+
+@kernel
+def observe_ring(bending, count, row):
+    """Write `observe_bending`, and let the inner ring and the rollers be where they are from the outer ring's centre, into a sample in the housing."""
+    if bending is None:
+        return
+    observe_bending(bending, count, row)
+    points = bending.points.shape[1] - 2
+    y, z = bending.points[POINT.force, points], bending.points[POINT.force, points + 1]
+    row[COLUMN.ring_y] -= y
+    row[COLUMN.ring_z] -= z
+    for j in range(count):
+        angle = row[SCALARS + j + COLUMN.roller_angle * count]
+        row[SCALARS + j + COLUMN.roller_radius * count] -= y * math.cos(angle) + z * math.sin(angle)
