@@ -43,8 +43,9 @@ from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import back_substitute, decompose
 from bearing_sim.numerics.simd import load_run, new_blocks, store_run
 from bearing_sim.numerics.vector_width import LANES
-from bearing_sim.physics.load_balance import LOAD, press_roller, squeezed_roller
+from bearing_sim.physics.load_balance import LOAD, press_roller
 from bearing_sim.physics.outer_ring import RingSection, ring_compliance
+from bearing_sim.physics.profile import profile_force
 from bearing_sim.physics.raceway import contour_at, contour_table
 
 _CENTRING_STIFFNESS = 1e3  # N/m, of rings that nothing holds, as in `bearing_sim.physics.load_balance` (assumption)
@@ -53,7 +54,7 @@ _RELATIVE_RESIDUAL, _LEAST_RESIDUAL = 1e-6, 1e-3  # of the load, as for a rigid 
 _HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
 _PIVOTS, _ROUNDS = 2000, 20  # changes of sides at most; solutions of a problem, each after the changes that the one before asked for
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
-_TYPICAL, _STIFFER = 2e-5, 1.1  # m, an approach beyond the first touch at which contacts are as stiff as springs; and by what factor these are stiffer
+_TYPICAL, _STIFFER = 1e-5, 1.1  # m, penetration at which contacts are no stiffer than springs at first; by what factor these are stiffer
 _REFRESHED = 1000  # pivots after which rounding is removed (assumption)
 _GROUP = 4 * LANES  # columns of a product that are computed at once
 _OPEN, _TOUCHING, _UNSIGNED = 0, 1, 2  # sides: where the gap may be anything from zero, where the force may; neither
@@ -216,8 +217,8 @@ def _refresh(elastic, bending):
     """Write the tableau anew for the points that touch."""
     points, rollers, tableau = elastic.seat.shape[0], (elastic.turning.shape[1] - _GROUP) // 2, bending.tableau
     parts, x, size = elastic.turning.shape[0], points + rollers, points + rollers + 4
-    for j in range(size + 3):
-        for i in range(tableau.shape[1]):
+    for j in range(size + 1):
+        for i in range(size):
             tableau[j, i] = 0.0
     for i in range(points):
         for k in range(i + 1):
@@ -261,13 +262,11 @@ def _settle(allowed, points, bending):
     if not wrong:
         return 0
     for i in range(size):
-        if sides[i] == _OPEN and values[i] >= -_WRONG_GAP:
-            values[i] = max(values[i], 0.0)
-        elif sides[i] == _TOUCHING and values[i] <= allowed:
-            values[i] = min(values[i], 0.0)
-        elif abs(offsets[i]) <= 1e-3 * ((i * 37) % 101) * abs(values[i]):  # no two alike, so that no two reach zero together
-            offsets[i] = -1e-3 * ((i * 37) % 101) * values[i]
-        offsets[i] -= values[i]
+        right, allowed_here = (1.0, _WRONG_GAP) if sides[i] == _OPEN else (-1.0, allowed)
+        if sides[i] != _UNSIGNED and -allowed_here <= right * values[i] < 0.0:
+            values[i] = 0.0
+        spread = 1e-3 * (1 + (i * 37) % 101)  # no two alike, so that no two reach zero together
+        offsets[i] = right * max(right * offsets[i], spread * abs(values[i])) - values[i]
     for change in range(_PIVOTS):
         first, highest = -1, 0.0
         for i in range(size):
@@ -276,10 +275,10 @@ def _settle(allowed, points, bending):
                 if reached > highest:
                     first, highest = i, reached
         if first < 0:
-            sides[size] += change
             return change
         _pivot(first, 1.0 if sides[first] == _OPEN else -1.0, points, bending.scratch, tableau)
         sides[first] = _TOUCHING if sides[first] == _OPEN else _OPEN
+        sides[size] += 1
     return -1
 
 
@@ -287,13 +286,12 @@ def _settle(allowed, points, bending):
 def _look_at_bore(turn, play, elastic, bending):
     """Write the gaps of the seat's points at a cage angle [turns], and what they change in the tableau's constants."""
     points, intervals, tableau, size = elastic.seat.shape[0], elastic.bore.shape[0], bending.tableau, bending.sides.shape[0] - 1
-    changes, constants, changed = bending.scratch, tableau[size], False
+    changes, constants, gaps, changed = bending.scratch, tableau[size], bending.points[POINT.gap], False
     for i in range(points):
         at = turn + i / points
-        gap = play + contour_at(elastic.bore, (at - math.floor(at)) * intervals)[0]
-        changes[i] = gap - bending.points[POINT.gap, i]
+        gap = play + (contour_at(elastic.bore, (at - math.floor(at)) * intervals)[0] if intervals > 1 else elastic.bore[0, 3])
+        changes[i], gaps[i] = gap - gaps[i], gap
         changed = changed or changes[i] != 0.0
-        bending.points[POINT.gap, i] = gap
     if not changed or bending.sides[size] >= _REFRESHED:
         return
     for i in range(points):
@@ -301,16 +299,16 @@ def _look_at_bore(turn, play, elastic, bending):
             constants[i] += changes[i]
             changes[i] = 0.0
     for i in range(size):
-        complete, first, second, third, fourth = min(i, points), 0.0, 0.0, 0.0, 0.0
+        before, first, second, third, fourth = min(i, points), 0.0, 0.0, 0.0, 0.0
         if i < points:
             for k in range(i + 1):
                 constants[k] -= tableau[i, k] * changes[i]
-        for k in range(0, complete - 3, 4):
+        for k in range(0, before - 3, 4):
             first += tableau[i, k] * changes[k]
             second += tableau[i, k + 1] * changes[k + 1]
             third += tableau[i, k + 2] * changes[k + 2]
             fourth += tableau[i, k + 3] * changes[k + 3]
-        for k in range(complete - complete % 4, complete):
+        for k in range(before - before % 4, before):
             first += tableau[i, k] * changes[k]
         constants[i] -= first + second + third + fourth
 
@@ -488,15 +486,16 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     held[0], held[1] = _turned(bending.points[POINT.force, points], bending.points[POINT.force, points + 1], cosine, sine)
     load_y, load_z = _turned(load_y, load_z, cosine, sine)
     allowed, before, descents, patience = _RELATIVE_RESIDUAL * math.hypot(load_y, load_z) + _LEAST_RESIDUAL, math.inf, 0, 1
-    _, _, slope, _ = squeezed_roller(loads[LOAD.free, 0] + _TYPICAL, loads[LOAD.centrifugal, 0], loads[LOAD.free, 0], 0.0, stiffness, profile)
+    stiffest = 0.5 * profile_force(_TYPICAL, stiffness, profile)[1] if held[2] == 0.0 else 0.0  # two contacts in series
     for _ in range(_ITERATIONS):
         for j in range(loads.shape[1]):
-            slope = max(slope, loads[LOAD.slope, j])
-        if not slope * held[2] <= 1.0 or bending.sides[size] >= _REFRESHED or held[2] == 0.0:
-            held[2] = 1.0 / (_STIFFER * slope)
+            stiffest = max(stiffest, loads[LOAD.slope, j])
+        if held[2] == 0.0 or stiffest * held[2] > 1.0:
+            held[2], bending.sides[size] = 1.0 / (_STIFFER * stiffest), _REFRESHED
+        if bending.sides[size] >= _REFRESHED:
             _refresh(elastic, bending)
         if not _solve(load_y, load_z, shrunk, elastic, loads, bending):
-            return False
+            break
         residual = _press_rollers(stiffness, profile, elastic, loads, bending)
         x_y, x_z = -values[size - 4], -values[size - 3]
         moved = max(abs(x_y - held[0]), abs(x_z - held[1]))
@@ -513,5 +512,10 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
             descents, patience = patience, 2 * patience
         before = residual if descents == 0 else math.inf
         if not _move_springs(descents == 0, points, loads, bending):
-            return False
+            break
+    bending.sides[size] = _REFRESHED  # nothing of a failure is left for the next call
+    for i in range(size):
+        values[i] = 0.0
+    for j in range(loads.shape[1]):
+        bending.rollers[ROLLER.opens, j] = 0.0
     return False
