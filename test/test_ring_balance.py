@@ -115,31 +115,27 @@ def check_equations(rollers, compliances, bore, play, load, angle, turn):
     at, deflection = 2 * math.pi * (turn + np.arange(points) / max(points, 1)), rollers.bending.rollers[ROLLER.deflection]
     pressed, outwards = rollers.bending.points[POINT.force, :points], rollers.loads[LOAD.outer]
     ring = ring_compliance(n, SECTION)
+    error = 1e-9 + ring[2] * count / 2 * (1e-3 + 1e-6 * load)  # every roller may miss its force by as much, in two waves at worst
 
     def moved(where):
         waves = lambda sources: np.cos(np.multiply.outer(where[:, None] - sources, n)) @ ring  # noqa: E731
         return waves(azimuths) @ outwards - waves(at) @ pressed
 
-    assert np.abs(moved(azimuths) - deflection).max() < 3e-9
+    assert np.abs(moved(azimuths) - deflection).max() < error
     housing = np.zeros(len(n)) if points == 0 else compliances(n) / (math.pi * SEAT_RADIUS * WIDTH)
     housing[0] /= 2
     if points % 2 == 0:
         housing[-1] /= 2
+    housing[1] += housing[2]  # x contains it, see `new_elastic_ring`
     given_way = (np.cos(np.multiply.outer(at[:, None] - at, n)) @ housing) @ pressed
     push = outwards @ np.stack([np.cos(azimuths), np.sin(azimuths)], 1)
     directions = np.stack([np.cos(at), np.sin(at)], 1)
     scale = load + outwards.sum()
     if points:
         assert np.abs(pressed @ directions - push).max() < 1e-3 + 1e-5 * scale
-        # x follows from any two points that touch; all others have to agree with it
-        free = play + bore(at) + given_way - moved(at)
-        touching = pressed > 1e-6 * scale
+        free = play + bore(at) + given_way - moved(at) - directions @ rollers.bending.points[POINT.force, points:]
         assert (pressed >= -1e-6 * scale).all()
-        if touching.sum() >= 2:
-            x = np.linalg.lstsq(directions[touching], free[touching], rcond=None)[0]
-            assert np.abs((free - directions @ x)[touching]).max() < 2e-9
-            if touching.sum() >= 3:
-                assert (free - directions @ x).min() > -2e-9
+        assert free.min() > -error and np.abs(free[pressed > 1e-6 * scale]).max(initial=0.0) < error
     inner, exponent = rollers.loads[LOAD.inner], 10 / 9
     y, z = rollers.position
     approach = rollers.loads[LOAD.squeeze] - deflection + y * np.cos(azimuths) + z * np.sin(azimuths)

@@ -43,7 +43,7 @@ from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.linear_algebra import back_substitute, decompose
 from bearing_sim.numerics.simd import load_run, new_blocks, store_run
 from bearing_sim.numerics.vector_width import LANES
-from bearing_sim.physics.load_balance import LOAD, press_roller, squeezed_roller
+from bearing_sim.physics.load_balance import LOAD, press_roller
 from bearing_sim.physics.outer_ring import RingSection, ring_compliance
 from bearing_sim.physics.profile import profile_force
 from bearing_sim.physics.raceway import contour_at, contour_table
@@ -54,8 +54,7 @@ _RELATIVE_RESIDUAL, _LEAST_RESIDUAL = 1e-6, 1e-3  # of the load, as for a rigid 
 _HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
 _PIVOTS, _ROUNDS = 2000, 20  # changes of sides at most; solutions of a problem, each after the changes that the one before asked for
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
-_TYPICAL = 2e-5  # m, an approach beyond the first touch at which contacts are as stiff as springs
-_STIFFER = 1.1  # by what factor springs are stiffer than contacts
+_TYPICAL, _STIFFER = 1e-5, 1.1  # m, penetration at which contacts are no stiffer than springs at first; by what factor these are stiffer
 _REFRESHED = 1000  # pivots after which rounding is removed (assumption)
 _GROUP = 4 * LANES  # columns of a product that are computed at once
 # sides: where the gap may be anything from zero, where the force may, where neither has a sign, and what is given
@@ -83,8 +82,8 @@ class Bending(NamedTuple):
     """Memory of the balance; see `new_bending`.
 
     The tableau is the transform of N = M + Z + 4 equations by what touches: points, rollers, x, y; of the square the rows of the points end at the
-    diagonal.  Three rows follow: constants by the gaps, solution, and what is added to it while sides change.  Columns are filled up to a multiple C of
-    `_GROUP`.
+    diagonal.  Three rows follow: constants by the gaps, solution, and what is added to it while sides change.  Columns are filled up to a multiple C
+    of `_GROUP`.
     """
 
     rollers: np.ndarray  # rows `ROLLER`, shape (len(ROLLER), Z)
@@ -233,8 +232,8 @@ def _refresh(elastic, bending):
     """Write the tableau anew for the points that touch."""
     points, rollers, tableau = elastic.seat.shape[0], (elastic.turning.shape[1] - _GROUP) // 2, bending.tableau
     parts, x, size = elastic.turning.shape[0], points + rollers, points + rollers + 4
-    for j in range(size + 3):
-        for i in range(tableau.shape[1]):
+    for j in range(size + 1):
+        for i in range(size):
             tableau[j, i] = 0.0
     for i in range(points):
         for k in range(i + 1):
@@ -278,13 +277,11 @@ def _settle(allowed, points, bending):
     if not wrong:
         return 0
     for i in range(size):
-        if sides[i] == _OPEN and values[i] >= -_WRONG_GAP:
-            values[i] = max(values[i], 0.0)
-        elif sides[i] == _TOUCHING and values[i] <= allowed:
-            values[i] = min(values[i], 0.0)
-        elif abs(offsets[i]) <= 1e-3 * ((i * 37) % 101) * abs(values[i]):  # no two alike, so that no two reach zero together
-            offsets[i] = -1e-3 * ((i * 37) % 101) * values[i]
-        offsets[i] -= values[i]
+        right, allowed_here = (1.0, _WRONG_GAP) if sides[i] == _OPEN else (-1.0, allowed)
+        if sides[i] != _UNSIGNED and -allowed_here <= right * values[i] < 0.0:
+            values[i] = 0.0
+        spread = 1e-3 * (1 + (i * 37) % 101)  # no two alike, so that no two reach zero together
+        offsets[i] = right * max(right * offsets[i], spread * abs(values[i])) - values[i]
     for change in range(_PIVOTS):
         first, highest = -1, 0.0
         for i in range(size):
@@ -293,10 +290,10 @@ def _settle(allowed, points, bending):
                 if reached > highest:
                     first, highest = i, reached
         if first < 0:
-            sides[size] += change
             return change
         _pivot(first, 1.0 if sides[first] == _OPEN else -1.0, points, bending.scratch, tableau)
         sides[first] = _TOUCHING if sides[first] == _OPEN else _OPEN
+        sides[size] += 1
     return -1
 
 
@@ -304,13 +301,12 @@ def _settle(allowed, points, bending):
 def _look_at_bore(turn, play, elastic, bending):
     """Write the gaps of the seat's points at a cage angle [turns], and what they change in the tableau's constants."""
     points, intervals, tableau, size = elastic.seat.shape[0], elastic.bore.shape[0], bending.tableau, bending.sides.shape[0] - 1
-    changes, constants, changed = bending.scratch, tableau[size], False
+    changes, constants, gaps, changed = bending.scratch, tableau[size], bending.points[POINT.gap], False
     for i in range(points):
         at = turn + i / points
-        gap = play + contour_at(elastic.bore, (at - math.floor(at)) * intervals)[0]
-        changes[i] = gap - bending.points[POINT.gap, i]
+        gap = play + (contour_at(elastic.bore, (at - math.floor(at)) * intervals)[0] if intervals > 1 else elastic.bore[0, 3])
+        changes[i], gaps[i] = gap - gaps[i], gap
         changed = changed or changes[i] != 0.0
-        bending.points[POINT.gap, i] = gap
     if not changed or bending.sides[size] >= _REFRESHED:
         return
     for i in range(points):
@@ -318,16 +314,16 @@ def _look_at_bore(turn, play, elastic, bending):
             constants[i] += changes[i]
             changes[i] = 0.0
     for i in range(size):
-        complete, first, second, third, fourth = min(i, points), 0.0, 0.0, 0.0, 0.0
+        before, first, second, third, fourth = min(i, points), 0.0, 0.0, 0.0, 0.0
         if i < points:
             for k in range(i + 1):
                 constants[k] -= tableau[i, k] * changes[i]
-        for k in range(0, complete - 3, 4):
+        for k in range(0, before - 3, 4):
             first += tableau[i, k] * changes[k]
             second += tableau[i, k + 1] * changes[k + 1]
             third += tableau[i, k + 2] * changes[k + 2]
             fourth += tableau[i, k + 3] * changes[k + 3]
-        for k in range(complete - complete % 4, complete):
+        for k in range(before - before % 4, before):
             first += tableau[i, k] * changes[k]
         constants[i] -= first + second + third + fourth
 
@@ -489,12 +485,11 @@ def _turned(y, z, cosine, sine):
 
 
 @kernel
-def _find_balance(load_y, load_z, slope, shrunk, outer_alone, stiffness, profile, elastic, loads, bending):
-    """Solve for all equations, in axes that turn with the cage; return whether that converged.
+def _find_balance(load_y, load_z, shrunk, outer_alone, stiffness, profile, elastic, loads, bending):
+    """Solve all equations, in axes that turn with the cage; return whether that converged.
 
     Parameters
     ----------
-    slope : stiffness of a contact under a usual load [N/m].
     shrunk : see `seat_gap`.
     outer_alone : see `_press_rollers`.
     load_y, load_z, stiffness, profile, elastic, loads, bending : as of `balance_elastic_ring`.
@@ -502,14 +497,18 @@ def _find_balance(load_y, load_z, slope, shrunk, outer_alone, stiffness, profile
     points, size, held = elastic.seat.shape[0], bending.sides.shape[0] - 1, bending.held
     values = bending.tableau[size + 1]
     allowed, before, descents, patience = _RELATIVE_RESIDUAL * math.hypot(load_y, load_z) + _LEAST_RESIDUAL, math.inf, 0, 1
+    stiffest = 0.0
+    if held[2] == 0.0:
+        stiffest = (1.0 if outer_alone else 0.5) * profile_force(_TYPICAL, stiffness, profile)[1]  # two contacts in series are half as stiff
     for _ in range(_ITERATIONS):
         for j in range(loads.shape[1]):
-            slope = max(slope, loads[LOAD.slope, j])
-        if not slope * held[2] <= 1.0 or bending.sides[size] >= _REFRESHED or held[2] == 0.0:
-            held[2] = 1.0 / (_STIFFER * slope)
+            stiffest = max(stiffest, loads[LOAD.slope, j])
+        if held[2] == 0.0 or stiffest * held[2] > 1.0:
+            held[2], bending.sides[size] = 1.0 / (_STIFFER * stiffest), _REFRESHED
+        if bending.sides[size] >= _REFRESHED:
             _refresh(elastic, bending)
         if not _solve(load_y, load_z, shrunk, elastic, loads, bending):
-            return False
+            break
         residual = _press_rollers(outer_alone, stiffness, profile, elastic, loads, bending)
         x_y, x_z = -values[size - 4], -values[size - 3]
         moved = max(abs(x_y - held[0]), abs(x_z - held[1]))
@@ -522,7 +521,12 @@ def _find_balance(load_y, load_z, slope, shrunk, outer_alone, stiffness, profile
             descents, patience = patience, 2 * patience
         before = residual if descents == 0 else math.inf
         if not _move_springs(descents == 0, points, loads, bending):
-            return False
+            break
+    bending.sides[size] = _REFRESHED  # nothing of a failure is left for the next call
+    for i in range(size):
+        values[i] = 0.0
+    for j in range(loads.shape[1]):
+        bending.rollers[ROLLER.opens, j] = 0.0
     return False
 
 
@@ -544,11 +548,10 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     converged : bool
     """
     points, size, held = elastic.seat.shape[0], bending.sides.shape[0] - 1, bending.held
-    cosine, sine, free = loads[LOAD.cosine, 0], loads[LOAD.sine, 0], loads[LOAD.free, 0]
+    cosine, sine = loads[LOAD.cosine, 0], loads[LOAD.sine, 0]
     shrunk = _turn_seat(turn, cosine, sine, pressure, elastic, bending)
     load_y, load_z = _turned(load_y, load_z, cosine, sine)
-    _, _, slope, _ = squeezed_roller(free + _TYPICAL, loads[LOAD.centrifugal, 0], free, 0.0, stiffness, profile)
-    if not _find_balance(load_y, load_z, slope, shrunk, False, stiffness, profile, elastic, loads, bending):
+    if not _find_balance(load_y, load_z, shrunk, False, stiffness, profile, elastic, loads, bending):
         return False
     values = bending.tableau[size + 1]
     y, z = -values[size - 2] - held[0], -values[size - 1] - held[1]
@@ -587,8 +590,7 @@ def deflect_elastic_ring(turn, cosine, sine, pressure, stiffness, profile, elast
     """
     points, rollers, parts, held, rows = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0], bending.held, bending.rollers
     shrunk = _turn_seat(turn, cosine, sine, pressure, elastic, bending)
-    _, slope = profile_force(_TYPICAL, stiffness, profile)
-    if not _find_balance(0.0, 0.0, slope, shrunk, True, stiffness, profile, elastic, loads, bending):
+    if not _find_balance(0.0, 0.0, shrunk, True, stiffness, profile, elastic, loads, bending):
         return False
     _conclude(-held[0], -held[1], elastic, loads, bending)
     bending.points[POINT.force, points], bending.points[POINT.force, points + 1] = _turned(held[0], held[1], cosine, -sine)

@@ -117,7 +117,7 @@ def observe_bending(bending, count, row):
 
 @kernel
 def observe_ring(bending, count, row):
-    """Write `observe_bending`, and let the inner ring and the rollers be where they are from the outer ring's centre, into a sample in the housing."""
+    """Write `observe_bending` into a sample whose places are from the housing's centre; let them be from the outer ring's."""
     if bending is None:
         return
     observe_bending(bending, count, row)
