@@ -51,6 +51,7 @@ from bearing_sim.physics.raceway import contour_at, contour_table
 _CENTRING_STIFFNESS = 1e3  # N/m, of rings that nothing holds, as in `bearing_sim.physics.load_balance` (assumption)
 _ITERATIONS = 400
 _RELATIVE_RESIDUAL, _LEAST_RESIDUAL = 1e-6, 1e-3  # of the load, as for a rigid ring; N, of a light load
+_MOVING_RESIDUAL = 1e-5  # of all loads, where rollers move: a hundredth of what their iteration leaves (assumption)
 _HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
 _PIVOTS, _ROUNDS = 2000, 20  # changes of sides at most; solutions of a problem, each after the changes that the one before asked for
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
@@ -485,19 +486,19 @@ def _turned(y, z, cosine, sine):
 
 
 @kernel
-def _find_balance(load_y, load_z, shrunk, outer_alone, stiffness, profile, elastic, loads, bending):
+def _find_balance(load_y, load_z, allowed, shrunk, outer_alone, stiffness, profile, elastic, loads, bending):
     """Solve all equations, in axes that turn with the cage; return whether that converged.
 
     Parameters
     ----------
+    allowed : residual force that counts as none [N].
     shrunk : see `seat_gap`.
     outer_alone : see `_press_rollers`.
     load_y, load_z, stiffness, profile, elastic, loads, bending : as of `balance_elastic_ring`.
     """
     points, size, held = elastic.seat.shape[0], bending.sides.shape[0] - 1, bending.held
     values = bending.tableau[size + 1]
-    allowed, before, descents, patience = _RELATIVE_RESIDUAL * math.hypot(load_y, load_z) + _LEAST_RESIDUAL, math.inf, 0, 1
-    stiffest = 0.0
+    before, descents, patience, stiffest = math.inf, 0, 1, 0.0
     if held[2] == 0.0:
         stiffest = (1.0 if outer_alone else 0.5) * profile_force(_TYPICAL, stiffness, profile)[1]  # two contacts in series are half as stiff
     for _ in range(_ITERATIONS):
@@ -551,7 +552,8 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     cosine, sine = loads[LOAD.cosine, 0], loads[LOAD.sine, 0]
     shrunk = _turn_seat(turn, cosine, sine, pressure, elastic, bending)
     load_y, load_z = _turned(load_y, load_z, cosine, sine)
-    if not _find_balance(load_y, load_z, shrunk, False, stiffness, profile, elastic, loads, bending):
+    allowed = _RELATIVE_RESIDUAL * math.hypot(load_y, load_z) + _LEAST_RESIDUAL
+    if not _find_balance(load_y, load_z, allowed, shrunk, False, stiffness, profile, elastic, loads, bending):
         return False
     values = bending.tableau[size + 1]
     y, z = -values[size - 2] - held[0], -values[size - 1] - held[1]
@@ -590,7 +592,10 @@ def deflect_elastic_ring(turn, cosine, sine, pressure, stiffness, profile, elast
     """
     points, rollers, parts, held, rows = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0], bending.held, bending.rollers
     shrunk = _turn_seat(turn, cosine, sine, pressure, elastic, bending)
-    if not _find_balance(0.0, 0.0, shrunk, True, stiffness, profile, elastic, loads, bending):
+    allowed = _LEAST_RESIDUAL
+    for j in range(rollers):
+        allowed += _MOVING_RESIDUAL * loads[LOAD.outer, j]
+    if not _find_balance(0.0, 0.0, allowed, shrunk, True, stiffness, profile, elastic, loads, bending):
         return False
     _conclude(-held[0], -held[1], elastic, loads, bending)
     bending.points[POINT.force, points], bending.points[POINT.force, points + 1] = _turned(held[0], held[1], cosine, -sine)
@@ -609,8 +614,8 @@ def _follow(points, loads, rates, bending):
     With B the springs' response of forces to approaches, S the contacts' stiffness and s the springs' compliance, forces change by
     q' = B (rate - (1/S - s) q').
     """
-    rollers, tableau, sides, rows = loads.shape[1], bending.tableau, bending.sides, bending.rollers
-    changes, softer = bending.right, bending.scratch
+    rollers, tableau, sides, rows, first = loads.shape[1], bending.tableau, bending.sides, bending.rollers, points
+    changes, softer, driven = bending.given, bending.matrix[0], bending.scratch
     for j in range(rollers):
         slope = loads[LOAD.slope, j]
         presses = slope > 0.0 and sides[points + j] == _TOUCHING
@@ -620,12 +625,12 @@ def _follow(points, loads, rates, bending):
         rows[ROLLER.share, j] = response / (1.0 + softer[j] * response) / slope if presses else 1.0
     for _ in range(_RATE_ITERATIONS):
         for j in range(rollers):
-            if loads[LOAD.slope, j] > 0.0 and sides[points + j] == _TOUCHING:
-                change = 0.0
-                for k in range(rollers):
-                    if sides[points + k] == _TOUCHING:
-                        change -= tableau[points + j, points + k] * (rates[k] - softer[k] * changes[k])
-                changes[j] = change
+            driven[j] = 0.0
+        for k in range(rollers):
+            if sides[points + k] == _TOUCHING:
+                _add(softer[k] * changes[k] - rates[k], tableau[points + k], first, rollers, driven)
+        for j in range(rollers):
+            changes[j] = driven[j] if loads[LOAD.slope, j] > 0.0 and sides[points + j] == _TOUCHING else 0.0
     for j in range(rollers):
         slope = loads[LOAD.slope, j]
         rows[ROLLER.rate, j] = rates[j] - changes[j] / slope if slope > 0.0 and sides[points + j] == _TOUCHING else 0.0
