@@ -60,7 +60,7 @@ _REFRESHED = 1000  # pivots after which rounding is removed (assumption)
 _GROUP = 4 * LANES  # columns of a product that are computed at once
 # sides: where the gap may be anything from zero, where the force may, where neither has a sign, and what is given
 _OPEN, _TOUCHING, _UNSIGNED, _GIVEN = 0, 1, 2, 3
-_RATE_ITERATIONS = 3  # of speeds; springs and contacts differ by a third at most, so that each leaves less than a tenth
+_RATE_ITERATIONS = 6  # of speeds; springs and contacts differ by a third at most, so that each leaves less than a half of the error before
 
 
 class ElasticRing(NamedTuple):

@@ -6,7 +6,8 @@ elastic part of their loads.  So a roller is pressed by R_e + w + x.e, which lea
 among what follows.  What damps a contact acts on its rate of penetration, to which the moving ring adds.  The damping part of a load does not
 bend the ring: what it does to a ring that moves is lost in ring and housing, whose damping it stands for.
 
-Rollers count as if they stood in the middles of their pockets.  The guide lands of the outer ring stay where they are.
+Rollers press the ring as if they stood in the middles of their pockets; a roller that does not meets the slope that the ring has there.  The guide
+lands of the outer ring stay where they are.
 """
 
 import math
@@ -20,14 +21,21 @@ from bearing_sim.physics.ring_balance import POINT, ROLLER, deflect_elastic_ring
 
 
 @kernel
-def bend_outer_ring(row, contact, outer_ring, cage_angle, pressure, raceways, rows, contacts, ring_loads, rates, bending):
+def _ahead(j, count, turned):
+    """Return the angle from the middle of its pocket to a roller [rad]; ``turned`` is that from the pocket of roller 0."""
+    ahead = turned - 2.0 * math.pi * j / count
+    return ahead - 2.0 * math.pi * math.floor(ahead / (2.0 * math.pi) + 0.5)
+
+
+@kernel
+def bend_outer_ring(row, contact, outer_ring, cage_angle, cage_speed, pressure, raceways, rows, contacts, ring_loads, rates, bending):
     """Let the outer ring give way to the rollers; return whether that was found.
 
     Parameters
     ----------
     row, contact : rows of ``rows`` and ``contacts``, see `bearing_sim.levels.common.rollers`; penetrations, their rates and slopes are changed.
     outer_ring : `bearing_sim.physics.ring_balance.ElasticRing`, or None of a rigid ring.
-    cage_angle : [rad].
+    cage_angle, cage_speed : [rad, rad/s].
     pressure : of the seat by fit and temperatures [Pa].
     raceways : of the bearing.
     ring_loads, rates, bending : memory, see `bearing_sim.physics.ring_balance.deflect_elastic_ring`; the last is None of a rigid ring.
@@ -37,16 +45,17 @@ def bend_outer_ring(row, contact, outer_ring, cage_angle, pressure, raceways, ro
     count, blocks, highest = ring_loads.shape[1], rows.shape[0], raceways.profile.highest
     for j in range(count):
         block, lane = blocks + j // LANES, j % LANES
-        ring_loads[LOAD.squeeze, j] = contacts[block, contact.penetration, lane] - highest
-        rates[j] = contacts[block, contact.rate, lane]
+        ahead, slope = _ahead(j, count, rows[j // LANES, row.angle, lane] - cage_angle), bending.rollers[ROLLER.slope, j]
+        ring_loads[LOAD.squeeze, j] = contacts[block, contact.penetration, lane] - highest - slope * ahead
+        rates[j] = contacts[block, contact.rate, lane] - slope * (rows[j // LANES, row.orbital_speed, lane] - cage_speed)
     turn = cage_angle / (2.0 * math.pi)
     cosine, sine = math.cos(cage_angle), math.sin(cage_angle)
     if not deflect_elastic_ring(turn, cosine, sine, pressure, raceways.stiffness, raceways.profile, outer_ring, ring_loads, rates, bending):
         return False
     for j in range(count):
         block, lane = j // LANES, j % LANES
-        contacts[blocks + block, contact.penetration, lane] -= bending.rollers[ROLLER.moved, j]
-        contacts[blocks + block, contact.rate, lane] -= bending.rollers[ROLLER.rate, j]
+        contacts[blocks + block, contact.penetration, lane] = ring_loads[LOAD.approach, j] + highest
+        contacts[blocks + block, contact.rate, lane] = rates[j] - bending.rollers[ROLLER.rate, j]
         rows[block, row.slope, lane] += bending.rollers[ROLLER.slope, j]
     return True
 
@@ -66,12 +75,23 @@ def soften_contacts(contact, blocks, contacts, bending):
 
 
 @kernel
-def predict_bending(row, time, rows, bending):
-    """Add to the contour at the rollers how far the ring will have bent a time [s] after it was known last; ``bending`` is None of a rigid ring."""
+def predict_bending(row, cage_angle, time, rows, bending):
+    """Add to the contour at the rollers how far the ring will have bent.
+
+    Parameters
+    ----------
+    row : see `bend_outer_ring`.
+    cage_angle : then [rad].
+    time : since the bending was known last [s].
+    rows, bending : as of `bend_outer_ring`.
+    """
     if bending is None:
         return
-    for j in range(bending.rollers.shape[1]):
-        rows[j // LANES, row.contour, j % LANES] += bending.rollers[ROLLER.moved, j] + time * bending.rollers[ROLLER.rate, j]
+    count = bending.rollers.shape[1]
+    for j in range(count):
+        ahead = _ahead(j, count, rows[j // LANES, row.angle, j % LANES] - cage_angle)
+        bent = bending.rollers[ROLLER.moved, j] + time * bending.rollers[ROLLER.rate, j] + ahead * bending.rollers[ROLLER.slope, j]
+        rows[j // LANES, row.contour, j % LANES] += bent
 
 
 @kernel

@@ -258,7 +258,18 @@ def equations(t, y, model, work, rate, with_jacobian):
         work.evaluated_ring[k] = ring[k]
     pressure = model.lubrication.growth.housing_pressure
     if not bend_outer_ring(
-        ROLLER, CONTACT, params.outer_ring, y[THETA], pressure, params.raceways, rows, contacts, work.ring_loads, work.ring_rates, work.bending
+        ROLLER,
+        CONTACT,
+        params.outer_ring,
+        y[THETA],
+        y[OMEGA],
+        pressure,
+        params.raceways,
+        rows,
+        contacts,
+        work.ring_loads,
+        work.ring_rates,
+        work.bending,
     ):
         return False
     work.bent_at[0] = y[THETA]

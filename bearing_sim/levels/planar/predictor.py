@@ -94,7 +94,8 @@ def predict(known, shift, slope, model, work, guess):
     extrapolate(LAYOUT, known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
     omega = guess[BORDER + THETA]
-    predict_bending(ROLLER, (guess[THETA] - work.bent_at[0]) / omega if abs(omega) > _TURNS else 0.0, rows, work.bending)
+    elapsed = (guess[THETA] - work.bent_at[0]) / omega if abs(omega) > _TURNS else 0.0
+    predict_bending(ROLLER, guess[THETA], elapsed, rows, work.bending)
     enough = _SETTLED * model.tolerances.position
     for _ in range(_ITERATIONS):
         if _balance(guess, shift, enough, inner_radius, params, rows, work.contacts) < enough:
