@@ -56,20 +56,17 @@ _HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration a
 _PIVOTS, _ROUNDS = 2000, 20  # changes of sides at most; solutions of a problem, each after the changes that the one before asked for
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
 _TYPICAL, _STIFFER = 1e-5, 1.1  # m, penetration at which contacts are no stiffer than springs at first; by what factor these are stiffer
-_REFRESHED = 1000  # pivots after which rounding is removed (assumption)
+_REFRESHED = 4000  # pivots after which rounding is removed, some 1e-12 of the tableau
 _GROUP = 4 * LANES  # columns of a product that are computed at once
-# sides: where the gap may be anything from zero, where the force may, where neither has a sign, and what is given
-_OPEN, _TOUCHING, _UNSIGNED, _GIVEN = 0, 1, 2, 3
-_RATE_ITERATIONS = 6  # of speeds; springs and contacts differ by a third at most, so that each leaves less than a half of the error before
+_OPEN, _TOUCHING, _UNSIGNED, _GIVEN = 0, 1, 2, 3  # sides of what has a gap, of what has a force, of x and y, which have neither, and of a given y
+_RATE_ITERATIONS = 6  # of speeds; springs and contacts differ by a third at most, so that each leaves less than half of the error before
 
 
 class ElasticRing(NamedTuple):
     """The ring and its seat, for Z rollers in even pitches and M points of the seat, P to a pitch; without any the ring is free, and P = 1."""
 
     between: np.ndarray  # F at multiples of pitch/P [m/N], shape (P Z,)
-    turning: (
-        np.ndarray
-    )  # dF/dpsi at k pitches less p parts of P in column Z + k of row p [m/(N rad)], and a `_GROUP` more of them, shape (P, 2 Z + `_GROUP`)
+    turning: np.ndarray  # dF/dpsi at k pitches less p/P of one in column Z + k of row p [m/(N rad)], shape (P, 2 Z + `_GROUP`)
     directions: np.ndarray  # cosine and sine of multiples of pitch/P, shape (2, P Z)
     seat: np.ndarray  # F + H at multiples of 2 pi/M, and a part in one wave that makes it regular and moves x alone [m/N], shape (M,)
     bore: np.ndarray  # how far the bore lies outside of its mean [m], periodic cubic table of `bearing_sim.physics.raceway`, shape (n, 4)
@@ -117,7 +114,7 @@ ROLLER = RollerRow()
 class PointRow(NamedTuple):
     """Rows of ``Bending.points``."""
 
-    force: int = 0  # f [N]; x [m]
+    force: int = 0  # f at the points, which turn with the cage [N]; x, in axes that stand still [m]
     gap: int = 1  # without forces [m]
 
 
@@ -354,14 +351,13 @@ def _solve(load_y, load_z, shrunk, elastic, loads, bending):
     """Write the solution for the springs as they are; return whether there is one."""
     points, rollers, parts, size = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0], bending.sides.shape[0] - 1
     tableau, sides, values, compliance = bending.tableau, bending.sides, bending.tableau[size + 1], bending.held[2]
-    own = bending.right
+    given, own = bending.given, bending.right
     allowed = abs(load_y) + abs(load_z) + 1.0
     for j in range(rollers):
         carried = loads[LOAD.centrifugal, j]
         allowed += carried
         load_y += carried * elastic.directions[0, parts * j]
         load_z += carried * elastic.directions[1, parts * j]
-    given = bending.given
     given[rollers], given[rollers + 1] = -_HOLDING_STIFFNESS * bending.held[0], -_HOLDING_STIFFNESS * bending.held[1]
     given[rollers + 2], given[rollers + 3] = -load_y, -load_z
     for _ in range(_ROUNDS):
@@ -542,7 +538,7 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     pressure : of the seat by fit and temperatures [Pa], see `seat_gap`.
     stiffness, profile, loads, ring : as of `bearing_sim.physics.load_balance.balance_ring`; the squeeze is that of a rigid ring.
     elastic : `ElasticRing`.
-    bending : `Bending`, start and result: the deflection w and its slope at the rollers, the forces of the seat.
+    bending : `Bending` of this ring, start and result: the deflection w and its slope at the rollers, the forces of the seat.
 
     Returns
     -------
