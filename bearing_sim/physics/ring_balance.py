@@ -51,7 +51,7 @@ from bearing_sim.physics.raceway import contour_at, contour_table
 _CENTRING_STIFFNESS = 1e3  # N/m, of rings that nothing holds, as in `bearing_sim.physics.load_balance` (assumption)
 _ITERATIONS = 400
 _RELATIVE_RESIDUAL, _LEAST_RESIDUAL = 1e-6, 1e-3  # of the load, as for a rigid ring; N, of a light load
-_MOVING_RESIDUAL = 1e-5  # of all loads, where rollers move: a hundredth of what their iteration leaves (assumption)
+_MOVING_RESIDUAL = 5e-5  # of all loads, where rollers move: a hundredth of what their iteration leaves (assumption)
 _HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
 _PIVOTS, _ROUNDS = 2000, 20  # changes of sides at most; solutions of a problem, each after the changes that the one before asked for
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
@@ -60,6 +60,7 @@ _REFRESHED = 4000  # pivots after which rounding is removed, some 1e-12 of the t
 _GROUP = 4 * LANES  # columns of a product that are computed at once
 _OPEN, _TOUCHING, _UNSIGNED, _GIVEN = 0, 1, 2, 3  # sides of what has a gap, of what has a force, of x and y, which have neither, and of a given y
 _RATE_ITERATIONS = 6  # of speeds; springs and contacts differ by a third at most, so that each leaves less than half of the error before
+_TANGENT_ITERATIONS = 3  # likewise, of tangents
 
 
 class ElasticRing(NamedTuple):
@@ -453,6 +454,38 @@ def _move_springs(newton, points, loads, bending):
 
 
 @kernel
+def _approach_tangents(points, loads, bending):
+    """Move the springs almost to the tangents of the laws, as `_move_springs`, by Jacobi's iteration: of springs that are about as stiff as contacts.
+
+    With B the springs' response and e = 1/S - s, the change c of the springs obeys c + e B c = missed/S.
+    """
+    rollers, tableau, sides, opens = loads.shape[1], bending.tableau, bending.sides, bending.rollers[ROLLER.opens]
+    changes, softer, driven, right = bending.given, bending.matrix[0], bending.scratch, bending.right
+    for j in range(rollers):
+        slope, changes[j], softer[j], right[j] = loads[LOAD.slope, j], 0.0, 0.0, -opens[j]
+        touches = sides[points + j] == _TOUCHING
+        if slope > 0.0:
+            softer[j], right[j] = 1.0 / slope - bending.held[2], (bending.rollers[ROLLER.force, j] - loads[LOAD.outer, j]) / slope
+        if touches:
+            changes[j] = right[j] / (1.0 - softer[j] * tableau[points + j, points + j])
+        elif slope > 0.0:
+            opens[j] = loads[LOAD.approach, j] - bending.held[2] * loads[LOAD.inner, j]
+        else:
+            opens[j] = 0.0
+    for _ in range(_TANGENT_ITERATIONS):
+        for j in range(rollers):
+            driven[j] = 0.0
+        for k in range(rollers):
+            _add(-changes[k], tableau[points + k], points, rollers, driven)
+        for j in range(rollers):
+            if sides[points + j] == _TOUCHING:
+                own = -tableau[points + j, points + j]
+                changes[j] = (right[j] - softer[j] * (driven[j] - own * changes[j])) / (1.0 + softer[j] * own)
+    for j in range(rollers):
+        opens[j] += changes[j]
+
+
+@kernel
 def _conclude(y, z, elastic, loads, bending):
     """Write what follows from a solution: forces of the seat, deflections at the rollers and their slopes; y, z is the position of the inner ring."""
     points, rollers, parts = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0]
@@ -517,7 +550,9 @@ def _find_balance(load_y, load_z, allowed, shrunk, outer_alone, stiffness, profi
         elif residual > before:  # Newton's method does not serve: longer and longer without it
             descents, patience = patience, 2 * patience
         before = residual if descents == 0 else math.inf
-        if not _move_springs(descents == 0, points, loads, bending):
+        if outer_alone and descents == 0:
+            _approach_tangents(points, loads, bending)
+        elif not _move_springs(descents == 0, points, loads, bending):
             break
     bending.sides[size] = _REFRESHED  # nothing of a failure is left for the next call
     for i in range(size):
