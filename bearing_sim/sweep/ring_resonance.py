@@ -20,6 +20,7 @@ from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import new_work
 from bearing_sim.physics.contact import EXPONENT
 from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.ring_balance import POINT
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, scene_inputs
 from bearing_sim.sweep.thermal import operating_state
@@ -86,9 +87,19 @@ def ring_resonance(scene: Scene, slip: float = 0.0, inputs: Inputs | None = None
         if not balance_loads(math.copysign(pitch * k / _POSITIONS, cage), cage, load_y, load_z, params, work):
             return None
         directions = np.stack([work.loads[LOAD.cosine], work.loads[LOAD.sine]])
-        series = work.loads[LOAD.slope]
-        stiffness.append((directions * series) @ directions.T)
-        damping.append((directions * series * _retardation(work.loads, params.raceways)) @ directions.T)
+        series = work.loads[LOAD.slope].copy()
+        of_contacts = (directions * series) @ directions.T
+        damped = (directions * series * _retardation(work.loads, params.raceways)) @ directions.T
+        if work.bending is None:
+            stiffness.append(of_contacts)
+            damping.append(damped)
+            continue
+        softer = _softened(math.copysign(pitch * k / _POSITIONS, cage), cage, load_y, load_z, params, work)
+        if softer is None:
+            return None
+        share = softer @ np.linalg.pinv(of_contacts)  # of a displacement that the contacts take of it
+        stiffness.append(softer)
+        damping.append(share @ damped @ share.T)
     mean = np.mean(stiffness, axis=0)
     passage = count * abs(cage) / (2.0 * math.pi)
 
@@ -105,6 +116,22 @@ def ring_resonance(scene: Scene, slip: float = 0.0, inputs: Inputs | None = None
         multiplier(1.0),
         max(multiplier(factor) for factor in np.linspace(_SOFTER, _STIFFER, _BETWEEN)),
     )
+
+
+_PROBED = 1e-3  # of the load, by which it is changed to see how far the inner ring moves
+
+
+def _softened(cage_angle: float, cage: float, load_y: float, load_z: float, params, work) -> np.ndarray | None:
+    """Return the stiffness of rollers, outer ring and housing against a displacement of the inner ring [N/m], shape (2, 2); None without a balance."""
+    change, compliance = _PROBED * math.hypot(load_y, load_z), np.empty((2, 2))
+    for axis, (more_y, more_z) in enumerate(((change, 0.0), (0.0, change))):
+        places = []
+        for sense in (1.0, -1.0):
+            if not balance_loads(cage_angle, cage, load_y + sense * more_y, load_z + sense * more_z, params, work):
+                return None
+            places.append(work.ring + work.bending.points[POINT.force, -2:])
+        compliance[:, axis] = (places[0] - places[1]) / (2.0 * change)
+    return np.linalg.inv(0.5 * (compliance + compliance.T))
 
 
 def _retardation(loads: np.ndarray, raceways) -> np.ndarray:
