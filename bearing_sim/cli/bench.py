@@ -82,8 +82,9 @@ def _print_fleet(report) -> None:
 @command("compile")
 @option("--level", "levels", "Compile this level; can be repeated [default: all].", level_type, multiple=True)
 @option("--workers", "Number of processes [default: one per core].", IntRange(min=1), metavar="N")
+@flag("--bending", "Compile for outer rings that bend, which need a version of their own.")
 @flag("--prune", "Afterwards remove the compiled code of other versions of bearing_sim.")
-def compile_levels(levels, workers, prune):
+def compile_levels(levels, workers, bending, prune):
     """Compile levels now instead of at their first run, in parallel on all cores.
 
     Compiled code is cached on disk, per user and version of the model; code that is already in the cache is not compiled again.
@@ -91,8 +92,8 @@ def compile_levels(levels, workers, prune):
     from bearing_sim.levels.level import LEVELS
     from bearing_sim.runtime.precompilation import announcement, builds, compile_all, is_compiled, remove_other_versions
 
-    wanted, began = builds(levels or tuple(LEVELS)), time.monotonic()
-    if missing := [build for build in wanted if not is_compiled(build.level)]:
+    wanted, began = builds(levels or tuple(LEVELS), bending), time.monotonic()
+    if missing := [build for build in wanted if not is_compiled(build.level, build.bends)]:
         note(announcement(missing))
     with progress_bar("compiling", len(wanted)) as show:
         for done, build in enumerate(compile_all(wanted, workers), 1):

@@ -68,9 +68,14 @@ def prune_no_references() -> None:
     numba.config.LLVM_REFPRUNE_PASS = 0
 
 
-def is_cached(function: Callable) -> bool:
-    """Return whether a function needs no compiling: some version of it is in the cache of this machine, or numba is switched off."""
-    return getattr(function, "is_kept", True)
+def is_cached(function: Callable, complete: bool = False) -> bool:
+    """Return whether a function needs no compiling: some version of it is in the cache of this machine, or numba is switched off.
+
+    Parameters
+    ----------
+    complete : whether no part of its arguments is None, as where an outer ring bends.
+    """
+    return not hasattr(function, "is_kept") or function.is_kept(complete)
 
 
 def compiled_for(function: Callable, arguments: Sequence) -> Callable:

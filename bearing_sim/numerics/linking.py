@@ -181,10 +181,9 @@ class LinkingDispatcher(CPUDispatcher):
         """False: numba asks it of recursive functions, which there are none of."""
         return False
 
-    @property
-    def is_kept(self) -> bool:
-        """Whether the disk holds a version of the function."""
-        return any(self._cache.folder.glob(f"{self._cache.name}-*"))
+    def is_kept(self, complete: bool = False) -> bool:
+        """Return whether the disk holds a version of the function, of arguments with (False) or without (True) a None among their parts."""
+        return any(self._cache.folder.glob(f"{self._cache.name}-{'' if complete else 'none-'}{'[0-9a-f]' * 16}.code"))
 
 
 def _with_references(dispatcher: LinkingDispatcher) -> Callable:
@@ -209,7 +208,8 @@ class _Files(NullCache):
         code = self._function.__code__
         source = Path(code.co_filename).read_bytes()  # it need not be among those that the folder is named by, as in a test
         version = sigutils.normalize_signature(sig)[0], codegen.magic_tuple(), sys.implementation.cache_tag, code.co_firstlineno
-        return self.folder / f"{self.name}-{hashlib.sha256(source + repr(version).encode()).hexdigest()[:16]}.code"
+        incomplete = "none-" if any("none" in str(each) for each in version[0]) else ""
+        return self.folder / f"{self.name}-{incomplete}{hashlib.sha256(source + repr(version).encode()).hexdigest()[:16]}.code"
 
     def load_overload(self, sig, target_context):
         """Return the version that is kept; None where there is none, or a damaged one."""

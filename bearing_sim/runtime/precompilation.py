@@ -33,17 +33,23 @@ class Build(NamedTuple):
 
     level: str
     equilibrium: bool = False
+    bends: bool = False  # for outer rings that bend, which need a version of their own
 
-    def __str__(self) -> str:
+    @property
+    def kind(self) -> str:
+        """What is compiled, whatever the outer ring."""
         return "thermal equilibrium" if self.equilibrium else self.level
 
+    def __str__(self) -> str:
+        return f"{self.kind} with a ring that bends" if self.bends else self.kind
 
-def is_compiled(level: str) -> bool:
-    """Return whether the cache of this version of the model holds the code of a level."""
+
+def is_compiled(level: str, bends: bool = False) -> bool:
+    """Return whether the cache of this version of the model holds the code of a level, for outer rings that are rigid or bend."""
     from bearing_sim.levels.level import LEVELS
     from bearing_sim.numerics.compilation import is_cached
 
-    return is_cached(LEVELS[level].advance)
+    return is_cached(LEVELS[level].advance, bends)
 
 
 def is_compiled_for(scene: "Scene", with_states: bool = False) -> bool:
@@ -57,19 +63,20 @@ def is_compiled_for(scene: "Scene", with_states: bool = False) -> bool:
     from bearing_sim.levels.steady.operating_point import find_skid_load, solve_point
     from bearing_sim.numerics.compilation import is_cached
 
-    searches = scene.heat.law == "network" and scene.heat.start == "equilibrium"
-    compiled = is_cached(LEVELS[scene.level].advance) and (not searches or is_cached(solve_point))
-    return compiled and (not with_states or is_cached(find_skid_load))
+    searches, bends = scene.heat.law == "network" and scene.heat.start == "equilibrium", scene.outer_ring_bends
+    compiled = is_cached(LEVELS[scene.level].advance, bends) and (not searches or is_cached(solve_point, bends))
+    return compiled and (not with_states or is_cached(find_skid_load, bends))
 
 
-def builds(levels: Sequence[str]) -> list[Build]:
+def builds(levels: Sequence[str], bends: bool = False) -> list[Build]:
     """Return what to compile for some levels, the slowest to compile first so that no core is idle at the end.
 
     Parameters
     ----------
     levels : names.
+    bends : whether for outer rings that bend; level spatial has none.
     """
-    return [Build(level) for level in _SLOWEST_FIRST if level in levels]
+    return [Build(level, bends=bends) for level in _SLOWEST_FIRST if level in levels and not (bends and level == "spatial")]
 
 
 def compile_for(scene: "Scene", tell: Callable[[str], None], with_states: bool = False) -> None:
@@ -84,7 +91,8 @@ def compile_for(scene: "Scene", tell: Callable[[str], None], with_states: bool =
         return
     # The search of thermal equilibrium finds other states, too; it is nearly all of the code of level steady.
     searches = (with_states or scene.heat.law == "network") and scene.level != "steady"
-    wanted = [Build(scene.level)] + [Build("slip", equilibrium=True)] * searches
+    bends = scene.outer_ring_bends
+    wanted = [Build(scene.level, bends=bends)] + [Build("slip", True, bends)] * searches
     if not _can_keep():
         tell(f"compiling for this run alone, {_expected(wanted)}, since {_cache_folder()} cannot be written")
         return
@@ -99,7 +107,7 @@ def announcement(wanted: Sequence[Build]) -> str:
 
 
 def _expected(wanted: Sequence[Build]) -> str:
-    return ", ".join(f"{build} {expected(f'compiling {build}', _REFERENCE[str(build)])}" for build in wanted)
+    return ", ".join(f"{build} {expected(f'compiling {build}', _REFERENCE[build.kind])}" for build in wanted)
 
 
 def _cache_folder() -> Path:
@@ -150,7 +158,7 @@ def _is_built(build: Build) -> bool:
     from bearing_sim.levels.steady.operating_point import find_skid_load
     from bearing_sim.numerics.compilation import is_cached
 
-    return is_cached(find_skid_load) if build.equilibrium else is_compiled(build.level)
+    return is_cached(find_skid_load, build.bends) if build.equilibrium else is_compiled(build.level, build.bends)
 
 
 def _compile(build: Build) -> float:
@@ -169,14 +177,15 @@ def _run(build: Build) -> None:
     # settings of this process, which does nothing else
     gc.set_threshold(*_COLLECTIONS)
     prune_no_references()
+    bending = ["mounting.housing.backing={law: rigid_bore, play: 0 um}"] * build.bends
     if build.equilibrium:
         from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 
-        scene = load_scene("deng2017_table1_cold", [f"level={build.level}"])
+        scene = load_scene("deng2017_table1_cold", [f"level={build.level}", *bending])
         thermal_equilibrium(scene, scene_inputs(scene))
         _compile_search_for_skids(scene)
         return
-    simulation = Simulation(load_scene("deng2017_table1", [f"level={build.level}"]))
+    simulation = Simulation(load_scene("deng2017_table1", [f"level={build.level}", *bending]))
     simulation.advance(_SECONDS, simulation.inputs, 1)
     if build.level == "steady":
         _compile_search_for_skids(simulation.scene)

@@ -122,7 +122,7 @@ _PROBED = 1e-3  # of the load, by which it is changed to see how far the inner r
 
 
 def _softened(cage_angle: float, cage: float, load_y: float, load_z: float, params, work) -> np.ndarray | None:
-    """Return the stiffness of rollers, outer ring and housing against a displacement of the inner ring [N/m], shape (2, 2); None without a balance."""
+    """Return the stiffness of rollers, outer ring and housing against the inner ring's displacement [N/m], shape (2, 2); None without a balance."""
     change, compliance = _PROBED * math.hypot(load_y, load_z), np.empty((2, 2))
     for axis, (more_y, more_z) in enumerate(((change, 0.0), (0.0, change))):
         places = []
