@@ -3,6 +3,7 @@
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ from scipy.integrate import solve_ivp
 from bearing_sim import load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.scene.contour import outer_contour
+from bearing_sim.scene.loader import load_bearing
+from bearing_sim.scene.outer_ring import ring_geometry
 from bearing_sim.studies.machining import Blank, Pressing, deflection, machine, pressure_harmonics
 
 SECTION = Blank(mean_radius=35.8e-3, width=12e-3, thickness=3.4e-3, modulus=2.06e11)
@@ -128,3 +131,18 @@ def test_arcs_that_overlap_or_leave_no_gap_are_refused(arguments):
     """Six arcs of 60 deg press the whole ring evenly, so that no lobe is left."""
     ran = command(*arguments)
     assert ran.exit_code == 2 and "the arcs overlap, or leave no gap" in ran.output
+
+
+def test_the_ring_of_a_scene_is_machined_unless_the_command_line_gives_its_section():
+    def ring(*arguments):
+        report = json.loads(CliRunner().invoke(main, ["machine", *arguments, "--low-radius", "40.7mm", "--json"]).stdout)
+        return report["mean_radius_mm"], report["thickness_mm"]
+
+    section = ring_geometry(load_bearing("NU 210/C3"))
+    scene = "bearing: NU 210/C3"
+    with CliRunner().isolated_filesystem():
+        Path("ring.yaml").write_text(
+            f"name: ring\nlevel: slip\n{scene}\nlubricant: {{oil: ISO VG 68, temperature: 60 degC}}\noperating: {{shaft_speed: 1500 rpm}}\n"
+        )
+        assert ring("--scene", "ring.yaml") == pytest.approx((1e3 * section.radius, 1e3 * section.equivalent_thickness))
+        assert ring("--scene", "ring.yaml", "--thickness", "3 mm") == pytest.approx((1e3 * section.radius, 3.0))

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 import click
 from click import Choice, IntRange
+from click.core import ParameterSource
 
 from bearing_sim.cli.options import Amount, AmountRange, json_option, level_type, option, picture_option, scene_options, verbose_option
 from bearing_sim.cli.outputs import OutputFile
@@ -21,6 +22,7 @@ from bearing_sim.cli.reporting import (
     note,
     print_rows,
     print_table,
+    scene_of,
     scene_of_point,
     warn_of_limits,
     warnings_report,
@@ -420,6 +422,7 @@ def _option(name, default, unit, meaning, minimum, maximum, shown_in):
 @_option("modulus", "206 GPa", "Pa", "Young's modulus", 1e9, 1e12, "GPa")
 @_option("low-radius", None, "m", "Smallest radius of the finished raceway [default: 34.8625 mm unless --ground-radius is given]", 1e-3, 2.0, "mm")
 @_option("ground-radius", None, "m", "Radius to which the pressed ring is ground", 1e-3, 2.0, "mm")
+@option("--scene", "scene_name", "Scene whose outer ring is machined: its section and modulus, unless they are given.", metavar="SCENE")
 @option("-o", "--out", "Contour file for bearing.outer_raceway.contour_file.", OutputFile(), metavar="CONTOUR.csv")
 @picture_option("Draw the contour")
 @json_option
@@ -435,6 +438,7 @@ def machine(
     modulus,
     low_radius,
     ground_radius,
+    scene_name,
     out,
 ):
     """Compute the contour left by pressing a ring blank over even arcs, grinding its raceway round and releasing it.
@@ -451,7 +455,9 @@ def machine(
         raise UsageError(f"{widths}: the arcs overlap, or leave no gap")
     if ground_radius is None and low_radius is None:
         low_radius = 34.8625e-3
-    blank, pressing = Blank(mean_radius, width, thickness, modulus), Pressing(pressure, arc_turn, arc_width, arcs, pressed_width)
+    given = {"mean_radius": mean_radius, "width": width, "thickness": thickness, "modulus": modulus}
+    blank = Blank(**given | ({} if scene_name is None else _section_of(scene_name)))
+    pressing = Pressing(pressure, arc_turn, arc_width, arcs, pressed_width)
     with as_usage_error(ValueError):
         machined = machine(blank, pressing, ground_radius=ground_radius, low_radius=low_radius)
     report = _report_machine(blank, pressing, machined)
@@ -465,6 +471,17 @@ def machine(
         files=[out.path] if out is not None else [],
         after=(lambda: note(lobes)) if len(machined.lows) != arcs else None,
     )
+
+
+def _section_of(scene_name: str) -> dict[str, float]:
+    """Return what a scene says of the ring to be machined, but for what the command line gives."""
+    from bearing_sim.scene.outer_ring import ring_geometry
+
+    bearing, context = scene_of(scene_name, ()).bearing, click.get_current_context()
+    section = ring_geometry(bearing)
+    known = {"mean_radius": section.radius, "width": section.width, "thickness": section.equivalent_thickness}
+    known["modulus"] = bearing.material.youngs_modulus
+    return {name: value for name, value in known.items() if context.get_parameter_source(name) is ParameterSource.DEFAULT}
 
 
 def _about(blank, pressing) -> str:
