@@ -203,7 +203,8 @@ def stepped(run, duration, samples):
         if run.scene.level == "planar":
             powers.append(planar_step_powers(run, model))
             lost = [block[-1][f"{name}_power"][-1] for name in Powers._fields[1:]]
-            np.testing.assert_allclose(lost, powers[-1][1:], rtol=1e-9, atol=1e-9)
+            rigid = run._params.outer_ring is None  # one that bends is found again to what an iteration needs
+            np.testing.assert_allclose(lost, powers[-1][1:], rtol=1e-9 if rigid else 0.0, atol=1e-9 if rigid else 1.0)
         else:
             slip.rhs(run.time, run._state, model, run._work, np.zeros_like(run._state))
             powers.append(slip_powers(run._state[1], run._state[2:], run.inputs.shaft_speed, model, run._work))
@@ -230,6 +231,14 @@ def test_books_close_where_steps_are_long_beside_the_impacts_in_pockets(override
     run.advance(0.1)
     powers = stepped(run, 0.15, 10007)[1].mean(0)
     assert powers[0] == pytest.approx(powers[1:].sum(), rel=0.004)
+
+
+@pytest.mark.parametrize("play", [0.0, 5.0])
+def test_books_close_within_half_a_per_cent_with_a_ring_that_bends(play):
+    run = simulation("planar", *HOUSED, f"mounting.housing.backing={{law: elastic, massive: true, play: {play} um}}")
+    run.advance(0.1)
+    powers = stepped(run, 0.1, 4001)[1].mean(0)
+    assert powers[0] == pytest.approx(powers[1:].sum(), rel=0.005)
 
 
 def test_losses_before_the_first_step_are_those_of_the_instant_and_the_shaft_gives_their_sum():

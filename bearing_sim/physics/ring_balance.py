@@ -51,7 +51,7 @@ from bearing_sim.physics.raceway import contour_at, contour_table
 _CENTRING_STIFFNESS = 1e3  # N/m, of rings that nothing holds, as in `bearing_sim.physics.load_balance` (assumption)
 _ITERATIONS = 400
 _RELATIVE_RESIDUAL, _LEAST_RESIDUAL = 1e-6, 1e-3  # of the load, as for a rigid ring; N, of a light load
-_MOVING_RESIDUAL = 5e-5  # of all loads, where rollers move: a hundredth of what their iteration leaves (assumption)
+_MOVING_RESIDUAL = 1e-5  # of all loads, where rollers move: less than a thousandth of what their iteration leaves (assumption)
 _HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
 _PIVOTS, _ROUNDS = 2000, 20  # changes of sides at most; solutions of a problem, each after the changes that the one before asked for
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
