@@ -261,7 +261,7 @@ def housing(scene_name, overrides, plays, housings, slip_below, life_above, out)
     return Result(
         {"scene": scene.name, "found": words, "limits": [each._asdict() for each in found.limits], "ring": ring, "points": found.table.rows},
         show_all,
-        lambda draft: plot_housing_map(draft, " ".join([scene.name, *overrides]), found),
+        lambda draft: plot_housing_map(draft, f"{scene.name}: slip, life and seat when its outer ring bends", found),
         remarks=words,
         files=files,
     )

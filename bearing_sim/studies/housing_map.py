@@ -194,7 +194,7 @@ def row_at(scene: Scene, housing: str, play: float) -> dict:
         "inner_load_maximum": float(pitch.inner.max()),
         "seat_arc": math.degrees(_arcs(pitch).mean()),
         "seat_pressure": 1e-6 * _pressure(pitch, within),
-        "bending_clearance": 1e6 * float(sample["bending_clearance"]),
+        "bending_clearance": 1e6 * float(np.mean(2.0 * np.sum(pitch.inner * pitch.deflections, axis=1) / pitch.inner.sum(axis=1))),
     }
 
 
@@ -383,7 +383,7 @@ def plot_housing_map(path: Path, title: str, found: HousingMap) -> None:
     for limit in found.limits:
         place = 0 if limit.kind == "slip" else 1
         value = 100.0 * limit.limit if limit.kind == "slip" else limit.limit
-        axes[place].axhline(value, color="black", ls="--", lw=1.0)
+        axes[place].axhline(value, color="black", ls="--", lw=1.0, label="" if limit is not found.limits[0] else "limit")
         if limit.verdict == "bounded":
             axes[place].plot(1e6 * limit.play, value, "x", color="black", ms=7, mew=1.6)
     axes[0].set_ylim(bottom=0.0)
