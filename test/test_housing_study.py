@@ -99,7 +99,7 @@ def test_forces_of_rollers_and_seat_balance_the_ring_and_deflect_it_as_found(bac
     assert (pitch.inner @ np.exp(1j * around)) * along == pytest.approx(scene.operating.radial_load, rel=1e-4)
     if points:
         assert pitch.rollers @ np.exp(1j * around) == pytest.approx(pitch.seat @ np.exp(1j * seats), rel=1e-4)
-    geometry, n = housing_map.ring_geometry(scene.bearing), np.arange(count * 4 // 2 + 1)
+    geometry, n = housing_map.ring_geometry(scene.bearing), np.arange(count * 16 // 2 + 1)
     modulus = scene.bearing.material.youngs_modulus
     ring = RingSection(geometry.radius, geometry.second_moment, geometry.area, modulus, modulus / 2.6)
     at, forces = np.concatenate([around, seats]), np.hstack([pitch.rollers, -pitch.seat])

@@ -8,18 +8,18 @@ moment, positive where the outside is stretched,
 
 of one force M = F R [1/2 + cos x/4 - (pi - x)/2 sin x]/pi with x from 0 to 2 pi behind it (S. P. Timoshenko, J. M. Gere, Theory of Elastic Stability,
 second edition 1961, section 7.1): 3/(4 pi) F R under a force that a pressure like a cosine balances.  The neutral line does not stretch and sections
-stay plane, so that a point of the seat, R_s from the centre, moves along the circumference by
+stay plane, so that a point of the seat, R_s from the centre, slides along the circumference by
 
     sum over n >= 2 of F_n [(R_s - R) R^2/(pi E I n (n^2 - 1)) - c_n/n] sin n phi,
 
-c_n the compliance of `bearing_sim.physics.outer_ring`, besides what the ring moves as a whole.  Friction, which would hold the seat, is left out, and
-so is how far the bore moves along its circumference: what is found is an upper bound of the micromotion.
+c_n the compliance of `bearing_sim.physics.outer_ring`, besides what the ring moves as a whole.  Friction, which would hold the seat, and how far the
+bore itself moves along its circumference are left out.
 """
 
 import json
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -30,6 +30,7 @@ from bearing_sim.levels.common.model import write_growth
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import new_work
 from bearing_sim.levels.steady.table import empty_table
+from bearing_sim.model.params import pack
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.outer_ring import RingSection, ring_compliance
 from bearing_sim.physics.ring_balance import POINT, ROLLER
@@ -50,7 +51,7 @@ RIGID, RIGID_BORE, OWN = "rigid", "rigid_bore", "scene"
 """Housings beside materials of the catalogue: a rigid ring, a ring that bends in a rigid bore, and the housing of the scene."""
 MATERIALS = ("aluminium", "cast_iron", "steel")
 COLUMNS = columns_of("housing")
-_POSITIONS = 16  # cage angles over one roller pitch
+_PARTS = 16  # of a roller pitch: cage angles, and points of the seat, of which arcs and pressures need more than lives do
 _NEAR = 5e-8  # m, to which bisection finds a play
 _ENDLESS = 1e4  # s; longer than any lag of a cage
 _LARGEST_LIMIT = 7e8  # Pa, of `endurance_limit`
@@ -88,12 +89,12 @@ class HousingMap(NamedTuple):
 
 
 class Pitch(NamedTuple):
-    """A bearing in balance at K cage angles over a roller pitch, Z rollers and M points of the seat, which turn with the cage."""
+    """A bearing in balance at K cage angles over a roller pitch, Z rollers and M = K Z points of the seat, which turn with the cage."""
 
     angles: np.ndarray  # of roller 0 [rad], shape (K,)
     inner: np.ndarray  # loads on the inner raceway [N], shape (K, Z)
     rollers: np.ndarray  # forces on the outer ring, outwards [N], shape (K, Z); of a ring that bends
-    seat: np.ndarray  # forces of the housing on the ring, inwards [N], shape (K, M)
+    seat: np.ndarray  # forces of the housing on the ring, inwards [N], shape (K, M); M = 0 of a free ring
     moved: np.ndarray  # the ring in its housing, y and z [m], shape (K, 2)
     deflections: np.ndarray  # of the ring at the rollers, outwards [m], shape (K, Z)
 
@@ -147,14 +148,16 @@ def solved(scene: Scene) -> tuple[np.void, Pitch]:
         There is no operating point, balance or thermal equilibrium: it says why.
     """
     inputs = scene_inputs(scene)
-    params, lubrication, temperatures = operating_state(scene, inputs)
+    _, lubrication, temperatures = operating_state(scene, inputs)
     simulation = Simulation(scene, inputs, empty_table())
     if simulation.thermal is not None:
         simulation.set_temperatures(temperatures)
     sample = simulation.advance(_ENDLESS, samples=2)[-1]
+    finer = replace(scene.bearing, outer_ring=replace(scene.bearing.outer_ring, points=_PARTS))
+    params = pack(replace(scene, bearing=finer))
     work, count, found = new_work(params), params.rollers.count, []
     write_growth(inputs.shaft_speed, lubrication.growth, work.growth)
-    angles = scene.operating.load_angle + 2.0 * math.pi / count * np.arange(_POSITIONS) / _POSITIONS
+    angles = scene.operating.load_angle + 2.0 * math.pi / count * np.arange(_PARTS) / _PARTS
     for angle in angles:
         if not balance_loads(angle, float(sample["cage_speed"]), inputs.load_y, inputs.load_z, params, work):
             raise ArithmeticError(f"the balance of rollers and outer ring did not converge at a cage angle of {math.degrees(angle):.4g} deg")
@@ -194,7 +197,7 @@ def row_at(scene: Scene, housing: str, play: float) -> dict:
         "inner_load_maximum": float(pitch.inner.max()),
         "seat_arc": math.degrees(_arcs(pitch).mean()),
         "seat_pressure": 1e-6 * _pressure(pitch, within),
-        "bending_clearance": 1e6 * float(np.mean(2.0 * np.sum(pitch.inner * pitch.deflections, axis=1) / pitch.inner.sum(axis=1))),
+        "bending_clearance": round(1e6 * float(np.mean(2.0 * np.sum(pitch.inner * pitch.deflections, axis=1) / pitch.inner.sum(axis=1))), 6),
     }
 
 
@@ -301,21 +304,21 @@ def ring_facts(scene: Scene) -> RingFacts | None:
         return None
     bearing, material, section = scene.bearing, scene.bearing.material, ring_geometry(scene.bearing)
     _, pitch = solved(at_level_steady(scene))
-    count, points, offset = bearing.roller.count, pitch.seat.shape[1], section.seat_radius - section.radius
+    offset, points = section.seat_radius - section.radius, np.arange(_PARTS * bearing.roller.count)
     shear = 0.5 * material.youngs_modulus / (1.0 + material.poisson_ratio) if bearing.outer_ring.shear else math.inf
     ring = RingSection(section.radius, section.second_moment, section.area, material.youngs_modulus, shear)
-    fixed = pitch.angles[0] + 2.0 * math.pi * np.arange(count * _POSITIONS) / (count * _POSITIONS)  # on the ring, where rollers come to stand
-    around = 2.0 * math.pi * np.concatenate([np.arange(count) / count, np.arange(points) / max(points, 1)])
-    moments, slides = [], []
-    for angle, rollers, seat, (y, z) in zip(pitch.angles, pitch.rollers, pitch.seat, pitch.moved):
-        behind, forces = np.subtract.outer(fixed, angle + around), np.concatenate([rollers, -seat])
-        moments.append(bending_moment(behind, section.radius) @ forces)
-        if points:
-            slide = seat_slide(behind, offset, ring, count * bearing.outer_ring.points // 2) @ forces + z * np.cos(fixed) - y * np.sin(fixed)
-            nearest = np.rint((fixed - angle) * points / (2.0 * math.pi)).astype(int) % points
-            slides.append(np.where(seat[nearest] > 0.0, slide, math.nan))
-    stresses = np.multiply.outer([offset, section.inner_edge - section.radius], np.array(moments)) / section.second_moment
-    touching = np.array(slides)[:, np.isfinite(slides).any(axis=0)] if points else np.zeros((1, 0))
+    fixed = pitch.angles[0] + 2.0 * math.pi / len(points) * points  # points of the seat at the first cage angle; at the next one those after them
+    seat = np.array([np.roll(forces, k) for k, forces in enumerate(pitch.seat)]) if pitch.seat.size else np.zeros((_PARTS, len(points)))
+    forces = -seat
+    for k, rollers in enumerate(pitch.rollers):
+        forces[k, k::_PARTS] += rollers
+    behind = np.subtract.outer(points, points) % len(points)
+    moments = forces @ bending_moment(fixed - fixed[0], section.radius)[behind].T
+    slides = forces @ seat_slide(fixed - fixed[0], offset, ring, len(points) // 2)[behind].T
+    slides += np.multiply.outer(pitch.moved[:, 1], np.cos(fixed)) - np.multiply.outer(pitch.moved[:, 0], np.sin(fixed))
+    stresses = np.multiply.outer([offset, section.inner_edge - section.radius], moments) / section.second_moment
+    touches = seat > 0.0
+    slid = np.where(touches, slides, -math.inf).max(axis=0) - np.where(touches, slides, math.inf).min(axis=0)  # negative where nothing touches
     arcs = _arcs(pitch)
     return RingFacts(
         least_arc=float(arcs.min()),
@@ -325,7 +328,7 @@ def ring_facts(scene: Scene) -> RingFacts | None:
         largest_stress=float(stresses.max()),
         stress_range=float(np.ptp(stresses, axis=1).max()),
         endurance_limit=endurance_limit(material.strength),
-        micromotion=float((np.nanmax(touching, axis=0) - np.nanmin(touching, axis=0)).max()) if touching.size else math.nan,
+        micromotion=float(slid.max()) if pitch.seat.size else math.nan,
     )
 
 
@@ -368,7 +371,6 @@ def plot_housing_map(path: Path, title: str, found: HousingMap) -> None:
     """Draw slip, life and contact arc over play, a line for each housing; the suffix of ``path`` gives the format."""
     figure = new_figure(13, 4.8)
     axes, names = figure.subplots(1, 3), list(dict.fromkeys(found.table.values("housing")))
-    plays = np.array([row[PLAY] for row in found.table.rows if row["housing"] != RIGID])
     for each, (column, label) in zip(axes, _DRAWN):
         for k, name in enumerate(names):
             rows = [row for row in found.table.rows if row["housing"] == name]
@@ -390,8 +392,5 @@ def plot_housing_map(path: Path, title: str, found: HousingMap) -> None:
     lives = np.array(found.table.values("life"))
     set_limits(axes[1], lives[np.isfinite(lives)], True)
     axes[2].set_ylim(bottom=0.0)
-    if plays.size and np.ptp(plays) > 0.0:
-        for each in axes:
-            each.set_xlim(plays.min(), plays.max())
     legend_below(figure, axes[0])
     save(figure, path, title, 11)
