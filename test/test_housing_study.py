@@ -186,6 +186,7 @@ def run(*words):
         (["--play", "0:5:3"], "unit"),
         (["--play", "0um:5um"], "START:STOP:N"),
         (["--slip-below", "120 %"], "--slip-below"),
+        (["--set", "operating.shaft_speed=0 rpm"], "operating.shaft_speed: 0"),
         (["--set", "bearing.outer_ring={neutral_radius: 50 mm}", "--housing", "steel"], "bearing.outer_ring.neutral_radius"),
     ],
 )

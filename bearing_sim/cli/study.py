@@ -233,6 +233,7 @@ def housing(scene_name, overrides, plays, housings, slip_below, life_above, out)
     from bearing_sim.sweep.grid import read_axis
 
     scene = scene_of(scene_name, overrides)
+    _require_turning(scene)
     warn_of_scene(scene)
     announce_compilation()
     from bearing_sim.studies.housing_map import PLAY, RIGID, facts_in_words, housings_of, in_words, map_housings, plot_housing_map
@@ -256,7 +257,7 @@ def housing(scene_name, overrides, plays, housings, slip_below, life_above, out)
     def show_all():
         print_points(f"{scene.name}: what the housing does", found.table, [column.name for column in found.table.columns[:-1]], keys=2)
         if found.ring is not None:
-            print_table("ring and seat in the scene's own housing, over a roller pitch", facts_in_words(found.ring))
+            print_table("ring and seat in the scene's housing", facts_in_words(found.ring))
 
     return Result(
         {"scene": scene.name, "found": words, "limits": [each._asdict() for each in found.limits], "ring": ring, "points": found.table.rows},
@@ -270,10 +271,14 @@ def housing(scene_name, overrides, plays, housings, slip_below, life_above, out)
 _LOAD = Amount("N", 1e-6, 1e8)
 
 
-def _prepare_turning(scene) -> None:
-    """Print what is implausible about a scene and compile what it needs; raise `UsageError` if its shaft does not turn."""
+def _require_turning(scene) -> None:
     if not scene.operating.shaft_speed:
         raise UsageError("operating.shaft_speed: 0; slip is studied while the shaft turns: give a speed")
+
+
+def _prepare_turning(scene) -> None:
+    """Print what is implausible about a scene and compile what it needs; raise `UsageError` if its shaft does not turn."""
+    _require_turning(scene)
     warn_of_scene(scene, before_results=False)
     announce_compilation(scene, with_states=True)
 

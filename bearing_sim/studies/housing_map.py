@@ -64,7 +64,7 @@ class PlayLimit(NamedTuple):
     kind: str  # slip, life
     limit: float  # of slip; of life [h]
     play: float  # [m]; NaN where no play of the range is the last or the first
-    verdict: str  # bounded; any: every play of the range meets the limit; none: the least does not, nor for a life any other
+    verdict: str  # bounded; any: every play of the range meets the limit; none: the least does not, nor for a life any other; unknown: no result
 
 
 class RingFacts(NamedTuple):
@@ -191,13 +191,14 @@ def row_at(scene: Scene, housing: str, play: float) -> dict:
         sample, pitch = solved(within)
     except (ArithmeticError, IntegrationError) as error:
         return row | {"status": FAILED, "reason": str(error)}
+    bent = 2.0 * np.sum(pitch.inner * pitch.deflections, axis=1) / np.fmax(pitch.inner.sum(axis=1), 1e-9)
     return row | {
         "cage_slip": 100.0 * float(sample["cage_slip"]),
         "life": float(sample["modified_rating_life"]),
         "inner_load_maximum": float(pitch.inner.max()),
         "seat_arc": math.degrees(_arcs(pitch).mean()),
         "seat_pressure": 1e-6 * _pressure(pitch, within),
-        "bending_clearance": round(1e6 * float(np.mean(2.0 * np.sum(pitch.inner * pitch.deflections, axis=1) / pitch.inner.sum(axis=1))), 6),
+        "bending_clearance": round(1e6 * float(bent.mean()), 6),
     }
 
 
@@ -223,6 +224,7 @@ def map_housings(
     kinds = {"slip": slip_below} | ({} if life_above is None else {"life": life_above})
     for housing in housings:
         scene_in(scene, housing, plays[0])  # refused before anything is computed
+    ring = ring_facts(scene)
     for housing in housings:
         line = []
         for play in plays[:1] if housing == RIGID else plays:
@@ -234,7 +236,7 @@ def map_housings(
     about = {"kind": "housing", "scene": scene.name, "level": "steady", "version": package_version(), "commit": git_hash()}
     axes = (("housing", "", list(housings)), (PLAY, "um", [1e6 * each for each in plays]))
     about["axes"] = [dict(zip(("field", "unit", "values"), each)) for each in axes]
-    return HousingMap(Table(COLUMNS, rows, about), tuple(limits), ring_facts(scene))
+    return HousingMap(Table(COLUMNS, rows, about), tuple(limits), ring)
 
 
 def _limit(scene: Scene, line: Sequence[dict], kind: str, limit: float) -> PlayLimit:
@@ -247,7 +249,7 @@ def _limit(scene: Scene, line: Sequence[dict], kind: str, limit: float) -> PlayL
     held = [meets(row) for row in line]
     wanted = kind == "slip"
     if not held or held[0] != wanted or all(each == wanted for each in held):
-        return PlayLimit(housing, kind, limit, math.nan, "any" if held and held[0] else "none")
+        return PlayLimit(housing, kind, limit, math.nan, ("any" if held[0] else "none") if held else "unknown")
     first = held.index(not wanted)
     low, high = (1e-6 * line[k][PLAY] for k in (first - 1, first))
     while high - low > _NEAR:
@@ -343,7 +345,7 @@ def _said(each: PlayLimit) -> str:
         what, bounded = f"slip stays below {number(100.0 * each.limit)} %", f"up to a play of {play}"
     else:
         what, bounded = f"life is above {hours(each.limit)}", f"from a play of {play} on"
-    where = {"bounded": bounded, "any": "with every play of the range", "none": "with no play of the range"}[each.verdict]
+    where = {"bounded": bounded, "any": "with every play of the range", "none": "with no play of the range", "unknown": "is not known"}[each.verdict]
     return f"{each.housing}: {what} {where}"
 
 
