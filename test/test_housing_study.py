@@ -151,6 +151,17 @@ def test_the_largest_play_is_where_slip_passes_its_limit_and_the_smallest_where_
     assert [each.verdict for each in map_housings(scene, ["steel"], [0.0, 1e-6], 0.9, 1.0).limits] == ["any", "any"]
 
 
+def test_plays_without_a_result_leave_a_limit_unknown_that_the_others_do_not_decide(monkeypatch):
+    def row(scene, housing, play):
+        known = play < 1.5e-6
+        return {"housing": housing, PLAY: 1e6 * play, "status": "ok" if known else "failed", "cage_slip": 5.0, "life": 100.0}
+
+    monkeypatch.setattr(housing_map, "row_at", row)
+    for slip, life, verdicts in ((0.1, 200.0, ["unknown", "unknown"]), (0.01, 50.0, ["none", "any"])):
+        found = map_housings(load_scene("deng2017_table1"), ["steel"], [1e-6, 2e-6], slip, life)
+        assert [each.verdict for each in found.limits] == verdicts
+
+
 def test_a_soft_housing_takes_more_of_the_preload_of_lobes_than_a_stiff_one():
     soft, stiff = (row_at(lobed(), housing, 0.0) for housing in ("aluminium", "steel"))
     rigid = row_at(lobed(), "rigid", 0.0)

@@ -64,7 +64,7 @@ class PlayLimit(NamedTuple):
     kind: str  # slip, life
     limit: float  # of slip; of life [h]
     play: float  # [m]; NaN where no play of the range is the last or the first
-    verdict: str  # bounded; any: every play of the range meets the limit; none: the least does not, nor for a life any other; unknown: no result
+    verdict: str  # bounded; any: every play of the range meets the limit; none: the least does not, nor for a life any other; unknown: points have no result
 
 
 class RingFacts(NamedTuple):
@@ -185,7 +185,7 @@ def _pressure(pitch: Pitch, scene: Scene) -> float:
 def row_at(scene: Scene, housing: str, play: float) -> dict:
     """Return the results of a scene in a housing with a play, by the names of `COLUMNS` and in their units; parameters as of `scene_in`."""
     row = {column.name: math.nan for column in COLUMNS}
-    row |= {"housing": housing, PLAY: math.nan if housing == RIGID else 1e6 * play, "status": OK, "reason": ""}
+    row |= {"housing": housing, PLAY: math.nan if housing == RIGID else round(1e6 * play, 6), "status": OK, "reason": ""}
     within = scene_in(scene, housing, play)
     try:
         sample, pitch = solved(within)
@@ -234,24 +234,25 @@ def map_housings(
         if housing != RIGID:
             limits += [_limit(scene, line, kind, limit) for kind, limit in kinds.items()]
     about = {"kind": "housing", "scene": scene.name, "level": "steady", "version": package_version(), "commit": git_hash()}
-    axes = (("housing", "", list(housings)), (PLAY, "um", [1e6 * each for each in plays]))
+    axes = (("housing", "", list(housings)), (PLAY, "um", [round(1e6 * each, 6) for each in plays]))
     about["axes"] = [dict(zip(("field", "unit", "values"), each)) for each in axes]
     return HousingMap(Table(COLUMNS, rows, about), tuple(limits), ring)
 
 
 def _limit(scene: Scene, line: Sequence[dict], kind: str, limit: float) -> PlayLimit:
     """Return the play at which one housing's rows first cease to meet a limit of slip, or first meet one of life."""
-    housing, line = line[0]["housing"], [row for row in line if row["status"] == OK]
+    housing, found = line[0]["housing"], [row for row in line if row["status"] == OK]
 
     def meets(row: dict) -> bool:
         return row["cage_slip"] < 100.0 * limit if kind == "slip" else row["life"] > limit
 
-    held = [meets(row) for row in line]
+    held = [meets(row) for row in found]
     wanted = kind == "slip"
     if not held or held[0] != wanted or all(each == wanted for each in held):
-        return PlayLimit(housing, kind, limit, math.nan, ("any" if held[0] else "none") if held else "unknown")
+        is_known = bool(held) and (held[0] != wanted or len(found) == len(line))
+        return PlayLimit(housing, kind, limit, math.nan, ("any" if held[0] else "none") if is_known else "unknown")
     first = held.index(not wanted)
-    low, high = (1e-6 * line[k][PLAY] for k in (first - 1, first))
+    low, high = (1e-6 * found[k][PLAY] for k in (first - 1, first))
     while high - low > _NEAR:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if meets(row_at(scene, housing, middle)) == wanted else (low, middle)
