@@ -64,7 +64,7 @@ class PlayLimit(NamedTuple):
     kind: str  # slip, life
     limit: float  # of slip; of life [h]
     play: float  # [m]; NaN where no play of the range is the last or the first
-    verdict: str  # bounded; any: every play of the range meets the limit; none: the least does not, nor for a life any other; unknown: points have no result
+    verdict: str  # bounded; any: every play of the range meets it; none: the least does not, nor for a life any other; unknown: points have no result
 
 
 class RingFacts(NamedTuple):
@@ -198,7 +198,7 @@ def row_at(scene: Scene, housing: str, play: float) -> dict:
         "inner_load_maximum": float(pitch.inner.max()),
         "seat_arc": math.degrees(_arcs(pitch).mean()),
         "seat_pressure": 1e-6 * _pressure(pitch, within),
-        "bending_clearance": round(1e6 * float(bent.mean()), 6),
+        "bending_clearance": round(1e6 * float(bent.mean()), 6) + 0.0,
     }
 
 
