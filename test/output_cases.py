@@ -58,6 +58,7 @@ CASES = {
     "study cold-oil": Case(("study", "cold-oil", "nu215_rig", "--supply", "oil_bath", "--temperature", "20 degC", "--load", "1 kN"), 20),
     "study cold-start": Case(("study", "cold-start", "nu215_rig", "--idling", "30 s"), 20),
     "study clearance": Case(("study", "clearance", SCENE, "--speed", "1000rpm:3000rpm:2", "--load", "5kN:5kN:1"), 3),
+    "study housing": Case(("study", "housing", SCENE, "--play", "0um:5um:2", "--housing", "steel"), 3),
     "study extremes": Case(("study", "extremes", SCENE, "--samples", "1"), 20),
 }
 

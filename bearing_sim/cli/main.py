@@ -33,6 +33,7 @@ fleet  bench:fleet  How many bearings one core holds in real time.
 _STUDIES = _listed("""
 damage        study:damage           Compare the damage of a measured run between levels.
 clearance     study:clearance        Running clearance over speed and load, thermal runaway, and what is lost at which speed.
+housing       study:housing          What the housing does when the outer ring bends: slip, life and seat over play, and the largest play.
 friction      study:friction         Friction of a scene against makers' models.
 cold-oil      study:cold_oil         Slip and skid load over load, temperature and supply of oil, from rolling and from a skid.
 cold-start    study:cold_start       A cold start over time: slip, films, temperatures and sliding power while idling and as the load comes.
@@ -65,7 +66,7 @@ report        plot:report              Make one HTML page of a sweep, a design o
 trade         trade:trade              Measure speed against accuracy on a scene, and recommend a setting.
 bench         main:bench               Measure how fast the model is on this machine.
 compile       bench:compile_levels     Compile levels before their first run.
-study         main:study               Study a bearing: damage, clearance, friction, cold oil, cold start, extremes.
+study         main:study               Study a bearing: damage, clearance, housing, friction, cold oil, cold start, extremes.
 info          recordings:info          Show what a recording holds, where it comes from, and whether it is complete.
 compare       recordings:compare       Compare two recordings topic by topic.
 recover       recordings:recover       Recover the recording of a killed writer.

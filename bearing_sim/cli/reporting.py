@@ -416,7 +416,7 @@ def print_points(title: str, table, names: Sequence[str], rows: Sequence[Mapping
     """
     rows = table.rows if rows is None else rows
     columns = [column_texts(table.column(name), [row[name] for row in rows[:most]]) for name in names]
-    print_rows(title, [heading for heading, _ in columns], zip(*(texts for _, texts in columns)), words=("bearing", "status"), keys=keys)
+    print_rows(title, [heading for heading, _ in columns], zip(*(texts for _, texts in columns)), words=("bearing", "housing", "status"), keys=keys)
     if len(rows) > most:
         click.echo(f"... and {len(rows) - most} more; all are in the files")
     for reason, count in Counter(f"{row['status']}: {row['reason']}" for row in rows if row["reason"]).most_common(5):

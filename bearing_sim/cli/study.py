@@ -24,6 +24,7 @@ from bearing_sim.cli.reporting import (
     Points,
     UsageError,
     announce_compilation,
+    as_failed_run,
     as_usage_error,
     judged,
     print_points,
@@ -204,13 +205,80 @@ _CLEARANCE_SHOWN = (
 )
 
 
+@command("housing")
+@scene_options
+@option("--play", "plays", "Radial plays of the outer ring in its housing.", default="0 um:20 um:9", metavar="START:STOP:N")
+@option(
+    "--housing",
+    "housings",
+    "A material of the catalogue, as a massive housing; rigid_bore; scene, that of SCENE; rigid, a rigid ring; can be repeated  [default: scene, if "
+    "elastic, aluminium, cast_iron, steel, rigid_bore, rigid].",
+    multiple=True,
+)
+@option("--slip-below", "Limit of slip, of which the largest play is sought [default: thresholds.slip_error].", Amount("", 0.0, 1.0, "%"))
+@option("--life-above", "Limit of life, of which the smallest play is sought.", Amount("h"))
+@option("-o", "--out", "Also write the table, and PATH.csv.", OutputTable(), metavar="PATH.parquet")
+@picture_option("Draw slip, life and contact arc over play")
+@json_option
+def housing(scene_name, overrides, plays, housings, slip_below, life_above, out):
+    """Map what the housing does to SCENE when its outer ring bends: slip, life, loads and seat over play and housing.
+
+    Says up to which play slip stays below its limit, and, if SCENE has a housing in which its ring bends, what ring and seat endure there. Every
+    point is one of level steady.
+
+    bearing-sim study housing deng2017_table1 --play 0um:20um:9 --picture housing.png
+    """
+    from pydantic_core import ValidationError
+
+    from bearing_sim.sweep.grid import read_axis
+
+    scene = scene_of(scene_name, overrides)
+    _require_turning(scene)
+    warn_of_scene(scene)
+    announce_compilation()
+    from bearing_sim.studies.housing_map import PLAY, RIGID, facts_in_words, housings_of, in_words, map_housings, plot_housing_map
+    from bearing_sim.sweep.table import require_same_study, study_digest, write_table
+
+    with as_usage_error(ValueError):
+        grid = sorted(read_axis(f"{PLAY}={plays}", written=True).values)
+    housings = tuple(dict.fromkeys(housings)) or housings_of(scene)
+    limits = scene.thresholds.slip_error if slip_below is None else slip_below, life_above
+    files, study = [], study_digest("housing", scene, housings, grid, limits)
+    if out is not None:
+        require_same_study(out, study)
+    points = sum(1 if each == RIGID else len(grid) for each in housings)
+    with progress_bar("points", points) as show, as_usage_error(ValidationError, ValueError), as_failed_run(ArithmeticError):
+        found = map_housings(scene, housings, grid, *limits, show)
+    if out is not None:
+        require_same_study(out, study)
+        files += write_table(out.path, signed(found.table, study))
+    words, ring = in_words(found), found.ring and found.ring._asdict()
+
+    def show_all():
+        print_points(f"{scene.name}: what the housing does", found.table, [column.name for column in found.table.columns[:-1]], keys=2)
+        if found.ring is not None:
+            print_table("ring and seat in the scene's housing", facts_in_words(found.ring))
+
+    return Result(
+        {"scene": scene.name, "found": words, "limits": [each._asdict() for each in found.limits], "ring": ring, "points": found.table.rows},
+        show_all,
+        lambda draft: plot_housing_map(draft, f"{scene.name}: slip, life and seat when its outer ring bends", found),
+        remarks=words,
+        files=files,
+    )
+
+
 _LOAD = Amount("N", 1e-6, 1e8)
+
+
+def _require_turning(scene) -> None:
+    if not scene.operating.shaft_speed:
+        raise UsageError("operating.shaft_speed: 0; slip is studied while the shaft turns: give a speed")
 
 
 def _prepare_turning(scene) -> None:
     """Print what is implausible about a scene and compile what it needs; raise `UsageError` if its shaft does not turn."""
-    if not scene.operating.shaft_speed:
-        raise UsageError("operating.shaft_speed: 0; slip is studied while the shaft turns: give a speed")
+    _require_turning(scene)
     warn_of_scene(scene, before_results=False)
     announce_compilation(scene, with_states=True)
 
