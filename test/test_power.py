@@ -236,7 +236,7 @@ def test_books_close_where_steps_are_long_beside_the_impacts_in_pockets(override
 @pytest.mark.parametrize("play", [0.0, 5.0])
 def test_books_close_within_half_a_per_cent_with_a_ring_that_bends(play):
     run = simulation("planar", *HOUSED, f"mounting.housing.backing={{law: elastic, massive: true, play: {play} um}}")
-    run.advance(0.1)
+    run.advance(0.7)  # a cage that slips by a quarter takes so long
     powers = stepped(run, 0.1, 4001)[1].mean(0)
     assert powers[0] == pytest.approx(powers[1:].sum(), rel=0.005)
 

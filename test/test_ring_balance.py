@@ -126,7 +126,7 @@ def check_equations(rollers, compliances, bore, play, load, angle, turn):
     housing[0] /= 2
     if points % 2 == 0:
         housing[-1] /= 2
-    housing[1] += housing[2]  # x contains it, see `new_elastic_ring`
+    housing[1] += max(housing[2], 1e-10)  # x contains it, see `new_elastic_ring`
     given_way = (np.cos(np.multiply.outer(at[:, None] - at, n)) @ housing) @ pressed
     push = outwards @ np.stack([np.cos(azimuths), np.sin(azimuths)], 1)
     directions = np.stack([np.cos(at), np.sin(at)], 1)

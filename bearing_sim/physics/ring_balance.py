@@ -53,6 +53,7 @@ _ITERATIONS = 400
 _RELATIVE_RESIDUAL, _LEAST_RESIDUAL = 1e-6, 1e-3  # of the load, as for a rigid ring; N, of a light load
 _MOVING_RESIDUAL = 1e-5  # of all loads, where rollers move: less than a thousandth of what their iteration leaves (assumption)
 _HOLDING_STIFFNESS = 1e5  # N/m, towards where the outer ring was an iteration ago: none is left of it at the end (assumption)
+_LEAST_COMPLIANCE = 1e-10  # m/N, in one wave, of a bore that does not yield: from 1e-10 to 1e-8 loads differ by 1e-4
 _PIVOTS, _ROUNDS = 2000, 20  # changes of sides at most; solutions of a problem, each after the changes that the one before asked for
 _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
 _TYPICAL, _STIFFER = 1e-5, 1.1  # m, penetration at which contacts are no stiffer than springs at first; by what factor these are stiffer
@@ -163,7 +164,7 @@ def new_elastic_ring(section: RingSection, seat: Seat | None, rollers: int, poin
     housing[0] *= 0.5
     if count % 2 == 0:
         housing[-1] *= 0.5  # the finest wave has one phase
-    housing[1] += housing[2]  # makes the matrix regular; it moves x, which the balance of forces determines
+    housing[1] += max(housing[2], _LEAST_COMPLIANCE)  # makes the matrix regular; it moves x, which the balance of forces determines
     knots = 2.0 * math.pi / _BORE_INTERVALS * np.arange(_BORE_INTERVALS)
     bore = np.asarray(seat.bore(knots), float)
     slopes = (np.roll(bore, -1) - np.roll(bore, 1)) / (2.0 * knots[1])
