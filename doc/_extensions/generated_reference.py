@@ -367,6 +367,7 @@ EVENTS = {
     "validity.level": ("WARN", "a level of fidelity is used outside of what its corrected table covers"),
     "validity.life": ("WARN", "life or static safety are outside of the standards' range, such as P above 0.5 C_r"),
     "validity.oil": ("WARN", "properties of the oil are extrapolated"),
+    "validity.outer_ring": ("WARN", "the outer ring that bends is loose in its housing, sits on a small arc, or is too thick for its law"),
     "validity.pocket": ("WARN", "the film of the pockets is used outside of its range"),
     "validity.speed": ("WARN", "the bearing turns faster than anything that the laws were compared with"),
     "validity.support": ("WARN", "the squeeze film around the outer ring is used outside of its range"),
