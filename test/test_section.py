@@ -206,3 +206,12 @@ def test_pocket_that_drives_a_roller_pushes_it_along_the_orbit():
     np.testing.assert_allclose(arrows, motion / distance(motion)[:, None], atol=1e-4)
     one["pocket_force"] = np.nan
     assert (section.pocket_arrows(one, 0.1) == 0.0).all()
+
+
+def test_a_raceway_that_has_bent_is_drawn_through_the_deflections_at_the_rollers():
+    bearing = load_scene("deng2017_table1").bearing
+    angles = 0.3 + 2 * math.pi * np.arange(bearing.roller.count) / bearing.roller.count
+    sample = {"roller_angle": angles, "raceway_deflection": 1e-6 * (3 + np.cos(2 * angles) + 0.5 * np.sin(3 * angles))}
+    turn = np.linspace(0, 2 * math.pi, 100)
+    bent = section.bent_contour(bearing, 200.0, turn, sample) - section.drawn_contour(bearing, 200.0, turn)
+    np.testing.assert_allclose(bent, 200.0 * 1e-3 * (3 + np.cos(2 * turn) + 0.5 * np.sin(3 * turn)), atol=1e-9)

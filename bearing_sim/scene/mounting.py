@@ -168,8 +168,10 @@ class Shaft:
 
 @record
 class Housing:
-    """The housing around the outer ring.  Without a fit or an interference it leaves the ring as it is, and the ring is rigid unless ``backing`` says
-    what it bends in."""
+    """The housing around the outer ring.
+
+    Without a fit or an interference it leaves the ring as it is, and the ring is rigid unless ``backing`` says what it bends in.
+    """
 
     fit: str | None = None  # class of the seat by ISO 286, such as H7; the mean interference is taken
     interference: (

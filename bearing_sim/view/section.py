@@ -128,13 +128,14 @@ def drawn_contour(bearing: Bearing, factor: float, azimuth) -> np.ndarray:
 
 
 def bent_contour(bearing: Bearing, factor: float, azimuth, sample) -> np.ndarray:
-    """Return the drawn radius [mm] of an outer raceway that has bent, at azimuths [rad]: between rollers by a periodic cubic spline."""
-    from scipy.interpolate import CubicSpline  # takes a third of a second to import, needed for rings that bend only
+    """Return the drawn radius [mm] of an outer raceway that has bent, at azimuths [rad]: between rollers by as many waves as they resolve."""
+    waves = np.arange((bearing.roller.count + 1) // 2)
 
-    order = np.argsort(np.mod(sample["roller_angle"], 2 * math.pi))
-    angles, deflections = np.mod(sample["roller_angle"], 2 * math.pi)[order], sample["raceway_deflection"][order]
-    spline = CubicSpline(np.append(angles, angles[0] + 2 * math.pi), np.append(deflections, deflections[0]), bc_type="periodic")
-    return drawn_contour(bearing, factor, azimuth) + factor * spline(azimuth) / MILLIMETRE
+    def basis(angles):
+        return np.concatenate((np.cos(np.outer(angles, waves)), np.sin(np.outer(angles, waves[1:]))), axis=1)
+
+    amplitudes = np.linalg.lstsq(basis(sample["roller_angle"]), sample["raceway_deflection"], rcond=None)[0]
+    return drawn_contour(bearing, factor, azimuth) + factor * (basis(azimuth) @ amplitudes) / MILLIMETRE
 
 
 def outer_surface_radius(bearing: Bearing, factor: float) -> float:
