@@ -11,7 +11,17 @@ import click
 from click import Choice, IntRange
 from click.core import ParameterSource
 
-from bearing_sim.cli.options import Amount, AmountRange, json_option, level_type, option, picture_option, scene_options, verbose_option
+from bearing_sim.cli.options import (
+    Amount,
+    AmountRange,
+    allow_outside_option,
+    json_option,
+    level_type,
+    option,
+    picture_option,
+    scene_options,
+    verbose_option,
+)
 from bearing_sim.cli.outputs import OutputFile
 from bearing_sim.cli.reporting import (
     UsageError,
@@ -423,6 +433,7 @@ def _option(name, default, unit, meaning, minimum, maximum, shown_in):
 @_option("low-radius", None, "m", "Smallest radius of the finished raceway [default: 34.8625 mm unless --ground-radius is given]", 1e-3, 2.0, "mm")
 @_option("ground-radius", None, "m", "Radius to which the pressed ring is ground", 1e-3, 2.0, "mm")
 @option("--scene", "scene_name", "Scene whose outer ring is machined: its section and modulus, unless they are given.", metavar="SCENE")
+@allow_outside_option
 @option("-o", "--out", "Contour file for bearing.outer_raceway.contour_file.", OutputFile(), metavar="CONTOUR.csv")
 @picture_option("Draw the contour")
 @json_option
