@@ -19,10 +19,13 @@ ASKING = {
     "bearing.seals": "{law: constant_moment, moment: 0.1}",
     "bearing.cage.guidance": "full_complement",
     "bearing.flanges": "{outer: both}",
+    "mounting.housing.backing": "{law: rigid_bore, play: 0 um}",
+    "mounting.housing.backing.law": "free",
     "bearing.dimensions_at": "cold",
     "support.unbalance": "{amount: 1 g*mm}",
 }
 OVERRIDES = {field: f"{field}={value}" for field, value in ASKING.items()} | {f"wants.{name}": f"wants=[{name}]" for name in WANTS}
+OVERRIDES["mounting.housing.backing.law"] = "mounting.housing.backing=free"
 
 
 def scene(level, *overrides):
