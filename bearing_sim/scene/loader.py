@@ -319,8 +319,7 @@ def _with_level(tree: Mapping, origin: str) -> Mapping:
     tree, named = without(tree, ("front",)), tree.get("front")
     if tree.get("level") != "auto":
         return {**tree, "front": None if isinstance(named, str) else named}
-    highest = "slip" if at(tree, ("bearing", "cage", "guidance")) == "full_complement" else "spatial"  # the level with all other effects
-    scene = _validated({**tree, "level": highest, "front": named})
+    scene = _validated({**tree, "level": _highest_level(tree), "front": named})
     found = choose(scene)
     if named is not None and not scene.wanted_errors:
         raise _refused("front", named, "nothing is wanted with an error; give wants with errors, such as wants: {slip: 0.3 %}, or leave it out")
@@ -335,6 +334,15 @@ def _with_level(tree: Mapping, origin: str) -> Mapping:
     if found.level is None:
         raise _refused("level", "auto", found.reason)
     return {**tree, "level": found.level, "level_reason": found.reason}
+
+
+def _highest_level(tree: Mapping) -> str:
+    """Return the highest level that can have what only lower levels have, as a tree names it, and all other effects."""
+    backing = at(tree, ("mounting", "housing", "backing"))
+    law = backing.get("law") if isinstance(backing, Mapping) else backing
+    if law == "free" or at(tree, ("bearing", "cage", "guidance")) == "full_complement":
+        return "slip"
+    return "spatial" if law in (None, "rigid") else "planar"
 
 
 def _front(named: str, origin: str) -> Tradeoffs:
