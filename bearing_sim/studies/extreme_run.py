@@ -44,6 +44,7 @@ _RUNNING = 10.0  # rad/s of the shaft, below which slip and losses are not judge
 _NOT_COMPUTED = {"steady": ("roller_spin", "roller_rotation", "pocket_force")}  # NaN at these levels
 _NOT_IN_EVERY_SCENE = (
     "contamination_factor",  # NaN without a cleanliness class
+    "seat_arc",  # NaN of a rigid outer ring
     *(f"{name}_{kind}" for name in RING_TEMPERATURES for kind in ("measured", "uncorrected")),
     *(*NODE_OBSERVABLES, "heat_to_oil", "heat_to_ambient"),  # NaN without a law of heat
 )
