@@ -68,6 +68,9 @@ def blocks(path):
 def test_every_observable_comes_back_as_it_was(recording):
     read, kept = blocks(recording), {name for topic in recorded(SCENE).values() for names in topic.observables.values() for name in names}
     for observable in OBSERVABLES:
+        if observable.name == "raceway_deflection":  # of a rigid ring: no topic, and known
+            assert (read[observable.name] == 0.0).all() and (RUN[observable.name] == 0.0).all()
+            continue
         if observable.name not in (*kept, "time"):
             assert np.isnan(read[observable.name]).all() and "temperature" in observable.name or "heat_to" in observable.name
             continue
