@@ -155,6 +155,6 @@ def test_arrays_of_earlier_versions_lack_their_last_rows_and_others_are_refused(
     before_maxima = "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load"
     found = read(before_maxima, np.arange(7.0))
     assert found["flange_load"] == 6.0 and np.isnan(found["inner_load_maximum"]) and np.isnan(found["outer_load_maximum"])
-    for label, numbers in (("temperature, load", [1.0, 2.0, 300.0, 0.5]), ("load y", np.ones(10))):
+    for label, numbers in (("temperature, load", [1.0, 2.0, 300.0, 0.5]), ("load y", np.ones(11))):
         with pytest.raises(RecordingError, match="/operating_point has"):
             read(label, numbers)
