@@ -60,7 +60,8 @@ _TYPICAL, _STIFFER = 1e-5, 1.1  # m, penetration at which contacts are no stiffe
 _REFRESHED = 4000  # pivots after which rounding is removed, some 1e-12 of the tableau
 _GROUP = 4 * LANES  # columns of a product that are computed at once
 _OPEN, _TOUCHING, _UNSIGNED, _GIVEN = 0, 1, 2, 3  # sides of what has a gap, of what has a force, of x and y, which have neither, and of a given y
-_RATE_ITERATIONS = 6  # of speeds; springs and contacts differ by a third at most, so that each leaves less than half of the error before
+_ALIKE = 1.6  # stiffness of springs over that of contacts, up to which an iteration leaves less than half of the error before
+_RATE_ITERATIONS = 6  # of speeds
 _TANGENT_ITERATIONS = 3  # likewise, of tangents
 
 
@@ -93,6 +94,7 @@ class Bending(NamedTuple):
     matrix: np.ndarray  # of Newton's method, shape (Z, Z)
     right: np.ndarray  # shape (Z,)
     order: np.ndarray  # int64, shape (Z,)
+    softer: np.ndarray  # compliance of contacts less that of springs [m/N], shape (Z,)
     held: np.ndarray  # x an iteration ago [m]; compliance of the springs [m/N]; shape (3,)
     given: np.ndarray  # to rollers, x and y, shape (Z + 4,)
     scratch: np.ndarray  # shape (C,)
@@ -195,6 +197,7 @@ def new_bending(elastic: ElasticRing, rollers_move: bool = False) -> Bending:
         matrix=np.zeros((rollers, rollers)),
         right=np.zeros(rollers),
         order=np.zeros(rollers, np.int64),
+        softer=np.zeros(rollers),
         held=np.zeros(3),
         given=np.zeros(rollers + 4),
         scratch=np.zeros(_GROUP * groups),
@@ -455,13 +458,22 @@ def _move_springs(newton, points, loads, bending):
 
 
 @kernel
+def _are_alike(points, loads, bending):
+    """Return whether all contacts that press are almost as stiff as the springs, so that simple iterations end soon."""
+    for j in range(loads.shape[1]):
+        if bending.sides[points + j] == _TOUCHING and loads[LOAD.slope, j] * bending.held[2] * _ALIKE < 1.0:
+            return False
+    return True
+
+
+@kernel
 def _approach_tangents(points, loads, bending):
     """Move the springs almost to the tangents of the laws, as `_move_springs`, by Jacobi's iteration: of springs that are about as stiff as contacts.
 
     With B the springs' response and e = 1/S - s, the change c of the springs obeys c + e B c = missed/S.
     """
     rollers, tableau, sides, opens = loads.shape[1], bending.tableau, bending.sides, bending.rollers[ROLLER.opens]
-    changes, softer, driven, right = bending.given, bending.matrix[0], bending.scratch, bending.right
+    changes, softer, driven, right = bending.given, bending.softer, bending.scratch, bending.right
     for j in range(rollers):
         slope, changes[j], softer[j], right[j] = loads[LOAD.slope, j], 0.0, 0.0, -opens[j]
         touches = sides[points + j] == _TOUCHING
@@ -551,7 +563,7 @@ def _find_balance(load_y, load_z, allowed, shrunk, outer_alone, stiffness, profi
         elif residual > before:  # Newton's method does not serve: longer and longer without it
             descents, patience = patience, 2 * patience
         before = residual if descents == 0 else math.inf
-        if outer_alone and descents == 0:
+        if outer_alone and descents == 0 and _are_alike(points, loads, bending):
             _approach_tangents(points, loads, bending)
         elif not _move_springs(descents == 0, points, loads, bending):
             break
@@ -646,8 +658,8 @@ def _follow(points, loads, rates, bending):
     With B the springs' response of forces to approaches, S the contacts' stiffness and s the springs' compliance, forces change by
     q' = B (rate - (1/S - s) q').
     """
-    rollers, tableau, sides, rows, first = loads.shape[1], bending.tableau, bending.sides, bending.rollers, points
-    changes, softer, driven = bending.given, bending.matrix[0], bending.scratch
+    rollers, tableau, sides, rows = loads.shape[1], bending.tableau, bending.sides, bending.rollers
+    changes, softer, driven, alike = bending.given, bending.softer, bending.scratch, _are_alike(points, loads, bending)
     for j in range(rollers):
         slope = loads[LOAD.slope, j]
         presses = slope > 0.0 and sides[points + j] == _TOUCHING
@@ -655,14 +667,40 @@ def _follow(points, loads, rates, bending):
         changes[j] = slope * rates[j] if presses else 0.0
         response = -tableau[points + j, points + j]
         rows[ROLLER.share, j] = response / (1.0 + softer[j] * response) / slope if presses else 1.0
-    for _ in range(_RATE_ITERATIONS):
+    for _ in range(_RATE_ITERATIONS if alike else 0):
         for j in range(rollers):
             driven[j] = 0.0
         for k in range(rollers):
             if sides[points + k] == _TOUCHING:
-                _add(softer[k] * changes[k] - rates[k], tableau[points + k], first, rollers, driven)
+                _add(softer[k] * changes[k] - rates[k], tableau[points + k], points, rollers, driven)
         for j in range(rollers):
             changes[j] = driven[j] if loads[LOAD.slope, j] > 0.0 and sides[points + j] == _TOUCHING else 0.0
+    if not alike:
+        _solve_rates(points, rates, loads, bending)
     for j in range(rollers):
         slope = loads[LOAD.slope, j]
         rows[ROLLER.rate, j] = rates[j] - changes[j] / slope if slope > 0.0 and sides[points + j] == _TOUCHING else 0.0
+
+
+@kernel
+def _solve_rates(points, rates, loads, bending):
+    """Write the changes of forces of `_follow` into ``bending.given``, by elimination."""
+    rollers, tableau, matrix, right, count = loads.shape[1], bending.tableau, bending.matrix, bending.right, 0
+    for j in range(rollers):
+        if loads[LOAD.slope, j] > 0.0 and bending.sides[points + j] == _TOUCHING:
+            column, right[count] = 0, 0.0
+            for k in range(rollers):
+                if loads[LOAD.slope, k] > 0.0 and bending.sides[points + k] == _TOUCHING:
+                    matrix[count, column] = -tableau[points + j, points + k] * bending.softer[k]
+                    right[count] -= tableau[points + j, points + k] * rates[k]
+                    column += 1
+            matrix[count, count] += 1.0
+            count += 1
+    if not decompose(count, matrix, bending.order):
+        return
+    back_substitute(count, matrix, bending.order, right)
+    count = 0
+    for j in range(rollers):
+        if loads[LOAD.slope, j] > 0.0 and bending.sides[points + j] == _TOUCHING:
+            bending.given[j] = right[count]
+            count += 1
