@@ -3,7 +3,6 @@
 
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -133,16 +132,13 @@ def test_arcs_that_overlap_or_leave_no_gap_are_refused(arguments):
     assert ran.exit_code == 2 and "the arcs overlap, or leave no gap" in ran.output
 
 
-def test_the_ring_of_a_scene_is_machined_unless_the_command_line_gives_its_section():
+def test_the_ring_of_a_scene_is_machined_unless_the_command_line_gives_its_section(tmp_path):
     def ring(*arguments):
-        report = json.loads(CliRunner().invoke(main, ["machine", *arguments, "--low-radius", "40.7mm", "--json"]).stdout)
+        report = json.loads(CliRunner().invoke(main, ["machine", "--scene", str(path), *arguments, "--low-radius", "40.7mm", "--json"]).stdout)
         return report["mean_radius_mm"], report["thickness_mm"]
 
-    section = ring_geometry(load_bearing("NU 210/C3"))
-    scene = "bearing: NU 210/C3"
-    with CliRunner().isolated_filesystem():
-        Path("ring.yaml").write_text(
-            f"name: ring\nlevel: slip\n{scene}\nlubricant: {{oil: ISO VG 68, temperature: 60 degC}}\noperating: {{shaft_speed: 1500 rpm}}\n"
-        )
-        assert ring("--scene", "ring.yaml") == pytest.approx((1e3 * section.radius, 1e3 * section.equivalent_thickness))
-        assert ring("--scene", "ring.yaml", "--thickness", "3 mm") == pytest.approx((1e3 * section.radius, 3.0))
+    section, path = ring_geometry(load_bearing("NU 210/C3")), tmp_path / "ring.yaml"
+    rest = "lubricant: {oil: ISO VG 68, temperature: 60 degC}\noperating: {shaft_speed: 1500 rpm}\n"
+    path.write_text(f"name: ring\nlevel: slip\nbearing: NU 210/C3\n{rest}")
+    assert ring() == pytest.approx((1e3 * section.radius, 1e3 * section.equivalent_thickness))
+    assert ring("--thickness", "3 mm") == pytest.approx((1e3 * section.radius, 3.0))
