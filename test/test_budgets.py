@@ -24,7 +24,7 @@ BUDGETS = {
     "recording": 30_560,
     "inputs": 31_844,
     "runtime": 29_680,
-    "view": 31_720,
+    "view": 31_760,
     "cli": 44_640,
     "scene": 53_490,
     "watchers": 75_500,

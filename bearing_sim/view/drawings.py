@@ -466,7 +466,7 @@ CAUSES = below("/power/", "_power")
 
 CLEARANCE_ROOT = "/clearance_now"
 CLEARANCES = {part: row for part, row in below("/clearance/", "_clearance").items() if not row.threshold}
-"""The running clearance and its parts with their names and colours, in the order of the bars."""
+"""The running clearance and its parts with their names and colours, in the order of the bars; a scene has those of `clearances_of`."""
 
 _WIDTH, _PITCH = 100.0, 12.0  # drawn length of the scale, and distance of two bars
 
@@ -540,9 +540,14 @@ def power_drawing(recording: rr.RecordingStream, scene: Scene) -> BarDrawing:
     return BarDrawing(recording, POWER_ROOT, [*causes_of(scene).values()])
 
 
-def clearance_drawing(recording: rr.RecordingStream) -> BarDrawing:
+def clearances_of(scene: Scene) -> list:
+    """Return those of `CLEARANCES` that a scene has: a rigid outer ring has no bending."""
+    return [row for row in CLEARANCES.values() if not row.needs or scene.outer_ring_bends]
+
+
+def clearance_drawing(recording: rr.RecordingStream, scene: Scene) -> BarDrawing:
     """Return the bars of the running clearance and its parts, which add up to it."""
-    return BarDrawing(recording, CLEARANCE_ROOT, [*CLEARANCES.values()], digits=1, signed=True)
+    return BarDrawing(recording, CLEARANCE_ROOT, clearances_of(scene), digits=1, signed=True)
 
 
 HEAT_ROOT = "/temperatures"

@@ -199,7 +199,7 @@ class RunView:
         self._drawing = SectionDrawing(self._recording, scene, scale)
         self._solid = SolidDrawing(self._recording, scene)
         self._cage = CageDrawing(self._recording, scene) if scene.cage_whirls else None
-        self._bars = (power_drawing(self._recording, scene), clearance_drawing(self._recording))
+        self._bars = (power_drawing(self._recording, scene), clearance_drawing(self._recording, scene))
         self._heat = HeatDrawing(self._recording, scene) if scene.uses_ring_temperatures else None
         sink = rr.GrpcServerSink("127.0.0.1", serve_port, server_memory_limit=_SERVER_MEMORY) if live else rr.FileSink(str(path))
         self._recording.set_sinks(sink, default_blueprint=blueprint(scene, self._drawing.bounds(), live))
