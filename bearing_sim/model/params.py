@@ -320,14 +320,19 @@ def pack(scene: Scene) -> Params:
     )
 
 
+def ring_section(bearing: Bearing) -> RingSection:
+    """Return the section of the outer ring of a bearing as the laws of an elastic ring take it."""
+    section, material = ring_geometry(bearing), bearing.material
+    shear = 0.5 * material.youngs_modulus / (1.0 + material.poisson_ratio) if bearing.outer_ring.shear else math.inf
+    return RingSection(section.radius, section.second_moment, section.area, material.youngs_modulus, shear)
+
+
 def _outer_ring(scene: Scene) -> ElasticRing | None:
     """Return the elastic outer ring and its seat; None where it is rigid."""
-    bearing, housing = scene.bearing, scene.mounting.housing
-    backing, section, material = housing.backing, ring_geometry(bearing), bearing.material
-    if backing.law == "rigid":
+    if not scene.outer_ring_bends:
         return None
-    shear = 0.5 * material.youngs_modulus / (1.0 + material.poisson_ratio) if bearing.outer_ring.shear else math.inf
-    ring = RingSection(section.radius, section.second_moment, section.area, material.youngs_modulus, shear)
+    bearing, housing = scene.bearing, scene.mounting.housing
+    backing, section, ring = housing.backing, ring_geometry(bearing), ring_section(bearing)
     if backing.law == "free":
         return new_elastic_ring(ring, None, bearing.roller.count, bearing.outer_ring.points)
 

@@ -125,7 +125,7 @@ class PointRow(NamedTuple):
 POINT = PointRow()
 
 
-_POINTS_A_PITCH = 4  # of the seat; lives err by 0.5 % against 8 of them
+_POINTS_A_PITCH = 4  # of the seat; lives err by 1 % against 16 of them, with shear by 4 % (``test/benchmarks/bending_front.py``)
 _BORE_INTERVALS = 720
 
 
@@ -684,7 +684,7 @@ def _follow(points, loads, rates, bending):
 
 @kernel
 def _solve_rates(points, rates, loads, bending):
-    """Write the changes of forces of `_follow` into ``bending.given``, by elimination."""
+    """Write the changes of forces of `_follow` into ``bending.given``, by elimination; its equations are regular, because B is positive definite."""
     rollers, tableau, matrix, right, count = loads.shape[1], bending.tableau, bending.matrix, bending.right, 0
     for j in range(rollers):
         if loads[LOAD.slope, j] > 0.0 and bending.sides[points + j] == _TOUCHING:

@@ -159,7 +159,7 @@ def backing_errors(scene: Any) -> list[str]:
     """Return error messages for a ring that bends although its section, its housing or its play are not known, or do not carry its load."""
     bearing, housing = scene.bearing, scene.mounting.housing
     backing = housing.backing
-    if backing.law == "rigid":
+    if not scene.outer_ring_bends:
         return []
     section, raceway = ring_geometry(bearing), bearing.outer_raceway
     inside = raceway.low_radius + raceway.d_value
@@ -212,11 +212,10 @@ def _stress_errors(scene, section: RingGeometry) -> list[str]:
     modulus, strength = bearing.material.youngs_modulus, bearing.material.strength
     moment = _SPREAD_MOMENT * load * section.radius
     if backing.law != "free":
-        housing = scene.mounting.housing.material
-        bed = backing.stiffness if backing.law == "bed" else (housing if backing.law == "elastic" else bearing.material).youngs_modulus
-        bed = bed * section.width if backing.law == "bed" else bed * section.width / section.seat_radius
+        around = scene.mounting.housing.material if backing.law == "elastic" else bearing.material
+        pressure = backing.stiffness if backing.law == "bed" else around.youngs_modulus / section.seat_radius  # by deflection [N/m^3]
         roller = _LARGEST_SHARE * load / bearing.roller.count
-        moment = min(moment, 0.25 * roller * (4.0 * modulus * section.second_moment / bed) ** 0.25)
+        moment = min(moment, 0.25 * roller * (4.0 * modulus * section.second_moment / (pressure * section.width)) ** 0.25)
     stress = section.bending_stress(moment)
     if stress <= strength:
         return []

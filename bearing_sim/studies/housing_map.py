@@ -30,7 +30,7 @@ from bearing_sim.levels.common.model import write_growth
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import new_work
 from bearing_sim.levels.steady.table import empty_table
-from bearing_sim.model.params import pack
+from bearing_sim.model.params import pack, ring_section
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.outer_ring import RingSection, ring_compliance
 from bearing_sim.physics.ring_balance import POINT, ROLLER
@@ -305,11 +305,9 @@ def ring_facts(scene: Scene) -> RingFacts | None:
     """
     if not scene.outer_ring_bends:
         return None
-    bearing, material, section = scene.bearing, scene.bearing.material, ring_geometry(scene.bearing)
+    bearing, section, ring = scene.bearing, ring_geometry(scene.bearing), ring_section(scene.bearing)
     _, pitch = solved(at_level_steady(scene))
     offset, points = section.seat_radius - section.radius, np.arange(_PARTS * bearing.roller.count)
-    shear = 0.5 * material.youngs_modulus / (1.0 + material.poisson_ratio) if bearing.outer_ring.shear else math.inf
-    ring = RingSection(section.radius, section.second_moment, section.area, material.youngs_modulus, shear)
     fixed = pitch.angles[0] + 2.0 * math.pi / len(points) * points  # points of the seat at the first cage angle; at the next one those after them
     seat = np.array([np.roll(forces, k) for k, forces in enumerate(pitch.seat)]) if pitch.seat.size else np.zeros((_PARTS, len(points)))
     forces = -seat
@@ -330,7 +328,7 @@ def ring_facts(scene: Scene) -> RingFacts | None:
         least_stress=float(stresses.min()),
         largest_stress=float(stresses.max()),
         stress_range=float(np.ptp(stresses, axis=1).max()),
-        endurance_limit=endurance_limit(material.strength),
+        endurance_limit=endurance_limit(bearing.material.strength),
         micromotion=float(slid.max()) if pitch.seat.size else math.nan,
     )
 

@@ -256,12 +256,7 @@ def _axial_report(scene: Scene, speed: float, load: float, kappa: float) -> dict
 
 def clearance_report(scene: Scene, samples: np.ndarray) -> dict:
     """Return the running clearance and its parts [um], means over samples of shape (n,), and what the dimensions are."""
-    return clearance_of(scene, {name: float(np.mean(samples[name])) for name in CLEARANCES})
-
-
-def clearance_of(scene: Scene, values: Mapping[str, float]) -> dict:
-    """Return the report of given clearances [m] by the names of `CLEARANCES`."""
-    return {"dimensions_at": scene.bearing.dimensions_at, **{f"{name}_um": 1e6 * values[name] for name in CLEARANCES}}
+    return {"dimensions_at": scene.bearing.dimensions_at, **{f"{name}_um": 1e6 * float(np.mean(samples[name])) for name in CLEARANCES}}
 
 
 def clearance_text(scene: Scene, report: Mapping) -> str:

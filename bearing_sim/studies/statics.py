@@ -11,6 +11,7 @@ import numpy as np
 
 from bearing_sim.levels.common.bending import observe_bending
 from bearing_sim.levels.common.model import write_growth
+from bearing_sim.levels.common.observation import write_clearance
 from bearing_sim.levels.common.slice_balance import about_yz, balance, leaning, roller_loads, roller_tilts
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import new_work
@@ -99,9 +100,7 @@ def statics(scene: Scene, slices: int) -> Statics:
     sample["inner_load"], sample["outer_load"] = inner, outer
     sample["reference_load"], sample["viscosity_ratio"] = lives.reference_load, lives.viscosity_ratio
     sample["inner_pressure"], sample["outer_pressure"] = pressures
-    for name, part in clearance_at(operating.shaft_speed, lubrication.growth, params)._asdict().items():
-        sample[name.replace("fits", "fit") + "_clearance"] = part
-    sample["seat_arc"] = math.nan
+    write_clearance(clearance_at(operating.shaft_speed, lubrication.growth, params), flat(sample)[0])
     observe_bending(aligned.bending, count, flat(sample)[0])
     for name, temperature in zip(NODE_OBSERVABLES, temperatures):
         sample[name] = temperature

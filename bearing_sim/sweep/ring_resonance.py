@@ -84,17 +84,18 @@ def ring_resonance(scene: Scene, slip: float = 0.0, inputs: Inputs | None = None
     write_growth(speed, lubrication.growth, work.growth)
     pitch, stiffness, damping = 2.0 * math.pi / count, [], []
     for k in range(_POSITIONS):
-        if not balance_loads(math.copysign(pitch * k / _POSITIONS, cage), cage, load_y, load_z, params, work):
+        angle = math.copysign(pitch * k / _POSITIONS, cage)
+        if not balance_loads(angle, cage, load_y, load_z, params, work):
             return None
         directions = np.stack([work.loads[LOAD.cosine], work.loads[LOAD.sine]])
-        series = work.loads[LOAD.slope].copy()
+        series = work.loads[LOAD.slope]
         of_contacts = (directions * series) @ directions.T
         damped = (directions * series * _retardation(work.loads, params.raceways)) @ directions.T
         if work.bending is None:
             stiffness.append(of_contacts)
             damping.append(damped)
             continue
-        softer = _softened(math.copysign(pitch * k / _POSITIONS, cage), cage, load_y, load_z, params, work)
+        softer = _softened(angle, cage, load_y, load_z, params, work)
         if softer is None:
             return None
         share = softer @ np.linalg.pinv(of_contacts)  # of a displacement that the contacts take of it

@@ -5,7 +5,7 @@ Each drawing logs its still parts once and its moving parts frame by frame; `bea
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import rerun as rr
@@ -529,10 +529,20 @@ def bar_bounds(count: int, signed: bool = False) -> tuple[tuple[float, float], t
     return (-(1.56 if signed else 0.56) * _WIDTH, (1.62 if signed else 1.46) * _WIDTH), (-0.8 * _PITCH, (count - 0.1) * _PITCH)
 
 
+def _had_by(scene: Scene, rows: Mapping[str, Series]) -> dict[str, Series]:
+    """Return those of some series that a scene can have."""
+    present = features(scene)
+    return {part: row for part, row in rows.items() if row.needs in present}
+
+
 def causes_of(scene: Scene) -> dict[str, Series]:
     """Return the causes of losses that a scene can have."""
-    present = features(scene)
-    return {cause: row for cause, row in CAUSES.items() if row.needs in present}
+    return _had_by(scene, CAUSES)
+
+
+def clearances_of(scene: Scene) -> dict[str, Series]:
+    """Return the running clearance and those of its parts that a scene can have."""
+    return _had_by(scene, CLEARANCES)
 
 
 def power_drawing(recording: rr.RecordingStream, scene: Scene) -> BarDrawing:
@@ -540,14 +550,9 @@ def power_drawing(recording: rr.RecordingStream, scene: Scene) -> BarDrawing:
     return BarDrawing(recording, POWER_ROOT, [*causes_of(scene).values()])
 
 
-def clearances_of(scene: Scene) -> list:
-    """Return those of `CLEARANCES` that a scene has: a rigid outer ring has no bending."""
-    return [row for row in CLEARANCES.values() if not row.needs or scene.outer_ring_bends]
-
-
 def clearance_drawing(recording: rr.RecordingStream, scene: Scene) -> BarDrawing:
     """Return the bars of the running clearance and its parts, which add up to it."""
-    return BarDrawing(recording, CLEARANCE_ROOT, clearances_of(scene), digits=1, signed=True)
+    return BarDrawing(recording, CLEARANCE_ROOT, [*clearances_of(scene).values()], digits=1, signed=True)
 
 
 HEAT_ROOT = "/temperatures"

@@ -13,14 +13,13 @@ import numpy as np
 from bearing_sim import load_scene
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import new_work
-from bearing_sim.model.params import pack
+from bearing_sim.model.params import pack, ring_section
 from bearing_sim.physics.load_balance import LOAD
-from bearing_sim.physics.outer_ring import RingSection, free_frequencies, modal_mass, ring_compliance
+from bearing_sim.physics.outer_ring import free_frequencies, modal_mass, ring_compliance
 from bearing_sim.physics.ring_balance import POINT
-from bearing_sim.scene.outer_ring import ring_geometry
 
 RING = "bearing.outer_ring={width: 10 mm, equivalent_thickness: 3.4 mm, area: 34 mm^2, neutral_radius: 35.8 mm, seat_radius: 37.5 mm}"
-POSITIONS, WAVES = 64, np.arange(2, 13)
+POSITIONS, WAVES, DENSITY = 64, np.arange(2, 13), 7850.0  # of the scene's steel [kg/m^3]
 
 
 @click.command()
@@ -29,8 +28,7 @@ POSITIONS, WAVES = 64, np.arange(2, 13)
 def main(play, slip):
     """Print a line for each number of waves, for the paper's bearing in a massive steel housing."""
     scene = load_scene("deng2017_table1", [RING, f"mounting.housing.backing={{law: elastic, massive: true, play: {play} um}}"])
-    params, work, section = pack(scene), new_work(pack(scene)), ring_geometry(scene.bearing)
-    ring = RingSection(section.radius, section.second_moment, section.area, 206e9, 206e9 / 2.6)
+    params, work, ring = pack(scene), new_work(pack(scene)), ring_section(scene.bearing)
     cage = 0.5 * scene.operating.shaft_speed * (1 - params.raceways.diameter_ratio) * (1 - slip)
     pushed, bent, count = [], [], params.rollers.count
     for k in range(-8, POSITIONS):
@@ -45,10 +43,10 @@ def main(play, slip):
     period = 2 * math.pi / (count * cage)
     harmonics = np.fft.fftfreq(POSITIONS, 1 / POSITIONS)[:, None] * 2 * math.pi / period
     accelerations = np.fft.ifft(-(harmonics**2) * np.fft.fft(bent, axis=0), axis=0)
-    inertia = modal_mass(WAVES, ring, 7850.0) * accelerations
+    inertia = modal_mass(WAVES, ring, DENSITY) * accelerations
     click.echo("waves, free ring [kHz], deflection [um], force of rollers [N], of inertia [N], ratio [%]")
     for n, own, a, force, mass in zip(
-        WAVES, free_frequencies(WAVES, ring, 7850.0) / 2e3 / math.pi, *(map(_size, (np.array(bent).T, np.array(pushed).T, inertia.T)))
+        WAVES, free_frequencies(WAVES, ring, DENSITY) / 2e3 / math.pi, *(map(_size, (np.array(bent).T, np.array(pushed).T, inertia.T)))
     ):
         click.echo(f"{n:5d} {own:10.2f} {1e6 * a:12.3f} {force:12.1f} {mass:12.2f} {100 * mass / force:10.2f}")
 

@@ -16,7 +16,6 @@ from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.load_balance import LOAD
-from bearing_sim.physics.profile import profile_force
 from bearing_sim.physics.ring_balance import POINT, ROLLER, deflect_elastic_ring
 
 
@@ -95,16 +94,11 @@ def predict_bending(row, cage_angle, time, rows, bending):
 
 
 @kernel
-def bending_loss(contact, blocks, raceways, contacts, bending):
-    """Return the power lost by the damping of ring and housing [W], see the docstring of the module; 0 of a rigid ring."""
+def ring_rate(bending, j):
+    """Return how fast the outer ring moves away from a roller [m/s]; 0 of a rigid ring, whose ``bending`` is None."""
     if bending is None:
         return 0.0
-    lost = 0.0
-    for j in range(bending.rollers.shape[1]):
-        block, lane = blocks + j // LANES, j % LANES
-        elastic, _ = profile_force(contacts[block, contact.penetration, lane] - raceways.profile.highest, raceways.stiffness, raceways.profile)
-        lost += (contacts[block, contact.load, lane] - elastic) * bending.rollers[ROLLER.rate, j]
-    return lost
+    return bending.rollers[ROLLER.rate, j]
 
 
 @kernel
@@ -123,8 +117,7 @@ def observe_bending(bending, count, row):
     for i in range(points):
         touching += 1 if bending.points[POINT.force, i] > 0.0 else 0
     row[COLUMN.seat_arc] = 2.0 * math.pi * touching / points if points > 0 else math.nan
-    row[COLUMN.outer_ring_y] += bending.points[POINT.force, points]
-    row[COLUMN.outer_ring_z] += bending.points[POINT.force, points + 1]
+    row[COLUMN.outer_ring_y], row[COLUMN.outer_ring_z] = bending.points[POINT.force, points], bending.points[POINT.force, points + 1]
     for j in range(count):
         deflection, load = bending.rollers[ROLLER.deflection, j], row[SCALARS + j + COLUMN.inner_load * count]
         row[SCALARS + j + COLUMN.raceway_deflection * count] = deflection
@@ -137,12 +130,14 @@ def observe_bending(bending, count, row):
 
 @kernel
 def observe_ring(bending, count, row):
-    """Write `observe_bending` into a sample whose places are from the housing's centre; let them be from the outer ring's."""
+    """Write `observe_bending` into a sample whose places are from the housing's centre, with the support's motion; let them be from the ring's."""
     if bending is None:
         return
+    support_y, support_z = row[COLUMN.outer_ring_y], row[COLUMN.outer_ring_z]
     observe_bending(bending, count, row)
-    points = bending.points.shape[1] - 2
-    y, z = bending.points[POINT.force, points], bending.points[POINT.force, points + 1]
+    y, z = row[COLUMN.outer_ring_y], row[COLUMN.outer_ring_z]
+    row[COLUMN.outer_ring_y] += support_y
+    row[COLUMN.outer_ring_z] += support_z
     row[COLUMN.ring_y] -= y
     row[COLUMN.ring_z] -= z
     for j in range(count):

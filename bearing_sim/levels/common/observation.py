@@ -100,7 +100,7 @@ def observe_course(t, cage_angle, cage_speed, equivalent, oil, model, interval, 
     row[COLUMN.load_y] = load_y
     row[COLUMN.load_z] = load_z
     row[COLUMN.oil_temperature] = model.lubrication.temperature
-    _write_clearance(clearance_at(shaft_speed, model.lubrication.growth, params), row)
+    write_clearance(clearance_at(shaft_speed, model.lubrication.growth, params), row)
     row[COLUMN.cage_angle] = cage_angle
     row[COLUMN.cage_speed] = cage_speed
     row[COLUMN.ideal_cage_angle] = previous[COLUMN.ideal_cage_angle] + 0.5 * rotation * (1.0 - ratio)
@@ -158,15 +158,15 @@ def write_friction_moment(row):
 
 
 @kernel
-def _write_clearance(clearance, row):
-    """Write a `bearing_sim.physics.growth.Clearance`."""
+def write_clearance(clearance, row):
+    """Write a `bearing_sim.physics.growth.Clearance` of a bearing whose outer ring is rigid into a flat sample."""
     row[COLUMN.running_clearance] = clearance.running
     row[COLUMN.initial_clearance] = clearance.initial
     row[COLUMN.fit_clearance] = clearance.fits
     row[COLUMN.rotation_clearance] = clearance.rotation
     row[COLUMN.heat_clearance] = clearance.heat
     row[COLUMN.contour_clearance] = clearance.contour
-    row[COLUMN.bending_clearance], row[COLUMN.seat_arc] = 0.0, math.nan  # of a rigid ring
+    row[COLUMN.bending_clearance], row[COLUMN.seat_arc] = 0.0, math.nan
 
 
 @kernel

@@ -12,7 +12,7 @@ shaft, which pays for what they take and for what they give the cage.
 
 import math
 
-from bearing_sim.levels.common.bending import bending_loss
+from bearing_sim.levels.common.bending import ring_rate
 from bearing_sim.levels.common.flanges import flange_powers
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.power import Powers, rolling_power, seal_power, shaft_traction_power, sliding_power, windage_powers
@@ -28,14 +28,15 @@ from bearing_sim.physics.profile import profile_force
 
 @kernel
 def _raceway_damping(params, work):
-    """Return the power lost by damping between rollers and raceways [W]."""
+    """Return the power lost by damping between rollers and raceways, and in an outer ring that moves under it [W]."""
     contacts, stiffness, profile, lost = work.contacts, params.raceways.stiffness, params.raceways.profile, 0.0
     for raceway in range(2):
         for j in range(params.rollers.count):
             block, lane = raceway * work.rollers.shape[0] + j // LANES, j % LANES
             elastic, _ = profile_force(contacts[block, CONTACT.penetration, lane] - profile.highest, stiffness, profile)
             damped = contacts[block, CONTACT.load, lane] - elastic
-            lost += damped * contacts[block, CONTACT.rate, lane]
+            rate = contacts[block, CONTACT.rate, lane]
+            lost += damped * (rate + ring_rate(work.bending, j) if raceway == 1 else rate)
     return lost
 
 
@@ -158,7 +159,7 @@ def planar_powers(t, y, shaft_speed, model, work):
         windage,
         land,
         pocket,
-        _raceway_damping(params, work) + bending_loss(CONTACT, blocks, params.raceways, contacts, work.bending) + walls + touching,
+        _raceway_damping(params, work) + walls + touching,
         seals,
         rubbing,
         support,

@@ -136,7 +136,6 @@ def observe_orbits(cage_angle, cage_speed, count, work, row):
         row[first + COLUMN.inner_load * count] = loads[LOAD.inner, j]
         row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
         row[first + COLUMN.orbital_speed * count] = cage_speed
-    row[COLUMN.outer_ring_y], row[COLUMN.outer_ring_z] = 0.0, 0.0
     observe_bending(work.bending, count, row)
 
 
