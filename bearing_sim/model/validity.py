@@ -345,10 +345,10 @@ def _thickness_of_waves(scene: Scene) -> float:
 def _seat_play(at: "Conditions") -> np.ndarray:
     """Return the radial play of the outer ring in its housing [um], negative for an interference."""
     ring, fit, cold = at.params.outer_ring, at.params.mounted.housing, at.params.mounted.expansion.reference
-    warmer = [part_temperature(at.samples, f"{part}_temperature") - cold for part in ("outer_ring", "housing")]
-    pressure = fit.pressure + fit.by_ring * warmer[0] + fit.by_housing * warmer[1]
+    warmer, around = (part_temperature(at.samples, f"{part}_temperature") - cold for part in ("outer_ring", "housing"))
+    pressure = fit.pressure + fit.by_ring * warmer + fit.by_housing * around
     by_fit = np.where(pressure > 0.0, -pressure * ring.pressed, -pressure * ring.loose)
-    return 1e6 * (by_fit if math.isnan(ring.play) else np.full(len(at.samples), ring.play))
+    return 1e6 * (by_fit if math.isnan(ring.play) else ring.play + 0.0 * pressure)
 
 
 class Grade(StrEnum):

@@ -13,7 +13,7 @@ from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import ranges_of, without_dimensions
 from bearing_sim.view import section
 from bearing_sim.view.bands import field_plots, field_title
-from bearing_sim.view.drawings import HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, causes_of, clearances_of, heat_bounds
+from bearing_sim.view.drawings import CLEARANCES, HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, causes_of, had_by, heat_bounds
 from bearing_sim.view.load_map import map_bounds
 from bearing_sim.view.plots import END, SERIES, TIMELINE, compared_life, features, range_path, table
 
@@ -139,7 +139,7 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
     maps = [_flat(root, title, map_bounds(narrow=scene.cage_whirls)) for root, title in titles.items()]
     heat = [_flat(HEAT_ROOT, "Temperatures (housing not to scale)", heat_bounds(scene))] if scene.uses_ring_temperatures else []
     power = _flat("/power_now", f"Power: mean of {SAMPLES} samples", bar_bounds(len(causes_of(scene))))
-    clearance = _flat("/clearance_now", "Running clearance", bar_bounds(len(clearances_of(scene)), signed=True))
+    clearance = _flat("/clearance_now", "Running clearance", bar_bounds(len(had_by(scene, CLEARANCES)), signed=True))
     across = _flat("/section", section_title(scene), bounds)
     solid = rrb.Spatial3DView(
         origin="/",

@@ -5,7 +5,7 @@ Each drawing logs its still parts once and its moving parts frame by frame; `bea
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import rerun as rr
@@ -466,7 +466,7 @@ CAUSES = below("/power/", "_power")
 
 CLEARANCE_ROOT = "/clearance_now"
 CLEARANCES = {part: row for part, row in below("/clearance/", "_clearance").items() if not row.threshold}
-"""The running clearance and its parts with their names and colours, in the order of the bars; a scene has those of `clearances_of`."""
+"""The running clearance and its parts with their names and colours, in the order of the bars; a scene has some, see `had_by`."""
 
 _WIDTH, _PITCH = 100.0, 12.0  # drawn length of the scale, and distance of two bars
 
@@ -529,20 +529,15 @@ def bar_bounds(count: int, signed: bool = False) -> tuple[tuple[float, float], t
     return (-(1.56 if signed else 0.56) * _WIDTH, (1.62 if signed else 1.46) * _WIDTH), (-0.8 * _PITCH, (count - 0.1) * _PITCH)
 
 
-def _had_by(scene: Scene, rows: Mapping[str, Series]) -> dict[str, Series]:
-    """Return those of some series that a scene can have."""
+def had_by(scene: Scene, rows: dict[str, Series]) -> dict[str, Series]:
+    """Return those of some series, such as `CLEARANCES`, that a scene can have."""
     present = features(scene)
     return {part: row for part, row in rows.items() if row.needs in present}
 
 
 def causes_of(scene: Scene) -> dict[str, Series]:
     """Return the causes of losses that a scene can have."""
-    return _had_by(scene, CAUSES)
-
-
-def clearances_of(scene: Scene) -> dict[str, Series]:
-    """Return the running clearance and those of its parts that a scene can have."""
-    return _had_by(scene, CLEARANCES)
+    return had_by(scene, CAUSES)
 
 
 def power_drawing(recording: rr.RecordingStream, scene: Scene) -> BarDrawing:
@@ -552,7 +547,7 @@ def power_drawing(recording: rr.RecordingStream, scene: Scene) -> BarDrawing:
 
 def clearance_drawing(recording: rr.RecordingStream, scene: Scene) -> BarDrawing:
     """Return the bars of the running clearance and its parts, which add up to it."""
-    return BarDrawing(recording, CLEARANCE_ROOT, [*clearances_of(scene).values()], digits=1, signed=True)
+    return BarDrawing(recording, CLEARANCE_ROOT, [*had_by(scene, CLEARANCES).values()], digits=1, signed=True)
 
 
 HEAT_ROOT = "/temperatures"
