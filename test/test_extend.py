@@ -22,7 +22,8 @@ def changed(tmp_path):
     shutil.copytree(ROOT / "bearing_sim", tmp_path / "bearing_sim", ignore=shutil.ignore_patterns("__pycache__"))
 
     def apply(name):
-        subprocess.run(["git", "apply", "-"], input=CHANGES[name], text=True, cwd=tmp_path, check=True)
+        done = subprocess.run(["git", "apply", "-"], input=CHANGES[name], text=True, cwd=tmp_path, capture_output=True)
+        assert done.returncode == 0, done.stderr
 
     def python(code):
         environment = os.environ | {"PYTHONPATH": str(tmp_path)}
@@ -31,6 +32,12 @@ def changed(tmp_path):
         return json.loads(done.stdout.splitlines()[-1])
 
     return apply, python
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_change_applies_to_the_package_as_it_is(changed, name):
+    apply, _ = changed
+    apply(name)
 
 
 def test_a_watcher_is_one_file_and_one_line(changed):
