@@ -50,6 +50,11 @@ class SpatialReference:
     gyroscopic: bool = True
     ring_free: bool = True
     moment: tuple = (0.0, 0.0)
+    bent: tuple = (
+        0.0,
+        0.0,
+        0.0,
+    )  # how far the outer ring has given way to each roller [m], its slope [m/rad], and how fast where the roller is [m/s]
 
     def __post_init__(self):
         p = self.planar
@@ -107,10 +112,12 @@ class SpatialReference:
 
         # outer raceway: in the frame of the roller, where the contour is taken at the centre's azimuth
         contour, slope = p.contour(azimuth_of(state.place))
+        f.moving = self.bent[2] + slope * turning
+        contour, slope = contour + self.bent[0], slope + self.bent[1]
         f.tilt, f.skew = dot(state.lean, f.outward), dot(state.lean, f.along)
         tilting = dot(state.leaning, f.outward) + turning * f.skew  # in that frame
         depth = (f.radius + r_w - contour)[:, None] + f.tilt[:, None] * x - self.drop
-        f.outer_rate = (radial_speed - slope * turning)[:, None] + tilting[:, None] * x
+        f.outer_rate = (radial_speed - f.moving)[:, None] + tilting[:, None] * x
         f.outer, f.outer_elastic, f.outer_energy = p.normal_contact(depth, f.outer_rate)
         f.outer_lean = (slope if p.contour_slope else 0 * slope)[:, None] / f.radius[:, None] - f.skew[:, None] / f.radius[:, None] * x
 

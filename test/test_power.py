@@ -102,7 +102,7 @@ def bent_ring(run, state):
     work, model = run._work, model_of(run)
     for _ in range(4):  # what rollers off the middles of their pockets meet follows from the evaluation before
         planar.rhs(0.0, state, model, work, np.zeros_like(state))
-    pushed, seat = work.ring_loads[LOAD_ROW.outer], work.bending.points[POINT.force, :-2]
+    pushed, seat = work.bending.rollers[RING_ROLLER.force], work.bending.points[POINT.force, :-2]
     energy = 0.5 * (pushed @ work.bending.rollers[RING_ROLLER.moved] - run._params.outer_ring.play * seat.sum())
     return by_roller(work.contacts[work.rollers.shape[0] :], CONTACT.penetration, len(pushed)), energy
 
@@ -159,8 +159,10 @@ def test_a_ring_that_bends_keeps_the_books_of_level_planar(seed, play):
     run = simulation("planar", *HOUSED, f"mounting.housing.backing={{law: elastic, massive: true, play: {play} um}}")
     state = rough_planar_state(run, seed)
     rollers_of(state)[:, 1] = state[4] + 2 * math.pi * np.arange(18) / 18
-    gap, largest, powers = planar_gap(run, state)
-    assert abs(gap) < 1e-2 * largest  # where a point of the seat begins to touch, differences see both sides; elsewhere 3e-4
+    gap, largest, _ = planar_gap(run, state)
+    # the seat has points, which turn with the cage: forces between them push a little along the orbit
+    rows = run._work.bending.rollers
+    assert abs(gap + rows[RING_ROLLER.force] @ rows[RING_ROLLER.slope] * state[9]) < 1e-4 * largest
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -203,8 +205,8 @@ def stepped(run, duration, samples):
         if run.scene.level == "planar":
             powers.append(planar_step_powers(run, model))
             lost = [block[-1][f"{name}_power"][-1] for name in Powers._fields[1:]]
-            rigid = run._params.outer_ring is None  # one that bends is found again to what an iteration needs
-            np.testing.assert_allclose(lost, powers[-1][1:], rtol=1e-9 if rigid else 0.0, atol=1e-9 if rigid else 1.0)
+            rigid = run._params.outer_ring is None  # one that bends has two rates where a point of its seat begins to touch
+            np.testing.assert_allclose(lost, powers[-1][1:], rtol=1e-9 if rigid else 0.0, atol=1e-9 if rigid else 5.0)
         else:
             slip.rhs(run.time, run._state, model, run._work, np.zeros_like(run._state))
             powers.append(slip_powers(run._state[1], run._state[2:], run.inputs.shaft_speed, model, run._work))

@@ -20,6 +20,7 @@ from bearing_sim import Simulation, load_scene
 from bearing_sim.levels.spatial import model as spatial
 from bearing_sim.levels.spatial.power import spatial_powers
 from bearing_sim.levels.spatial.state import BLOCK, BORDER, LAYOUT
+from bearing_sim.physics.ring_balance import POINT, ROLLER
 
 BORDER_STATES = 2 * BORDER
 CROWN = np.array([3e-6, 1e-6, 0.0, 0.0, 1e-6, 3e-6])
@@ -281,6 +282,126 @@ def test_energy_is_kept(crown):
     before, after = (reference.forces(plain(y)) for y in (state, end[:size]))
     gained = reference.energy(after) - reference.energy(before)
     assert work - heat.sum() - gained == pytest.approx(0.0, abs=1e-8 * (abs(work) + np.abs(heat).sum()))
+
+
+HOUSED = ["bearing.outer_ring={equivalent_thickness: 3.4 mm, seat_radius: 37.5 mm}", "mounting.housing.material=aluminium"]
+
+
+class BentRing:
+    """A run of level ``spatial`` whose outer ring bends in aluminium, its plain model at a rough state, and what the ring does there."""
+
+    def __init__(self, play, seed, *overrides, crown=CROWN):
+        backing = f"mounting.housing.backing={{law: elastic, massive: true, play: {play} um}}"
+        self.run = simulation(*HOUSED, backing, *MOMENT, *overrides, crown=crown)
+        self.state, self.crown, self.play = rough_state(self.run, seed, 0.3), crown, 1e-6 * play
+        self.count = self.run._params.rollers.count
+
+    def rate(self, state):
+        """dy/dt; what rollers off the middles of their pockets meet follows from the evaluation before."""
+        rate = np.zeros_like(state)
+        for _ in range(4):
+            assert spatial.rhs(0.0, state, self.run._model(self.run.inputs, 1.0), self.run._work, rate)
+        return rate
+
+    def plain(self, state):
+        """The plain model of the ring that `rate` has found, and its forces."""
+        rows = self.run._work.bending.rollers
+        ahead = by_roller(state)[1] - state[BORDER - 1] - 2 * math.pi * np.arange(self.count) / self.count
+        cage, orbits = state[BORDER_STATES - 1], by_roller(state)[5]
+        slope, gone = rows[ROLLER.slope].copy(), rows[ROLLER.moved] + rows[ROLLER.slope] * ahead
+        bent = gone, slope, rows[ROLLER.rate] + slope * (orbits - cage)
+        reference = SpatialReference(moment=(2 * math.cos(math.pi / 6), 1.0), crown=self.crown, bent=bent)
+        return reference, reference.forces(plain(state))
+
+    def energy(self, state):
+        """Kinetic and elastic energy [J]; that of ring and housing is half of all forces times their ways."""
+        self.rate(state)
+        reference, forces = self.plain(state)
+        bending = self.run._work.bending
+        seat = bending.points[POINT.force, :-2]
+        return reference.energy(forces) + 0.5 * (bending.rollers[ROLLER.force] @ bending.rollers[ROLLER.moved] - self.play * seat.sum())
+
+
+BENT = pytest.mark.parametrize(("play", "seed"), [(0.0, 0), (0.0, 1), (3.0, 2), (40.0, 3), (-5.0, 4)])
+
+
+@BENT
+def test_a_ring_that_bends_presses_the_plain_model_as_a_contour_that_moves(play, seed):
+    ring = BentRing(play, seed)
+    rate = ring.rate(ring.state)
+    reference, forces = ring.plain(ring.state)
+    expected, which = rate_of(reference, ring.state, forces), kinds(ring.count)
+    for kind in range(19):
+        # of sums, what their terms are; the ring is found to 1 mN, a millionth of these forces
+        scale = max(np.abs(expected[which == kind]).max(), forces.inner.sum(1).max() / reference.planar.ring_mass if kind in (5, 6) else 0.0)
+        assert np.abs(rate - expected)[which == kind].max() <= 1e-4 * scale, kind
+
+
+@BENT
+def test_the_ring_that_bends_follows_the_plain_forces_of_all_slices(play, seed):
+    ring = BentRing(play, seed)
+    ring.rate(ring.state)
+    elastic, bending = ring.run._params.outer_ring, ring.run._work.bending
+    pressed, seat = ring.plain(ring.state)[1].outer_elastic.sum(1), bending.points[POINT.force, :-2]
+    points, theta = len(seat), ring.state[BORDER - 1]
+    per_pitch, at = points // ring.count, theta + 2 * math.pi * np.arange(points) / points
+    rollers, each = at[::per_pitch], np.arange(points)
+    x = bending.points[POINT.force, -2:]
+    by_rollers = elastic.between[np.abs(each[:, None] - per_pitch * np.arange(ring.count))] @ pressed
+    deflection = by_rollers - elastic.between[np.abs(each[:, None] - each)] @ seat
+    moved = deflection + x[0] * np.cos(at) + x[1] * np.sin(at)
+    largest = np.abs(moved).max()
+    shrunk = max(-ring.play, 0.0) * elastic.shrunk / elastic.pressed  # is in the mean growth
+    assert np.abs(moved[::per_pitch] + shrunk - bending.rollers[ROLLER.moved]).max() <= 1e-4 * largest
+    yielding = (elastic.seat[np.abs(each[:, None] - each)] - elastic.between[np.abs(each[:, None] - each)]) @ seat
+    gap, wave = ring.play + yielding - moved, np.exp(1j * at)
+    pushed, held = pressed @ np.exp(1j * rollers), seat @ wave
+    assert abs(pushed - held) <= 1e-4 * pressed.sum()
+    assert (seat >= 0.0).all() and (gap >= -1e-4 * largest).all()
+    assert np.abs(gap[seat > 0.0]).max(initial=0.0) <= 1e-4 * largest
+
+
+@BENT
+def test_a_ring_that_bends_keeps_the_books_of_level_spatial(play, seed):
+    ring = BentRing(play, seed)
+    # as the ring sees them: in the middles of their pockets
+    by_roller(ring.state)[1] = ring.state[BORDER - 1] + 2 * math.pi * np.arange(ring.count) / ring.count
+    rate = ring.rate(ring.state)
+    reference, forces = ring.plain(ring.state)
+    model, work = ring.run._model(ring.run.inputs, 1.0), ring.run._work
+    powers = spatial_powers(0.0, ring.state, ring.run.inputs.shaft_speed, model, work)
+    given, _ = reference.powers(forces)
+
+    def difference(h):
+        return (ring.energy(ring.state + h * rate) - ring.energy(ring.state - h * rate)) / (2 * h)
+
+    stored = (4 * difference(2e-9) - difference(4e-9)) / 3
+    gap = sum(given.values()) - sum(powers[1:]) - stored
+    # the seat has points, which turn with the cage: forces between them push a little along the orbit
+    rows = work.bending.rollers
+    assert abs(gap + rows[ROLLER.force] @ rows[ROLLER.slope] * ring.state[BORDER_STATES - 1]) < 1e-3 * max(*powers, abs(stored))
+
+
+@BENT
+def test_the_jacobian_of_a_roller_is_that_of_a_ring_that_gives_way(play, seed):
+    ring = BentRing(play, seed, "bearing.contact.damping=0")
+    ring.rate(ring.state)
+    found, step = dense_jacobian(ring.run, ring.state), {0: 1e-10, 2: 1e-8}
+    for j in range(ring.count):
+        rows = [BORDER_STATES + k * ring.count + j for k in (4, 6)]
+        if ring.run._work.bending.rollers[ROLLER.force, j] < 10.0:
+            continue  # no contact, or one that the ring's own accuracy hardly tells from none
+        for variable, h in step.items():
+            column = BORDER_STATES + variable * ring.count + j
+            states = [ring.state.copy() for _ in range(2)]
+            states[0][column] += h
+            states[1][column] -= h
+            ahead, behind = (ring.rate(state)[rows] for state in states)
+            expected = (ahead - behind) / (2 * h)
+            assert found[rows, column] == pytest.approx(expected, abs=0.2 * np.abs(expected).max()), (
+                j,
+                variable,
+            )  # others are taken for a little stiffer
 
 
 @pytest.mark.parametrize("variant", VARIANTS)

@@ -78,7 +78,7 @@ def _spatial() -> Level:
     from bearing_sim.levels.common.state_transfer import spatial_state_at
     from bearing_sim.levels.spatial import model, state
 
-    leaves_out = "the rollers' way along their axes, bending of the rings"
+    leaves_out = "the rollers' way along their axes, twist of the rings"
     return Level(state.new_work, model.initial_state, spatial_state_at, model.observe, "tr_bdf2", model.advance, leaves_out)
 
 

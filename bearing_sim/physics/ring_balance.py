@@ -383,13 +383,34 @@ def _solve(load_y, load_z, shrunk, elastic, loads, bending):
 
 
 @kernel
-def _press_rollers(outer_alone, stiffness, profile, elastic, loads, bending):
-    """Balance all rollers at the approaches of the solution; return the largest force that it misses [N], of a roller or of the inner ring.
+def press_between_raceways(law, approaches, loads):
+    """Balance all rollers between both raceways.
 
-    Where ``outer_alone``, an approach is that of a roller and the outer raceway, and its force the elastic one of that contact.
+    Parameters
+    ----------
+    law : stiffness and profile of a contact.
+    approaches : of the rollers [m], shape (Z,).
+    loads : takes what follows.
     """
+    for j in range(loads.shape[1]):
+        press_roller(j, approaches[j], law[0], law[1], loads)
+
+
+@kernel
+def press_outwards(law, approaches, loads):
+    """Write the elastic forces of all rollers on the outer raceway alone; parameters as of `press_between_raceways`."""
+    for j in range(loads.shape[1]):
+        approach = approaches[j]
+        force, slope = profile_force(approach, law[0], law[1]) if approach > 0.0 else (0.0, 0.0)
+        loads[LOAD.approach, j], loads[LOAD.slope, j], loads[LOAD.inner, j], loads[LOAD.outer, j] = approach, slope, force, force
+
+
+@kernel
+def _press_rollers(press, law, elastic, loads, bending):
+    """Press all rollers at the approaches of the solution; return the largest force that it misses [N], of a roller or of the inner ring."""
     points, parts, sides, rows = elastic.seat.shape[0], elastic.turning.shape[0], bending.sides, bending.rollers
     values, force_y, force_z, residual = bending.tableau[bending.sides.shape[0]], 0.0, 0.0, 0.0
+    approaches = bending.right
     for j in range(loads.shape[1]):
         approach, pressed, value = loads[LOAD.free, j] + rows[ROLLER.opens, j], 0.0, values[points + j]
         if sides[points + j] == _TOUCHING:
@@ -397,13 +418,10 @@ def _press_rollers(outer_alone, stiffness, profile, elastic, loads, bending):
             approach += bending.held[2] * pressed
         else:
             approach -= value
-        rows[ROLLER.force, j] = loads[LOAD.centrifugal, j] + pressed
-        if outer_alone:
-            force, slope = profile_force(approach, stiffness, profile) if approach > 0.0 else (0.0, 0.0)
-            loads[LOAD.approach, j], loads[LOAD.slope, j], loads[LOAD.inner, j], loads[LOAD.outer, j] = approach, slope, force, force
-        else:
-            force, _ = press_roller(j, approach, stiffness, profile, loads)
-        missed = force - pressed
+        rows[ROLLER.force, j], approaches[j] = loads[LOAD.centrifugal, j] + pressed, approach
+    press(law, approaches, loads)
+    for j in range(loads.shape[1]):
+        missed = loads[LOAD.outer, j] - rows[ROLLER.force, j]
         force_y += missed * elastic.directions[0, parts * j]
         force_z += missed * elastic.directions[1, parts * j]
         residual = max(residual, abs(missed))
@@ -427,6 +445,12 @@ def seat_gap(pressure, elastic):
 
 
 @kernel
+def _unpressed(j, loads):
+    """Return where a spring begins whose roller is not pressed: where contacts begin, or where this one is if it is deeper by rounding."""
+    return max(loads[LOAD.approach, j] - loads[LOAD.free, j], 0.0)
+
+
+@kernel
 def _move_springs(newton, points, loads, bending):
     """Move the springs to the tangents of the rollers' laws, by Newton's method, or to the laws themselves; return whether that was possible."""
     rollers, opens, compliance, sides = loads.shape[1], bending.rollers[ROLLER.opens], bending.held[2], bending.sides
@@ -436,7 +460,7 @@ def _move_springs(newton, points, loads, bending):
         if slope > 0.0 and not (newton and touches):
             opens[j] = loads[LOAD.approach, j] - loads[LOAD.free, j] - compliance * loads[LOAD.inner, j]
         elif not (newton and touches):
-            opens[j] = 0.0
+            opens[j] = _unpressed(j, loads)
         else:
             softer, column = 1.0 / slope - compliance if slope > 0.0 else 0.0, 0
             for k in range(rollers):
@@ -444,7 +468,7 @@ def _move_springs(newton, points, loads, bending):
                     matrix[count, column] = -softer * bending.tableau[points + j, points + k]
                     column += 1
             matrix[count, count] += 1.0
-            right[count] = missed / slope if slope > 0.0 else -opens[j]
+            right[count] = missed / slope if slope > 0.0 else _unpressed(j, loads) - opens[j]
             count += 1
     if not decompose(count, matrix, bending.order):
         return False
@@ -475,16 +499,16 @@ def _approach_tangents(points, loads, bending):
     rollers, tableau, sides, opens = loads.shape[1], bending.tableau, bending.sides, bending.rollers[ROLLER.opens]
     changes, softer, driven, right = bending.given, bending.softer, bending.scratch, bending.right
     for j in range(rollers):
-        slope, changes[j], softer[j], right[j] = loads[LOAD.slope, j], 0.0, 0.0, -opens[j]
+        slope, changes[j], softer[j], right[j] = loads[LOAD.slope, j], 0.0, 0.0, _unpressed(j, loads) - opens[j]
         touches = sides[points + j] == _TOUCHING
         if slope > 0.0:
             softer[j], right[j] = 1.0 / slope - bending.held[2], (bending.rollers[ROLLER.force, j] - loads[LOAD.outer, j]) / slope
         if touches:
             changes[j] = right[j] / (1.0 - softer[j] * tableau[points + j, points + j])
         elif slope > 0.0:
-            opens[j] = loads[LOAD.approach, j] - bending.held[2] * loads[LOAD.inner, j]
+            opens[j] = loads[LOAD.approach, j] - loads[LOAD.free, j] - bending.held[2] * loads[LOAD.inner, j]
         else:
-            opens[j] = 0.0
+            opens[j] = _unpressed(j, loads)
     for _ in range(_TANGENT_ITERATIONS):
         for j in range(rollers):
             driven[j] = 0.0
@@ -528,21 +552,21 @@ def _turned(y, z, cosine, sine):
 
 
 @kernel
-def _find_balance(load_y, load_z, allowed, shrunk, outer_alone, stiffness, profile, elastic, loads, bending):
+def _find_balance(load_y, load_z, allowed, shrunk, moving, press, law, stiffest, elastic, loads, bending):
     """Solve all equations, in axes that turn with the cage; return whether that converged.
 
     Parameters
     ----------
     allowed : residual force that counts as none [N].
     shrunk : see `seat_gap`.
-    outer_alone : see `_press_rollers`.
-    load_y, load_z, stiffness, profile, elastic, loads, bending : as of `balance_elastic_ring`.
+    moving : whether the places of the rollers are given, so that each is pressed by the outer ring alone.
+    press, law : kernel ``(law, approaches, loads)`` that presses rollers, as `press_between_raceways` does, and what it needs.
+    stiffest : of the rollers [N/m], or less.
+    load_y, load_z, elastic, loads, bending : as of `balance_elastic_ring`.
     """
     points, size, held = elastic.seat.shape[0], bending.sides.shape[0] - 1, bending.held
     values = bending.tableau[size + 1]
-    before, descents, patience, stiffest = math.inf, 0, 1, 0.0
-    if held[2] == 0.0:
-        stiffest = (1.0 if outer_alone else 0.5) * profile_force(_TYPICAL, stiffness, profile)[1]  # two contacts in series are half as stiff
+    before, descents, patience = math.inf, 0, 1
     for _ in range(_ITERATIONS):
         for j in range(loads.shape[1]):
             stiffest = max(stiffest, loads[LOAD.slope, j])
@@ -552,7 +576,7 @@ def _find_balance(load_y, load_z, allowed, shrunk, outer_alone, stiffness, profi
             _refresh(elastic, bending)
         if not _solve(load_y, load_z, shrunk, elastic, loads, bending):
             break
-        residual = _press_rollers(outer_alone, stiffness, profile, elastic, loads, bending)
+        residual = _press_rollers(press, law, elastic, loads, bending)
         x_y, x_z = -values[size - 4], -values[size - 3]
         moved = max(abs(x_y - held[0]), abs(x_z - held[1]))
         held[0], held[1] = x_y, x_z
@@ -563,7 +587,7 @@ def _find_balance(load_y, load_z, allowed, shrunk, outer_alone, stiffness, profi
         elif residual > before:  # Newton's method does not serve: longer and longer without it
             descents, patience = patience, 2 * patience
         before = residual if descents == 0 else math.inf
-        if outer_alone and descents == 0 and _are_alike(points, loads, bending):
+        if moving and descents == 0 and _are_alike(points, loads, bending):
             _approach_tangents(points, loads, bending)
         elif not _move_springs(descents == 0, points, loads, bending):
             break
@@ -597,7 +621,8 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     shrunk = _turn_seat(turn, cosine, sine, pressure, elastic, bending)
     load_y, load_z = _turned(load_y, load_z, cosine, sine)
     allowed = _RELATIVE_RESIDUAL * math.hypot(load_y, load_z) + _LEAST_RESIDUAL
-    if not _find_balance(load_y, load_z, allowed, shrunk, False, stiffness, profile, elastic, loads, bending):
+    stiff, law = 0.5 * _typical_stiffness(stiffness, profile, held), (stiffness, profile)  # two contacts in series are half as stiff
+    if not _find_balance(load_y, load_z, allowed, shrunk, False, press_between_raceways, law, stiff, elastic, loads, bending):
         return False
     values = bending.tableau[size + 1]
     y, z = -values[size - 2] - held[0], -values[size - 1] - held[1]
@@ -605,6 +630,12 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     ring[0], ring[1] = _turned(y, z, cosine, -sine)
     bending.points[POINT.force, points], bending.points[POINT.force, points + 1] = _turned(held[0], held[1], cosine, -sine)
     return True
+
+
+@kernel
+def _typical_stiffness(stiffness, profile, held):
+    """Return the stiffness of a contact from which springs start [N/m], or 0 where they have started."""
+    return profile_force(_TYPICAL, stiffness, profile)[1] if held[2] == 0.0 else 0.0
 
 
 @kernel
@@ -619,15 +650,17 @@ def _turn_seat(turn, cosine, sine, pressure, elastic, bending):
 
 
 @kernel
-def deflect_elastic_ring(turn, cosine, sine, pressure, stiffness, profile, elastic, loads, rates, bending):
+def deflect_elastic_ring(turn, cosine, sine, pressure, press, law, stiffness, profile, elastic, loads, bending):
     """Find the deflections of the outer ring under rollers whose places are known.
 
     Parameters
     ----------
     turn, cosine, sine : azimuth of the pocket of roller 0 [turns]; rollers count as if they stood in the middles of their pockets.
-    pressure, stiffness, profile, elastic : as of `balance_elastic_ring`.
-    loads : array with rows `LOAD`; the squeeze goes in, of a roller against a rigid ring [m]; centrifugal and free are zeros.
-    rates : derivative of the squeeze by time [m/s], shape (Z,).
+    pressure, elastic : as of `balance_elastic_ring`.
+    press, law : kernel ``(law, approaches, loads)`` that presses rollers outwards, as `press_outwards` does, and what it needs.
+    stiffness, profile : of contacts about as stiff, as of `balance_elastic_ring`.
+    loads : array with rows `LOAD`; the squeeze goes in, of a roller against a rigid ring [m], and as ``free`` the approach at which its contact
+        begins [m]; centrifugal is zero.
     bending : `Bending`, start and result: rows `ROLLER`.
 
     Returns
@@ -639,7 +672,8 @@ def deflect_elastic_ring(turn, cosine, sine, pressure, stiffness, profile, elast
     allowed = _LEAST_RESIDUAL
     for j in range(rollers):
         allowed += _MOVING_RESIDUAL * loads[LOAD.outer, j]
-    if not _find_balance(0.0, 0.0, allowed, shrunk, True, stiffness, profile, elastic, loads, bending):
+    stiffest = _typical_stiffness(stiffness, profile, held)
+    if not _find_balance(0.0, 0.0, allowed, shrunk, True, press, law, stiffest, elastic, loads, bending):
         return False
     _conclude(-held[0], -held[1], elastic, loads, bending)
     bending.points[POINT.force, points], bending.points[POINT.force, points + 1] = _turned(held[0], held[1], cosine, -sine)
@@ -647,26 +681,30 @@ def deflect_elastic_ring(turn, cosine, sine, pressure, stiffness, profile, elast
         along = held[1] * elastic.directions[0, parts * j] - held[0] * elastic.directions[1, parts * j]
         rows[ROLLER.moved, j] = loads[LOAD.squeeze, j] - loads[LOAD.approach, j]
         rows[ROLLER.slope, j] += along
-    _follow(points, loads, rates, bending)
     return True
 
 
 @kernel
-def _follow(points, loads, rates, bending):
-    """Write how fast the ring follows the rollers, and which share of a further approach is the contact's.
+def follow_rollers(loads, rates, bending):
+    """Write how fast the ring that `deflect_elastic_ring` has found follows the rollers, and which share of a further approach is the contact's.
 
     With B the springs' response of forces to approaches, S the contacts' stiffness and s the springs' compliance, forces change by
     q' = B (rate - (1/S - s) q').
+
+    Parameters
+    ----------
+    loads, bending : as of `deflect_elastic_ring`.
+    rates : derivatives by time of the squeeze [m/s], shape (Z,), and of whatever else changes a force, as a squeeze that changes it as much.
     """
-    rollers, tableau, sides, rows = loads.shape[1], bending.tableau, bending.sides, bending.rollers
+    points, rollers, tableau, sides, rows = bending.points.shape[1] - 2, loads.shape[1], bending.tableau, bending.sides, bending.rollers
     changes, softer, driven, alike = bending.given, bending.softer, bending.scratch, _are_alike(points, loads, bending)
     for j in range(rollers):
         slope = loads[LOAD.slope, j]
-        presses = slope > 0.0 and sides[points + j] == _TOUCHING
+        presses, own = slope > 0.0 and sides[points + j] == _TOUCHING, tableau[points + j, points + j]
         softer[j] = 1.0 / slope - bending.held[2] if presses else 0.0
         changes[j] = slope * rates[j] if presses else 0.0
-        response = -tableau[points + j, points + j]
-        rows[ROLLER.share, j] = response / (1.0 + softer[j] * response) / slope if presses else 1.0
+        yields = -1.0 / own if presses else own - bending.held[2] + 1.0 / slope if slope > 0.0 else 0.0
+        rows[ROLLER.share, j] = 1.0 / ((yields + softer[j]) * slope) if slope > 0.0 else 1.0
     for _ in range(_RATE_ITERATIONS if alike else 0):
         for j in range(rollers):
             driven[j] = 0.0
@@ -684,7 +722,7 @@ def _follow(points, loads, rates, bending):
 
 @kernel
 def _solve_rates(points, rates, loads, bending):
-    """Write the changes of forces of `_follow` into ``bending.given``, by elimination; its equations are regular, because B is positive definite."""
+    """Write the changes of forces of `follow_rollers` into ``bending.given``, by elimination; B is positive definite, so that this succeeds."""
     rollers, tableau, matrix, right, count = loads.shape[1], bending.tableau, bending.matrix, bending.right, 0
     for j in range(rollers):
         if loads[LOAD.slope, j] > 0.0 and bending.sides[points + j] == _TOUCHING:

@@ -74,9 +74,9 @@ def builds(levels: Sequence[str], bends: bool = False) -> list[Build]:
     Parameters
     ----------
     levels : names.
-    bends : whether for outer rings that bend; level spatial has none.
+    bends : whether for outer rings that bend.
     """
-    return [Build(level, bends=bends) for level in _SLOWEST_FIRST if level in levels and not (bends and level == "spatial")]
+    return [Build(level, bends=bends) for level in _SLOWEST_FIRST if level in levels]
 
 
 def compile_for(scene: "Scene", tell: Callable[[str], None], with_states: bool = False) -> None:

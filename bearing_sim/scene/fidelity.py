@@ -78,12 +78,6 @@ EFFECTS = (
     ),
     Effect("bearing.flanges", LEVELS, "whose rollers rub on flanges", lambda scene: scene.bearing.flanges.present),
     Effect(
-        "mounting.housing.backing",
-        ("steady", "slip", "planar"),
-        "whose outer ring bends",
-        lambda scene: scene.mounting.housing.backing.law not in ("rigid", "free") and scene.mounting.housing.backing.law,
-    ),
-    Effect(
         "mounting.housing.backing.law",
         ("steady", "slip"),
         "at which the mass of a ring that nothing backs does not matter",

@@ -342,7 +342,7 @@ def _highest_level(tree: Mapping) -> str:
     law = backing.get("law") if isinstance(backing, Mapping) else backing
     if law == "free" or at(tree, ("bearing", "cage", "guidance")) == "full_complement":
         return "slip"
-    return "spatial" if law in (None, "rigid") else "planar"
+    return "spatial"
 
 
 def _front(named: str, origin: str) -> Tradeoffs:

@@ -16,7 +16,9 @@ from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.load_balance import LOAD
-from bearing_sim.physics.ring_balance import POINT, ROLLER, deflect_elastic_ring
+from bearing_sim.physics.ring_balance import POINT, ROLLER
+
+_TURNS = 1.0  # rad/s; a slower cage does not tell how long ago something was
 
 
 @kernel
@@ -27,36 +29,33 @@ def _ahead(j, count, turned):
 
 
 @kernel
-def bend_outer_ring(row, contact, outer_ring, cage_angle, cage_speed, pressure, raceways, rows, contacts, ring_loads, rates, bending):
-    """Let the outer ring give way to the rollers; return whether that was found.
+def place_at_ring(row, contact, cage_angle, cage_speed, highest, rows, contacts, ring_loads, rates, bending):
+    """Write how far rollers are squeezed by a rigid outer ring, as if they stood in the middles of their pockets, and how fast that grows.
 
     Parameters
     ----------
-    row, contact : rows of ``rows`` and ``contacts``, see `bearing_sim.levels.common.rollers`; penetrations, their rates and slopes are changed.
-    outer_ring : `bearing_sim.physics.ring_balance.ElasticRing`, or None of a rigid ring.
+    row, contact : rows of ``rows`` and ``contacts``, see `bearing_sim.levels.common.rollers`.
     cage_angle, cage_speed : [rad, rad/s].
-    pressure : of the seat by fit and temperatures [Pa].
-    raceways : of the bearing.
-    ring_loads, rates, bending : memory, see `bearing_sim.physics.ring_balance.deflect_elastic_ring`; the last is None of a rigid ring.
+    highest : least drop of the profile along a roller, from which a penetration counts [m].
+    ring_loads, rates, bending : memory, see `bearing_sim.physics.ring_balance.deflect_elastic_ring`; takes squeezes and ``rates``, shape (Z,).
     """
-    if outer_ring is None:
-        return True
-    count, blocks, highest = ring_loads.shape[1], rows.shape[0], raceways.profile.highest
-    for j in range(count):
+    blocks = rows.shape[0]
+    for j in range(ring_loads.shape[1]):
         block, lane = blocks + j // LANES, j % LANES
-        ahead, slope = _ahead(j, count, rows[j // LANES, row.angle, lane] - cage_angle), bending.rollers[ROLLER.slope, j]
+        ahead, slope = _ahead(j, ring_loads.shape[1], rows[j // LANES, row.angle, lane] - cage_angle), bending.rollers[ROLLER.slope, j]
         ring_loads[LOAD.squeeze, j] = contacts[block, contact.penetration, lane] - highest - slope * ahead
         rates[j] = contacts[block, contact.rate, lane] - slope * (rows[j // LANES, row.orbital_speed, lane] - cage_speed)
-    turn = cage_angle / (2.0 * math.pi)
-    cosine, sine = math.cos(cage_angle), math.sin(cage_angle)
-    if not deflect_elastic_ring(turn, cosine, sine, pressure, raceways.stiffness, raceways.profile, outer_ring, ring_loads, rates, bending):
-        return False
-    for j in range(count):
+
+
+@kernel
+def give_way(row, contact, highest, rows, contacts, ring_loads, rates, bending):
+    """Let penetrations, their rates and slopes be those of the ring that has bent; parameters as of `place_at_ring`."""
+    blocks = rows.shape[0]
+    for j in range(ring_loads.shape[1]):
         block, lane = j // LANES, j % LANES
         contacts[blocks + block, contact.penetration, lane] = ring_loads[LOAD.approach, j] + highest
         contacts[blocks + block, contact.rate, lane] = rates[j] - bending.rollers[ROLLER.rate, j]
         rows[block, row.slope, lane] += bending.rollers[ROLLER.slope, j]
-    return True
 
 
 @kernel
@@ -74,19 +73,19 @@ def soften_contacts(contact, blocks, contacts, bending):
 
 
 @kernel
-def predict_bending(row, cage_angle, time, rows, bending):
+def predict_bending(row, cage_angle, cage_speed, bent_at, rows, bending):
     """Add to the contour at the rollers how far the ring will have bent.
 
     Parameters
     ----------
-    row : see `bend_outer_ring`.
-    cage_angle : then [rad].
-    time : since the bending was known last [s].
-    rows, bending : as of `bend_outer_ring`.
+    row : see `place_at_ring`.
+    cage_angle, cage_speed : then [rad, rad/s].
+    bent_at : cage angle at which the bending was known last [rad].
+    rows, bending : as of `place_at_ring`; None of a rigid ring.
     """
     if bending is None:
         return
-    count = bending.rollers.shape[1]
+    count, time = bending.rollers.shape[1], (cage_angle - bent_at) / cage_speed if abs(cage_speed) > _TURNS else 0.0
     for j in range(count):
         ahead = _ahead(j, count, rows[j // LANES, row.angle, j % LANES] - cage_angle)
         bent = bending.rollers[ROLLER.moved, j] + time * bending.rollers[ROLLER.rate, j] + ahead * bending.rollers[ROLLER.slope, j]
@@ -94,11 +93,11 @@ def predict_bending(row, cage_angle, time, rows, bending):
 
 
 @kernel
-def ring_rate(bending, j):
-    """Return how fast the outer ring moves away from a roller [m/s]; 0 of a rigid ring, whose ``bending`` is None."""
+def ring_rate(bending, j, cage_speed):
+    """Return how fast the outer ring moves outwards where a roller is [m/s], at speed of the cage [rad/s]; 0 of a rigid ring, ``bending`` None."""
     if bending is None:
         return 0.0
-    return bending.rollers[ROLLER.rate, j]
+    return bending.rollers[ROLLER.rate, j] - bending.rollers[ROLLER.slope, j] * cage_speed
 
 
 @kernel

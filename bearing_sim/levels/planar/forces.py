@@ -27,7 +27,7 @@ orbit: what the other walls do, turned by a right angle.
 
 import math
 
-from bearing_sim.levels.common.bending import bend_outer_ring, soften_contacts
+from bearing_sim.levels.common.bending import give_way, place_at_ring, soften_contacts
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, total_load
 from bearing_sim.levels.common.model import films_at, inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import carry_normal_forces, drag, linear_churning, place_in_pockets, place_outwards, place_rollers
@@ -55,6 +55,7 @@ from bearing_sim.physics.flange import axial_share
 from bearing_sim.physics.land import Land, land_contact, land_film, land_friction
 from bearing_sim.physics.pocket import pocket_friction_lanes, wall_force
 from bearing_sim.physics.profile import damped_profile_contact
+from bearing_sim.physics.ring_balance import deflect_elastic_ring, follow_rollers, press_outwards
 
 
 @fused
@@ -238,6 +239,24 @@ def _accelerate(y, churning, model, rows, contacts, rate):
         rate[OMEGA] += total(present * torque) / cage.inertia
 
 
+@kernel
+def _bend(y, outer_ring, model, work):
+    """Let the outer ring give way to the rollers; return whether that was found.  ``outer_ring`` is that of the bearing, None where it is rigid."""
+    if outer_ring is None:
+        return True
+    raceways, loads, bending = model.params.raceways, work.ring_loads, work.bending
+    stiffness, profile, theta, pressure = raceways.stiffness, raceways.profile, y[THETA], model.lubrication.growth.housing_pressure
+    place_at_ring(ROLLER, CONTACT, theta, y[OMEGA], profile.highest, work.rollers, work.contacts, loads, work.ring_rates, bending)
+    turn, cosine, sine = theta / (2.0 * math.pi), math.cos(theta), math.sin(theta)
+    law = stiffness, profile
+    if not deflect_elastic_ring(turn, cosine, sine, pressure, press_outwards, law, stiffness, profile, outer_ring, loads, bending):
+        return False
+    follow_rollers(loads, work.ring_rates, bending)
+    give_way(ROLLER, CONTACT, profile.highest, work.rollers, work.contacts, loads, work.ring_rates, bending)
+    work.bent_at[0] = theta
+    return True
+
+
 @fused
 def equations(t, y, model, work, rate, with_jacobian):
     """Write dy/dt into ``rate`` and, where asked, all derivatives into ``work``.
@@ -256,23 +275,8 @@ def equations(t, y, model, work, rate, with_jacobian):
     place_rollers(ROLLER, CONTACT, ring, shaft_speed, inner_radius, params, rows, contacts)
     for k in range(4):
         work.evaluated_ring[k] = ring[k]
-    pressure = model.lubrication.growth.housing_pressure
-    if not bend_outer_ring(
-        ROLLER,
-        CONTACT,
-        params.outer_ring,
-        y[THETA],
-        y[OMEGA],
-        pressure,
-        params.raceways,
-        rows,
-        contacts,
-        work.ring_loads,
-        work.ring_rates,
-        work.bending,
-    ):
+    if not _bend(y, params.outer_ring, model, work):
         return False
-    work.bent_at[0] = y[THETA]
     normal_forces(params, contacts)
     drag(params.raceways, model.lubrication, films, contacts)
     _pocket_forces(y, films.pocket_friction, params, rows)

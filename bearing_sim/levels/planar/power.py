@@ -27,7 +27,7 @@ from bearing_sim.physics.profile import profile_force
 
 
 @kernel
-def _raceway_damping(params, work):
+def _raceway_damping(cage_speed, params, work):
     """Return the power lost by damping between rollers and raceways, and in an outer ring that moves under it [W]."""
     contacts, stiffness, profile, lost = work.contacts, params.raceways.stiffness, params.raceways.profile, 0.0
     for raceway in range(2):
@@ -36,7 +36,7 @@ def _raceway_damping(params, work):
             elastic, _ = profile_force(contacts[block, CONTACT.penetration, lane] - profile.highest, stiffness, profile)
             damped = contacts[block, CONTACT.load, lane] - elastic
             rate = contacts[block, CONTACT.rate, lane]
-            lost += damped * (rate + ring_rate(work.bending, j) if raceway == 1 else rate)
+            lost += damped * (rate + ring_rate(work.bending, j, cage_speed) if raceway == 1 else rate)
     return lost
 
 
@@ -159,7 +159,7 @@ def planar_powers(t, y, shaft_speed, model, work):
         windage,
         land,
         pocket,
-        _raceway_damping(params, work) + walls + touching,
+        _raceway_damping(y[OMEGA], params, work) + walls + touching,
         seals,
         rubbing,
         support,

@@ -22,7 +22,6 @@ from bearing_sim.numerics.simd import highest, larger, load, magnitude, spread, 
 from bearing_sim.physics.contact import CONTACT
 
 _ITERATIONS = 4
-_TURNS = 1.0  # rad/s; a slower cage does not tell how long ago something was
 _SETTLED = 0.2  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system
 
 
@@ -93,9 +92,7 @@ def predict(known, shift, slope, model, work, guess):
     inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # where the inputs start: a guess needs no more
     extrapolate(LAYOUT, known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
-    omega = guess[BORDER + THETA]
-    elapsed = (guess[THETA] - work.bent_at[0]) / omega if abs(omega) > _TURNS else 0.0
-    predict_bending(ROLLER, guess[THETA], elapsed, rows, work.bending)
+    predict_bending(ROLLER, guess[THETA], guess[BORDER + THETA], work.bent_at[0], rows, work.bending)
     enough = _SETTLED * model.tolerances.position
     for _ in range(_ITERATIONS):
         if _balance(guess, shift, enough, inner_radius, params, rows, work.contacts) < enough:

@@ -26,6 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.bending import give_way, place_at_ring
 from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, stop_skew_on_face, total_load
 from bearing_sim.levels.common.model import films_at, inner_growth, shaft_speed_at
 from bearing_sim.levels.common.rollers import carry_normal_forces, linear_churning, place_in_pockets, place_outwards, place_rollers
@@ -34,7 +35,7 @@ from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.forces import border_accelerations as planar_accelerations
 from bearing_sim.levels.planar.state import BORDER as PLANAR
 from bearing_sim.levels.spatial.jacobian import follow_axes, land_cage_jacobian, land_ring_jacobian, roller_jacobian, turn_axes
-from bearing_sim.levels.spatial.slices import press_points, resist, sum_tractions
+from bearing_sim.levels.spatial.slices import deepest, press_outer_points, press_points, resist, soften_points, sum_tractions
 from bearing_sim.levels.spatial.state import (
     BORDER,
     CAGE_TILT_Y,
@@ -57,10 +58,12 @@ from bearing_sim.levels.spatial.state import (
 )
 from bearing_sim.numerics.block_arrow import collect_rates, spread_state
 from bearing_sim.numerics.compilation import fused, kernel
-from bearing_sim.numerics.simd import add, larger, load, magnitude, spread, spread_run, store, total, where_positive
+from bearing_sim.numerics.simd import LANES, add, larger, load, magnitude, spread, spread_run, store, total, where_positive
 from bearing_sim.physics.contact import damped_line_contact
 from bearing_sim.physics.flange import axial_share
+from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.pocket import pocket_friction_lanes
+from bearing_sim.physics.ring_balance import deflect_elastic_ring, follow_rollers
 from bearing_sim.physics.traction import traction_along
 
 
@@ -369,6 +372,47 @@ def _accelerate(block, y, churning, model, rows, contacts, rate):
     rate[OMEGA] += total(present * torque) / cage.inertia
 
 
+@kernel
+def _bend(y, outer_ring, model, work):
+    """Let the outer ring give way to the rollers; return whether that was found.  ``outer_ring`` is that of the bearing, None where it is rigid.
+
+    The ring bends alike at both of its ends.  A roller that leans more presses it as one that approaches it by as much as raises the force so.
+    """
+    if outer_ring is None:
+        return True
+    params, rows, contacts, loads, bending, rates = model.params, work.rollers, work.contacts, work.ring_loads, work.bending, work.ring_rates
+    raceways, slices, theta, blocks = params.raceways, params.slices, y[THETA], work.rollers.shape[0]
+    place_at_ring(ROLLER, SLICED, theta, y[OMEGA], 0.0, rows, contacts, loads, rates, bending)
+    for block in range(blocks):
+        store(contacts, blocks + block, SLICED.rate, spread(0.0))
+        store(contacts, blocks + block, SLICED.lean_rate, spread(0.0))
+        store(rows, block, ROLLER.moved, -deepest(blocks + block, contacts, slices))
+    for j in range(params.rollers.count):
+        loads[LOAD.free, j] = rows[j // LANES, ROLLER.moved, j % LANES]
+    law = contacts, work.points, slices, raceways.stiffness, raceways.damping
+    turn, cosine, sine, pressure = theta / (2.0 * math.pi), math.cos(theta), math.sin(theta), model.lubrication.growth.housing_pressure
+    stiffness, profile = raceways.stiffness, raceways.profile
+    if not deflect_elastic_ring(turn, cosine, sine, pressure, press_outer_points, law, stiffness, profile, outer_ring, loads, bending):
+        return False
+    for block in range(blocks):
+        store(contacts, blocks + block, SLICED.lean_rate, load(rows, block, ROLLER.tilt_speed))
+    for j in range(params.rollers.count):
+        rates[j] += _by_lean(blocks, j, contacts, loads) * rows[j // LANES, ROLLER.tilt_speed, j % LANES]
+    follow_rollers(loads, rates, bending)
+    for j in range(params.rollers.count):
+        rates[j] -= _by_lean(blocks, j, contacts, loads) * rows[j // LANES, ROLLER.tilt_speed, j % LANES]
+    give_way(ROLLER, SLICED, 0.0, rows, contacts, loads, rates, bending)
+    work.bent_at[0] = theta
+    return True
+
+
+@kernel
+def _by_lean(blocks, j, contacts, loads):
+    """Return the approach of a roller to the outer raceway that changes its force as much as a unit of lean does [m]."""
+    slope = loads[LOAD.slope, j]
+    return contacts[blocks + j // LANES, SLICED.stiffness + 1, j % LANES] / slope if slope > 0.0 else 0.0
+
+
 @fused
 def equations(t, y, model, work, rate, with_jacobian):
     """Write dy/dt into ``rate`` and, where asked, all derivatives into ``work``.
@@ -388,6 +432,8 @@ def equations(t, y, model, work, rate, with_jacobian):
     ring = _ring(y)
     for k in range(6):
         work.evaluated_ring[k] = ring[k]
+    if not _bend(y, params.outer_ring, model, work):
+        return False
     points, first_points, count = work.points, work.first_points, params.slices.points
     middle, end = press_points(contacts, points, first_points, params.slices, params.raceways.stiffness, params.raceways.damping)
     traction_along(points[:end], middle, count, model.lubrication.inner, model.lubrication.outer, films)
@@ -407,6 +453,7 @@ def equations(t, y, model, work, rate, with_jacobian):
             guide_accelerations(block, params, rows, rate)
     if params.flanges.on:
         flange_accelerations(shaft_speed, films.flange_friction, model, rows, contacts, rate)
+    soften_points(rows.shape[0], resistance, contacts, work.bending)
     if with_jacobian:
         roller_jacobian(y, inner_radius, churning, resistance, params, model.lubrication.viscosity, rows, contacts, work.chain, work.jacobian)
     if work.support.shape[0] > 0:

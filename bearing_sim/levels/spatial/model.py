@@ -3,7 +3,7 @@
 
 State and memory: `bearing_sim.levels.spatial.state`; equations: `bearing_sim.levels.spatial.forces`, contacts along the rollers:
 `bearing_sim.levels.spatial.slices`; their Jacobian and the linear algebra of implicit steps: `bearing_sim.levels.spatial.jacobian`.  Left out: the
-rollers' motion along their axes, and bending of the rings.
+rollers' motion along their axes, and twist of the rings.
 """
 
 import math
@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.advance import advance_by
+from bearing_sim.levels.common.bending import observe_ring
 from bearing_sim.levels.common.dynamic import average_step, dynamic_kernels, observe_level
 from bearing_sim.levels.common.flanges import largest_corner
 from bearing_sim.levels.common.model import FIFTH_PITCH, shaft_speed_at
@@ -155,6 +156,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
     oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
     equivalent = _equivalent_loads(oil, model.params.life, work)
     observe_level(LAYOUT, ROLLER, SLICED, rhs, spatial_powers, t, y, oil, equivalent, model, work, interval, previous, row, memory)
+    observe_ring(work.bending, count, row)
     row[COLUMN.ring_tilt_y], row[COLUMN.ring_tilt_z] = y[RING_TILT_Y], y[RING_TILT_Z]
     row[COLUMN.cage_tilt_y], row[COLUMN.cage_tilt_z] = y[CAGE_TILT_Y], y[CAGE_TILT_Z]
     pressures = lamina_pressures(model.params, work)

@@ -5,17 +5,34 @@ Speeds are straight lines along the axis, so that most sums are a force times a 
 What a moment on the inner ring puts in stands beside the radial load's power: neither is among the losses.
 """
 
+from bearing_sim.levels.common.bending import ring_rate
 from bearing_sim.levels.common.flanges import FLANGE, flange_powers
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.power import Powers, seal_power, windage_powers
 from bearing_sim.levels.common.support import support_powers
 from bearing_sim.levels.planar.power import land_powers
 from bearing_sim.levels.spatial.forces import place_land
-from bearing_sim.levels.spatial.slices import damped_power
+from bearing_sim.levels.spatial.slices import damped_power, elastic_force
 from bearing_sim.levels.spatial.state import BORDER, CAGE_TILT_Y, CAGE_TILT_Z, CAGE_Y, CAGE_Z, OMEGA, ROLLER, SLICED
 from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.simd import larger, load, magnitude, spread, total, where_positive
+from bearing_sim.numerics.simd import LANES, larger, load, magnitude, spread, total, where_positive
 from bearing_sim.physics.contact import elastic_line_contact
+
+
+@kernel
+def _ring_damping(bending, cage_speed, params, work):
+    """Return the power lost in an outer ring that moves under what damps the contacts [W]; ``bending`` is None of a rigid ring."""
+    if bending is None:
+        return 0.0
+    rows, contacts, count, lost = work.rollers, work.contacts, params.slices.points, 0.0
+    for j in range(params.rollers.count):
+        rows[j // LANES, ROLLER.moved, j % LANES] = ring_rate(bending, j, cage_speed)
+    for block in range(rows.shape[0]):
+        outer = rows.shape[0] + block
+        damped = load(contacts, outer, SLICED.load)
+        damped -= elastic_force(outer, contacts, work.points, work.first_points, count, params.raceways.stiffness)
+        lost += total(load(rows, block, ROLLER.present) * damped * load(rows, block, ROLLER.moved))
+    return lost
 
 
 @kernel
@@ -164,7 +181,7 @@ def spatial_powers(t, y, shaft_speed, model, work):
         windage,
         land,
         pocket,
-        inner_damped + outer_damped + walls + touching + cornered,
+        inner_damped + outer_damped + _ring_damping(work.bending, y[OMEGA], params, work) + walls + touching + cornered,
         seals,
         rubbing,
         support,

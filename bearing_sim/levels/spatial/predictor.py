@@ -7,6 +7,7 @@ own normal contacts: a few Newton iterations of all rollers at once.
 
 import math
 
+from bearing_sim.levels.common.bending import predict_bending
 from bearing_sim.levels.common.dynamic import extrapolate, write_guess
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.rollers import follow_contour
@@ -28,6 +29,7 @@ from bearing_sim.levels.spatial.state import (
     SKEW_SPEED,
     SLICED,
     SPIN,
+    THETA,
     TILT,
     TILT_SPEED,
     R,
@@ -132,6 +134,7 @@ def predict(known, shift, slope, model, work, guess):
     enough = _SETTLED * model.tolerances.position
     extrapolate(LAYOUT, known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
+    predict_bending(ROLLER, guess[THETA], guess[BORDER + THETA], work.bent_at[0], rows, work.bending)
     for _ in range(_ITERATIONS):
         settled = True
         for block in range(blocks):

@@ -19,9 +19,11 @@ from bearing_sim.levels.spatial.state import D_DEPTH, D_RATE, DROP, FRACTION, IN
 from bearing_sim.model.params import LOGARITHMIC, SLICED_EQUALLY, STRAIGHT
 from bearing_sim.numerics.compilation import fused, kernel
 from bearing_sim.numerics.elementary import exponential, logarithm, ninth_root
-from bearing_sim.numerics.simd import add, highest, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
+from bearing_sim.numerics.simd import LANES, add, highest, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, TINY, damped_line_contact, damping_factor, elastic_line_contact, hertz_pressure
 from bearing_sim.physics.film import resist_rolling_by_rows
+from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.ring_balance import ROLLER as RING
 
 _NEWTON_STEPS = 2  # towards the ends of the part that bears: what is left is at most 4 % of it
 _LEVEL = 1e-15  # m; a depth that changes by less over half a roller has no end
@@ -132,6 +134,26 @@ def _drop(place, slices):
 
 
 @fused
+def deepest(block, contacts, slices):
+    """Return how much deeper a block of contacts is where it is deepest than in the rollers' middles without their profile [m] (lanes)."""
+    lean = load(contacts, block, SLICED.lean)
+    if slices.profile == SLICED_EQUALLY:
+        largest = lean * slices.positions[0] - slices.crown[0]
+        for k in range(1, slices.positions.shape[0]):
+            largest = larger(largest, lean * slices.positions[k] - slices.crown[k])
+        return largest
+    slope = magnitude(lean) * slices.half_length
+    if slices.profile == LOGARITHMIC:
+        slope = slope * (1.0 / slices.scale)
+        top = slope / (1.0 + square_root(1.0 + slope * slope))
+        return slices.scale * (slope * top + logarithm(larger(1.0 - top * top, _NEAR_END)))
+    if slices.profile == STRAIGHT:
+        return slope
+    place = smaller(slices.straight + slope * (slices.scale / (slices.half_length * slices.half_length)), 1.0)
+    return slope * place - _drop(place, slices)
+
+
+@fused
 def _place_on_loaded_part(block, contacts, slices, points, first):
     """Write the points of a quadrature on the part that bears; parameters as of `place_points`."""
     left, right = _loaded_part(load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.lean) * slices.half_length, slices)
@@ -226,6 +248,72 @@ def press_normally(block, contacts, slices, points, stiffness, damping):
     first = block * slices.points
     place_points(block, contacts, slices, points, first)
     _press_points(block, contacts, points, first, slices.points, stiffness, damping, False)
+
+
+@kernel
+def press_outer_points(law, approaches, loads):
+    """Write the elastic forces of all rollers on the outer raceway, as `bearing_sim.physics.ring_balance.press_outwards` does.
+
+    Parameters
+    ----------
+    law : contacts, points, slices, stiffness and damping, as of `press_points`; rates of the outer contacts are zeros.
+    approaches : penetrations in the middles of the rollers [m], shape (Z,).
+    loads : takes what follows.
+    """
+    contacts, points, slices, stiffness, damping = law
+    blocks = contacts.shape[0] // 2
+    for j in range(loads.shape[1]):
+        contacts[blocks + j // LANES, SLICED.penetration, j % LANES] = approaches[j]
+    for block in range(blocks, 2 * blocks):
+        press_normally(block, contacts, slices, points, stiffness, damping)
+    for j in range(loads.shape[1]):
+        block, lane = blocks + j // LANES, j % LANES
+        force = contacts[block, SLICED.load, lane]
+        loads[LOAD.approach, j], loads[LOAD.slope, j] = approaches[j], contacts[block, SLICED.stiffness, lane]
+        loads[LOAD.inner, j], loads[LOAD.outer, j] = force, force
+
+
+@kernel
+def soften_points(blocks, resists, contacts, bending):
+    """Let the derivatives of the outer contacts be those of a ring that gives way; ``bending`` is None of a rigid ring.
+
+    Of a further penetration the contact takes its share, and of a further lean the ring gives way by what the lean presses it; see also
+    `bearing_sim.levels.common.bending.soften_contacts`.
+
+    Parameters
+    ----------
+    blocks : of rollers.
+    resists : whether contacts resist rolling.
+    contacts : all have been pressed, and have their tractions.
+    """
+    if bending is None:
+        return
+    for j in range(bending.rollers.shape[1]):
+        block, lane, share = blocks + j // LANES, j % LANES, bending.rollers[RING.share, j]
+        stiffness = contacts[block, SLICED.stiffness, lane]
+        if share == 1.0 or stiffness == 0.0:
+            continue
+        by_lean = (1.0 - share) * contacts[block, SLICED.stiffness + 1, lane] / stiffness
+        for first in (SLICED.stiffness, SLICED.damping):
+            contacts[block, first + 2, lane] -= by_lean * contacts[block, first + 1, lane]
+            contacts[block, first + 1, lane] *= share
+            contacts[block, first, lane] *= share
+        for first in (SLICED.of_force, SLICED.of_skewing, SLICED.of_resistance):
+            if first != SLICED.of_resistance or resists:
+                for by in (first, first + 3):
+                    contacts[block, by + 1, lane] -= by_lean * contacts[block, by, lane]
+                    contacts[block, by, lane] *= share
+
+
+@kernel
+def elastic_force(block, contacts, points, first_points, count, stiffness):
+    """Return the normal forces of a block of contacts without their damping [N] (lanes); parameters as of `press_points`, which has been called."""
+    force, first = spread(0.0), first_points[block]
+    for k in range(max(first, 0), first + count if first >= 0 else 0):
+        x = load(points, k, POSITION)
+        depth = load(contacts, block, SLICED.penetration) + load(contacts, block, SLICED.lean) * x - load(points, k, DROP)
+        force += load(points, k, FRACTION) * elastic_line_contact(depth, stiffness)
+    return force
 
 
 @fused

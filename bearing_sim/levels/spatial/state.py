@@ -21,6 +21,8 @@ from bearing_sim.numerics.block_arrow import Factored, block_arrow, new_factored
 from bearing_sim.numerics.simd import new_blocks, new_rows
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.lamina_life import MOMENTS
+from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.ring_balance import Bending, new_bending
 
 RING, CAGE = 4, 5  # positions of ring and cage
 LAYOUT = block_arrow(4, 5, (RING, CAGE))  # of rollers that touch ring and cage: four positions, their speeds, and the spin
@@ -139,7 +141,7 @@ class RollerRow(NamedTuple):
     guide_moment: int = 59  # sum of force times position along the axis [N m]
     guide_stiffness: int = 60  # as ``pocket_stiffness``
     guide_damping: int = 63
-    moved: int = 66  # by the last iteration of a prediction [m]
+    moved: int = 66  # by the last iteration of a prediction [m]; scratch of the outer ring where it bends
     inner_flange: int = _PLAIN_ROWS  # from here on flanges: of the inner ring, rows `bearing_sim.levels.common.flanges.FLANGE`
     outer_flange: int = _PLAIN_ROWS + FLANGE_ROWS  # of the outer ring, likewise
 
@@ -171,6 +173,10 @@ class Work(NamedTuple):
     lamina_last: np.ndarray  # powers at the last instant that counted, likewise
     lamina_means: np.ndarray  # sums of them over the lanes where a sample was asked for, shape (2, laminae)
     lamina_turn: np.ndarray  # by which the cage has turned since laminae were last averaged [rad], shape (1,)
+    bending: Bending | None  # as at level ``planar``, also the following
+    ring_loads: np.ndarray
+    ring_rates: np.ndarray
+    bent_at: np.ndarray
 
 
 def new_work(params):
@@ -199,4 +205,8 @@ def new_work(params):
         lamina_last=new_blocks(2, len(params.life.laminae.positions)),
         lamina_turn=np.zeros(1),
         lamina_means=np.zeros((2, len(params.life.laminae.positions))),
+        bending=None if params.outer_ring is None else new_bending(params.outer_ring, rollers_move=True),
+        ring_loads=np.zeros((len(LOAD), count)),
+        ring_rates=np.zeros(count),
+        bent_at=np.zeros(1),
     )
