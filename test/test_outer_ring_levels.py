@@ -10,6 +10,7 @@ from metamorphic import violations_of_solved_symmetry, violations_of_symmetry
 from random_scenes import random_scenes
 
 from bearing_sim import Simulation, load_scene, settle
+from bearing_sim.levels.level import LEVELS
 from bearing_sim.levels.steady.table import common_period, mirror_axis, symmetric_parts
 from bearing_sim.levels.steady.table_builder import obtain_table
 from bearing_sim.model.params import pack
@@ -98,6 +99,31 @@ def test_a_sample_of_level_planar_stands_where_one_of_level_steady_does():
     for name in ("raceway_deflection", "inner_load", "outer_ring_y", "ring_y", "seat_arc"):
         scale = np.abs(found[0][name]).max()
         assert np.abs(found[1][name] - found[0][name]).max() <= 0.03 * scale + 2e-8, name
+
+
+def test_level_spatial_is_level_planar_where_nothing_tilts():
+    planar, spatial = (Simulation(paper(backed(play="2 um"), level=level)).advance(0.02, samples=10) for level in ("planar", "spatial"))
+    for name in ("cage_slip", "inner_load", "raceway_deflection", "seat_arc", "outer_ring_y", "damping_power"):
+        assert np.abs(spatial[name] - planar[name]).max() <= 1e-6 * np.abs(planar[name]).max(), name
+
+
+@pytest.mark.parametrize("level", ["planar", "spatial"])
+def test_a_run_goes_on_from_a_sample_where_the_ring_is_in_its_seat(level):
+    run = Simulation(paper(backed(play="2 um"), level=level))
+    sample = run.advance(0.005, samples=1)[-1]
+    assert abs(sample["outer_ring_y"]) > 1e-7
+    at, border, count = LEVELS[level].state_at(run._params, LEVELS[level].new_work(run._params), sample), {"planar": 5, "spatial": 9}[level], 18
+    for first, length in ((0, 2), (2 * border, count)):  # the inner ring's centre, the rollers' distances from the housing's
+        assert np.abs(at[first : first + length] - run.state[first : first + length]).max() < 1e-9
+
+
+def test_a_support_carries_the_housing_in_which_the_ring_sits():
+    support = "support.outer_ring={mass: 0.5 kg, stiffness: 4e7 N/m, damping: 2000 N*s/m}"
+    held, carried = (Simulation(paper(backed(play="2 um"), *more, level="planar")).advance(0.1, samples=100)[50:] for more in ([], [support]))
+    spring = carried["outer_ring_y"].mean() - held["outer_ring_y"].mean()
+    assert spring == pytest.approx(800.0 / 4e7, rel=0.03)
+    for name in ("raceway_deflection", "seat_arc"):
+        assert np.abs(carried[name]).mean() == pytest.approx(np.abs(held[name]).mean(), rel=0.05), name
 
 
 TURNED = 0.61
@@ -195,7 +221,7 @@ def test_ranges_of_play_modulus_and_ring_are_part_of_the_uncertainty():
         ((backed(), "bearing.outer_ring.equivalent_thickness=0.1 mm", "operating.radial_load=8 kN"), "more than the strength"),
         ((backed(), "bearing.outer_ring.seat_radius=34 mm"), "outer_ring.seat_radius"),
         ((backed(), "bearing.outer_ring.neutral_radius=38 mm"), "neutral_radius"),
-        ((backed(), "level=spatial"), "level spatial would ignore it"),
+        (("mounting.housing.backing=free", "level=spatial"), "needs level steady or slip"),
         (("mounting.housing.backing=free", "level=planar"), "needs level steady or slip"),
         ((backed("stiff"),), "stiff"),
     ],
@@ -274,7 +300,8 @@ def random_housings(seed: int, count: int, level: str, round_bores: bool = False
     """Random scenes whose outer rings bend in random housings; what is refused, as a ring too thin for its load, is drawn anew."""
     generator, found = random.Random(seed), []
     for scene in random_scenes(seed, 4 * count, level):
-        law = generator.choice(["elastic, massive: true", "elastic, massive: true", "rigid_bore", "free" if level != "planar" else "rigid_bore"])
+        fourth = "free" if level in ("steady", "slip") else "rigid_bore"
+        law = generator.choice(["elastic, massive: true", "elastic, massive: true", "rigid_bore", fourth])
         waves = f"{{waves: {generator.choice((2, 3))}, amplitude: {generator.uniform(0, 4):.2f} um, azimuth: {generator.uniform(0, 180):.0f} deg}}"
         waves = "" if round_bores else waves
         backing = (
@@ -300,7 +327,7 @@ def test_turning_more_scenes_changes_nothing_at_levels_steady_and_slip():
     assert [each for scene in random_housings(9, 6, "slip", True) for each in violations_of_symmetry(scene)] == []
 
 
-@pytest.mark.parametrize(("level", "seconds"), [("slip", 0.02), ("planar", 0.005)])
+@pytest.mark.parametrize(("level", "seconds"), [("slip", 0.02), ("planar", 0.005), ("spatial", 0.001)])
 def test_random_scenes_run_and_none_fails(level, seconds):
     for scene in random_housings(1, 12, level):
         block = Simulation(scene).advance(seconds, samples=4)
@@ -316,8 +343,9 @@ def test_two_hundred_random_scenes_run_at_level_slip(seed):
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("level", ["planar", "spatial"])
 @pytest.mark.parametrize("seed", range(30, 36))
-def test_sixty_random_scenes_run_at_level_planar(seed):
-    for scene in random_housings(seed, 10, "planar"):
+def test_sixty_random_scenes_run_where_rollers_move(seed, level):
+    for scene in random_housings(seed, 10, level):
         block = Simulation(scene).advance(0.02, samples=10)
         assert np.isfinite(block["raceway_deflection"]).all() and np.isfinite(block["cage_slip"]).all(), scene.name

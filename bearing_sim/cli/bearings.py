@@ -311,7 +311,7 @@ def loads(scene_name, overrides, slices, verbose):
     A moment or a misalignment requires level spatial, in the scene or by --set level=spatial.
     """
     scene = scene_of_point(scene_name, overrides)
-    announce_compilation()
+    announce_compilation(bends=scene.outer_ring_bends)
     from bearing_sim.model.validity import outside
     from bearing_sim.studies.statics import statics
     from bearing_sim.sweep.grading import graded

@@ -215,21 +215,22 @@ def _without_folder(argument: str) -> str:
     return f"{begin}{sign}{path.name}" if is_file else argument
 
 
-def announce_compilation(scene=None, with_states: bool = False) -> None:
+def announce_compilation(scene=None, with_states: bool = False, bends: bool = False) -> None:
     """Announce on stderr that compiling will take a while, and how long, if what is needed has not been compiled in this version of the model yet.
 
     Parameters
     ----------
     scene : that is going to run; what it needs is known then, and compiled here.
     with_states : as of `bearing_sim.runtime.precompilation.is_compiled_for`.
+    bends : whether outer rings bend in what is going to run; it is compiled when it is first needed.
     """
     from bearing_sim.numerics.compilation import CACHE_FOLDER
-    from bearing_sim.runtime.precompilation import announcement, builds, compile_for
+    from bearing_sim.runtime.precompilation import announcement, builds, compile_for, is_compiled
 
     if scene is not None:
         compile_for(scene, note, with_states)
-    elif not any(CACHE_FOLDER.rglob("*.code")):
-        note(f"{announcement(builds(('steady', 'slip', 'planar')))}, each when it is first needed")
+    elif not any(CACHE_FOLDER.rglob("*.code")) or (bends and not any(is_compiled(level, bends) for level in ("steady", "slip"))):
+        note(f"{announcement(builds(('steady', 'slip', 'planar'), bends))}, each when it is first needed")
 
 
 def suggest_level(scene) -> None:

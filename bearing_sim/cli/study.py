@@ -57,7 +57,7 @@ def damage(log, scene_name, overrides, windows, length):
     from bearing_sim.cli.table import build_with_progress
     from bearing_sim.studies.damage import damages
 
-    announce_compilation()
+    announce_compilation(bends=scene.outer_ring_bends)
     kelvin = scene.lubricant.temperature
     table = build_with_progress(scene, None if "oil_temperature" in course.stamps else (kelvin, kelvin))[0]
     run = course.segment(None, kelvin)
@@ -96,8 +96,8 @@ def friction(scene_name, overrides, series):
     from bearing_sim.studies.friction import SERIES, compare, series_of
     from bearing_sim.studies.sheet import temperatures, temperatures_text
 
-    announce_compilation()
     scene = scene_of_point(scene_name, overrides, before_results=False)
+    announce_compilation(bends=scene.outer_ring_bends)
     series = " ".join(series.upper().split()) if series else series_of(scene.bearing.designation or scene.bearing.name)
     if series not in SERIES:
         named = scene.bearing.designation or scene.bearing.name
@@ -147,7 +147,7 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out):
 
     scene = scene_of(scene_name, overrides)
     warn_of_scene(scene)
-    announce_compilation()
+    announce_compilation(bends=scene.outer_ring_bends)
     from bearing_sim.studies.clearance_map import LOAD, SPEED, in_words, map_clearance, plot_clearance_map
     from bearing_sim.sweep.table import require_same_study, study_digest, write_table
 
@@ -235,7 +235,7 @@ def housing(scene_name, overrides, plays, housings, slip_below, life_above, out)
     scene = scene_of(scene_name, overrides)
     _require_turning(scene)
     warn_of_scene(scene)
-    announce_compilation()
+    announce_compilation(bends=True)
     from bearing_sim.studies.housing_map import PLAY, RIGID, facts_in_words, housings_of, in_words, map_housings, plot_housing_map
     from bearing_sim.sweep.table import require_same_study, study_digest, write_table
 

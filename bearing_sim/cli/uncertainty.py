@@ -88,7 +88,7 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, w
     seed, level, journal, workers, dask : as for `bearing_sim.studies.uncertainty_propagation.study`.
     course : `bearing_sim.studies.uncertainty_propagation.Stretches`, or None.
     """
-    announce_compilation()
+    announce_compilation(bends=scene.outer_ring_bends)
     from bearing_sim.studies.uncertainty_propagation import lowest_level, rounded_up, study, varied_ranges
     from bearing_sim.sweep.tasks import Execution
 

@@ -47,6 +47,7 @@ class Want(NamedTuple):
     because: str  # as in `Effect`
 
 
+ENDLESS = 1e4  # s; longer than any lag of a cage; at level steady simulated time costs nothing
 MARCHING, WHIRLING, TILTING = ("slip", "planar", "spatial"), ("planar", "spatial"), ("spatial",)
 WANTS: dict[WantName, Want] = {
     "slip": Want(LEVELS, "which all compute it"),

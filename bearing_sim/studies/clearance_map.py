@@ -21,6 +21,7 @@ from bearing_sim.model.running_clearance import mounted, seat_pressure
 from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.thermal_network import POWERS
 from bearing_sim.scene.display import RPM, ZERO_CELSIUS, force, hours
+from bearing_sim.scene.fidelity import ENDLESS
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies.columns import columns_of
@@ -31,7 +32,6 @@ from bearing_sim.sweep.table import Table
 
 NO_EQUILIBRIUM = "no_equilibrium"
 SPEED, LOAD = "operating.shaft_speed", "operating.radial_load"
-_ENDLESS = 1e4  # s; longer than any lag of a cage; at level steady simulated time costs nothing
 _NEAR = 1e-4  # of a speed, to which bisection finds it
 _LEAP = 10.0  # K; a bearing that is farther from the limit of its scene where equilibrium ends does not pass the limit but runs away
 COLUMNS = columns_of("clearance")
@@ -102,7 +102,7 @@ def row_at(scene: Scene, shaft_speed: float, radial_load: float) -> dict:
         simulation = Simulation(scene, inputs, empty_table())
         if nodes is not None:
             simulation.set_temperatures(nodes)
-        samples = simulation.advance(_ENDLESS, samples=2)
+        samples = simulation.advance(ENDLESS, samples=2)
     except IntegrationError as error:
         return row | {"status": FAILED, "reason": str(error)}
     sample, parts = samples[-1], mounted(scene.bearing, scene.mounting)

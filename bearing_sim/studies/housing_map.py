@@ -35,6 +35,7 @@ from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.outer_ring import RingSection, ring_compliance
 from bearing_sim.physics.ring_balance import POINT, ROLLER
 from bearing_sim.scene.display import hours, number
+from bearing_sim.scene.fidelity import ENDLESS
 from bearing_sim.scene.loader import catalog_names, did_you_mean, load_scene
 from bearing_sim.scene.outer_ring import ring_geometry
 from bearing_sim.scene.scene import Scene
@@ -53,7 +54,6 @@ MATERIALS = ("aluminium", "cast_iron", "steel")
 COLUMNS = columns_of("housing")
 _PARTS = 16  # of a roller pitch: cage angles, and points of the seat, of which arcs and pressures need more than lives do
 _NEAR = 5e-8  # m, to which bisection finds a play
-_ENDLESS = 1e4  # s; longer than any lag of a cage
 _LARGEST_LIMIT = 7e8  # Pa, of `endurance_limit`
 
 
@@ -152,7 +152,7 @@ def solved(scene: Scene) -> tuple[np.void, Pitch]:
     simulation = Simulation(scene, inputs, empty_table())
     if simulation.thermal is not None:
         simulation.set_temperatures(temperatures)
-    sample = simulation.advance(_ENDLESS, samples=2)[-1]
+    sample = simulation.advance(ENDLESS, samples=2)[-1]
     finer = replace(scene.bearing, outer_ring=replace(scene.bearing.outer_ring, points=_PARTS))
     params = pack(replace(scene, bearing=finer))
     work, count, found = new_work(params), params.rollers.count, []

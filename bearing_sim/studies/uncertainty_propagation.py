@@ -21,7 +21,7 @@ from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.model.params import replenishment
 from bearing_sim.scene import display, fidelity
 from bearing_sim.scene.errors import SceneError
-from bearing_sim.scene.fidelity import WHIRLING
+from bearing_sim.scene.fidelity import ENDLESS, WHIRLING
 from bearing_sim.scene.mounting import clearance_limits, clearance_source, housing_interference
 from bearing_sim.scene.outer_ring import ring_geometry
 from bearing_sim.scene.scene import Integration, Scene
@@ -244,7 +244,6 @@ def stretches(times: np.ndarray, inputs: np.ndarray, in_gap: np.ndarray, most: i
 
 VALUES = ("cage_slip", "life_hours")
 _DURATION, _SAMPLES, _SETTLED = 0.5, 500, 0.2  # s and samples of a run (Deng 2017, 3.3), and the fraction at its end that is averaged
-_ENDLESS = 1e4  # s; longer than any lag of a cage; at level steady simulated time costs nothing
 _BATCH = 64  # points of level steady per task, which take milliseconds each; at higher levels each point is a task
 _LEAST_FRACTION = 0.01  # of the way to a draw of estimated numbers; below it the scene's own are taken
 _ABSENT = 0.05  # largest fraction of points without an answer
@@ -586,7 +585,7 @@ def settled(scene: Scene, conditions: np.ndarray | None = None) -> np.ndarray:
 
 def _settled_at(simulation: Simulation) -> tuple[float, float]:
     steady = simulation.scene.level == "steady"
-    length, samples = (_ENDLESS, 2) if steady else (_DURATION, _SAMPLES)
+    length, samples = (ENDLESS, 2) if steady else (_DURATION, _SAMPLES)
     block = simulation.advance(length, samples=samples)
     first = 0 if steady else round((1 - _SETTLED) * samples) - 1
     damage, elapsed = float(block["damage"][-1] - block["damage"][first]), float(block["time"][-1] - block["time"][first])

@@ -17,6 +17,7 @@ from bearing_sim.levels.common.support import place_support, resume_support, tai
 from bearing_sim.levels.slip import model as slip
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads, pitch_loads
+from bearing_sim.model.params import SUPPORT
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.growth import cold_growth
 from bearing_sim.physics.lamina_life import MOMENTS, write_lamina_means
@@ -135,18 +136,28 @@ def spatial_state_at(params, work, sample) -> np.ndarray:
 def _dynamic_state_at(at, params, work, sample):
     """Return a state without tilts and its part of the rollers, shape (BLOCK, Z); ``at`` as of `rolling_state`."""
     state, rollers = _new_state(at, params)
-    state[at.RING_Y], state[at.RING_Z] = sample["ring_y"], sample["ring_z"]
+    in_seat = _place_in_seat(params, sample)
+    ring = sample["ring_y"] + in_seat[0], sample["ring_z"] + in_seat[1]
+    state[at.RING_Y], state[at.RING_Z] = ring
     whirls = math.hypot(sample["cage_y"], sample["cage_z"]) > 0.0
-    centre = (sample["cage_y"], sample["cage_z"]) if whirls else first_cage_centre(params, sample["ring_y"], sample["ring_z"])
+    centre = (sample["cage_y"], sample["cage_z"]) if whirls else first_cage_centre(params, *ring)
     state[at.CAGE_Y], state[at.CAGE_Z] = centre
     state[at.THETA], state[at.OMEGA] = sample["cage_angle"], sample["cage_speed"]
-    rollers[at.R], rollers[at.PHI] = sample["roller_radius"], _roller_angles(sample)
+    along = in_seat[0] * np.cos(sample["roller_angle"]) + in_seat[1] * np.sin(sample["roller_angle"])
+    rollers[at.R], rollers[at.PHI] = sample["roller_radius"] + along, _roller_angles(sample)
     rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], _spins(params, sample)
     if sample["level"] in _VIBRATING:
         resume_support(params, state, sample)
     else:
-        place_support(params, state, (sample["ring_y"], sample["ring_z"]), (sample["load_y"], sample["load_z"]))
+        place_support(params, state, ring, (sample["load_y"], sample["load_z"]))
     return state, rollers
+
+
+def _place_in_seat(params, sample):
+    """Return where an outer ring that bends is in its housing by a sample, y, z [m]; on a support that moves both it is not known, and taken as 0."""
+    if params.outer_ring is None or params.support[SUPPORT.outer_moves] or not np.isfinite(sample["outer_ring_y"]):
+        return 0.0, 0.0
+    return sample["outer_ring_y"], sample["outer_ring_z"]
 
 
 def _new_state(at, params):

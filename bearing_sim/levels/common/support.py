@@ -89,8 +89,8 @@ def resume_support(params, state, sample) -> None:
         return
     tail = state[-TAIL:]
     for axis, name in enumerate("yz"):
-        outer = sample[f"outer_ring_{name}"]
-        tail[OUTER + axis] = outer if support[SUPPORT.outer_moves] else 0.0
+        outer = sample[f"outer_ring_{name}"] if support[SUPPORT.outer_moves] else 0.0
+        tail[OUTER + axis] = outer
         tail[SHAFT + axis] = sample[f"shaft_{name}"] - outer if support[SUPPORT.shaft_bends] else 0.0
 
 
