@@ -126,6 +126,28 @@ def test_a_support_carries_the_housing_in_which_the_ring_sits():
         assert np.abs(carried[name]).mean() == pytest.approx(np.abs(held[name]).mean(), rel=0.05), name
 
 
+@pytest.mark.parametrize("law", ["elastic, massive: true", "rigid_bore"])
+def test_a_housing_that_yields_as_a_whole_moves_the_ring_and_changes_no_load(law):
+    stiff, soft = (settle(paper(backed(law, "2 um", more), "operating.load_angle=40 deg")) for more in ("", ", radial_stiffness: 100 N/um"))
+    for name in ("cage_slip", "rating_life", "inner_load_maximum"):
+        assert getattr(soft, name) == pytest.approx(getattr(stiff, name), rel=1e-6), name
+    moved = [Simulation(paper(backed(law, "2 um", more), level="slip")).advance(1e-9, samples=1)[0] for more in ("", ", radial_stiffness: 100 N/um")]
+    assert moved[1]["outer_ring_y"] - moved[0]["outer_ring_y"] == pytest.approx(800.0 / 1e8, rel=1e-3)
+    assert moved[1]["ring_y"] == pytest.approx(moved[0]["ring_y"], abs=1e-10)
+
+
+def test_a_housing_that_yields_as_a_whole_lowers_the_resonance_of_the_inner_ring():
+    def period(more):
+        run = Simulation(paper(backed("elastic, massive: true", "0 um", more), "operating.shaft_speed=3000 rpm", level="planar"))
+        block = run.advance(0.02, samples=4000)
+        y = block["ring_y"] + block["outer_ring_y"]
+        y = y - y.mean()
+        power = np.abs(np.fft.rfft(y * np.hanning(len(y)))) ** 2
+        return 1 / (5 + np.argmax(power[5:]))
+
+    assert period(", radial_stiffness: 20 N/um") > 1.5 * period("")
+
+
 TURNED = 0.61
 
 

@@ -354,7 +354,8 @@ def test_the_ring_that_bends_follows_the_plain_forces_of_all_slices(play, seed):
     shrunk = max(-ring.play, 0.0) * elastic.shrunk / elastic.pressed  # is in the mean growth
     assert np.abs(moved[::per_pitch] + shrunk - bending.rollers[ROLLER.moved]).max() <= 1e-4 * largest
     yielding = (elastic.seat[np.abs(each[:, None] - each)] - elastic.between[np.abs(each[:, None] - each)]) @ seat
-    gap, wave = ring.play + yielding - moved, np.exp(1j * at)
+    wave = np.exp(1j * at)
+    gap = ring.play + yielding + elastic.radial * np.real(np.conj(wave) * (seat @ wave)) - moved  # the seat stays where it is
     pushed, held = pressed @ np.exp(1j * rollers), seat @ wave
     assert abs(pushed - held) <= 1e-4 * pressed.sum()
     assert (seat >= 0.0).all() and (gap >= -1e-4 * largest).all()

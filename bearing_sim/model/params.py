@@ -358,6 +358,7 @@ def _outer_ring(scene: Scene) -> ElasticRing | None:
         loose=seat_compliance(bearing, scene.mounting) if backing.play is None else 0.0,
         pressed=shrunk + float(compliances(np.zeros(1, int))[0]),
         shrunk=shrunk,
+        radial=0.0 if backing.law == "bed" or backing.radial_stiffness is None else 1.0 / backing.radial_stiffness,
     )
     return new_elastic_ring(ring, seat, bearing.roller.count, bearing.outer_ring.points)
 

@@ -73,6 +73,7 @@ class ElasticRing(NamedTuple):
     directions: np.ndarray  # cosine and sine of multiples of pitch/P, shape (2, P Z)
     seat: np.ndarray  # F + H at multiples of 2 pi/M, and a part in one wave that makes it regular and moves x alone [m/N], shape (M,)
     bore: np.ndarray  # how far the bore lies outside of its mean [m], periodic cubic table of `bearing_sim.physics.raceway`, shape (n, 4)
+    radial: float  # compliance of the housing against a force, by which the seat moves as a whole, less that part of ``seat`` [m/N]
     play: float  # radial play of the ring in the bore, negative for an interference [m]; NaN: by the seat's pressure
     loose: float  # play by a pressure that would close it, and the equivalent interference by pressure [m/Pa]
     pressed: float
@@ -88,7 +89,7 @@ class Bending(NamedTuple):
     """
 
     rollers: np.ndarray  # rows `ROLLER`, shape (len(ROLLER), Z)
-    points: np.ndarray  # rows `POINT`, shape (len(POINT), M + 2); the last two columns belong to x, in axes that stand still
+    points: np.ndarray  # rows `POINT`, shape (len(POINT), M + 2); the last two columns belong to x
     tableau: np.ndarray  # shape (N + 3, C)
     sides: np.ndarray  # `_OPEN`, `_TOUCHING` or `_UNSIGNED`, and how many pivots there were, int64, shape (N + 1,)
     matrix: np.ndarray  # of Newton's method, shape (Z, Z)
@@ -119,7 +120,7 @@ class PointRow(NamedTuple):
     """Rows of ``Bending.points``."""
 
     force: int = 0  # f at the points, which turn with the cage [N]; x, in axes that stand still [m]
-    gap: int = 1  # without forces [m]
+    gap: int = 1  # without forces [m]; where x begins, which contains a part of the seat's in one wave
 
 
 POINT = PointRow()
@@ -140,6 +141,7 @@ class Seat(NamedTuple):
     loose: float = 0.0
     pressed: float = 0.0
     shrunk: float = 0.0
+    radial: float = 0.0  # compliance against a force, by which the seat moves as a whole [m/N]
 
 
 def new_elastic_ring(section: RingSection, seat: Seat | None, rollers: int, points: int = _POINTS_A_PITCH) -> ElasticRing:
@@ -161,17 +163,18 @@ def new_elastic_ring(section: RingSection, seat: Seat | None, rollers: int, poin
     turning = -np.sin(np.multiply.outer(apart, n)) @ (n * compliances)
     common = waves @ compliances, turning, np.stack([np.cos(azimuths), np.sin(azimuths)])
     if seat is None:
-        return ElasticRing(*common, np.zeros(0), np.zeros((1, 4)), 0.0, 0.0, 0.0, 0.0)
+        return ElasticRing(*common, np.zeros(0), np.zeros((1, 4)), 0.0, 0.0, 0.0, 0.0, 0.0)
     housing = seat.compliances(n) / (math.pi * seat.radius * seat.width)  # by a force at one point
     housing[0] *= 0.5
     if count % 2 == 0:
         housing[-1] *= 0.5  # the finest wave has one phase
-    housing[1] += max(housing[2], _LEAST_COMPLIANCE)  # makes the matrix regular; it moves x, which the balance of forces determines
+    regular = max(housing[2], _LEAST_COMPLIANCE)
+    housing[1] += regular  # makes the matrix regular; it moves x, which the balance of forces determines, and is taken from the rollers
     knots = 2.0 * math.pi / _BORE_INTERVALS * np.arange(_BORE_INTERVALS)
     bore = np.asarray(seat.bore(knots), float)
     slopes = (np.roll(bore, -1) - np.roll(bore, 1)) / (2.0 * knots[1])
     table = contour_table(bore, slopes) if np.ptp(bore) > 0.0 else np.array([[0.0, 0.0, 0.0, bore[0]]])
-    return ElasticRing(*common, waves @ (compliances + housing), table, seat.play, seat.loose, seat.pressed, seat.shrunk)
+    return ElasticRing(*common, waves @ (compliances + housing), table, seat.radial - regular, seat.play, seat.loose, seat.pressed, seat.shrunk)
 
 
 def new_bending(elastic: ElasticRing, rollers_move: bool = False) -> Bending:
@@ -247,7 +250,7 @@ def _refresh(elastic, bending):
         for i in range(points):
             tableau[row, i] = -elastic.between[abs(parts * j - i)]
         for k in range(rollers):
-            tableau[row, points + k] = elastic.between[parts * abs(j - k)]
+            tableau[row, points + k] = elastic.between[parts * abs(j - k)] + elastic.radial * elastic.directions[0, parts * abs(j - k)]
         tableau[row, row] += bending.held[2]
     for axis in range(2):
         for i in range(points):
@@ -552,7 +555,7 @@ def _turned(y, z, cosine, sine):
 
 
 @kernel
-def _find_balance(load_y, load_z, allowed, shrunk, moving, press, law, stiffest, elastic, loads, bending):
+def _find_balance(load_y, load_z, allowed, shrunk, moving, press, law, typical, elastic, loads, bending):
     """Solve all equations, in axes that turn with the cage; return whether that converged.
 
     Parameters
@@ -561,12 +564,12 @@ def _find_balance(load_y, load_z, allowed, shrunk, moving, press, law, stiffest,
     shrunk : see `seat_gap`.
     moving : whether the places of the rollers are given, so that each is pressed by the outer ring alone.
     press, law : kernel ``(law, approaches, loads)`` that presses rollers, as `press_between_raceways` does, and what it needs.
-    stiffest : of the rollers [N/m], or less.
+    typical : stiffness of rollers, from which springs start [N/m].
     load_y, load_z, elastic, loads, bending : as of `balance_elastic_ring`.
     """
     points, size, held = elastic.seat.shape[0], bending.sides.shape[0] - 1, bending.held
     values = bending.tableau[size + 1]
-    before, descents, patience = math.inf, 0, 1
+    before, descents, patience, stiffest = math.inf, 0, 1, typical if held[2] == 0.0 else 0.0
     for _ in range(_ITERATIONS):
         for j in range(loads.shape[1]):
             stiffest = max(stiffest, loads[LOAD.slope, j])
@@ -616,26 +619,39 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     -------
     converged : bool
     """
-    points, size, held = elastic.seat.shape[0], bending.sides.shape[0] - 1, bending.held
+    size = bending.sides.shape[0] - 1
     cosine, sine = loads[LOAD.cosine, 0], loads[LOAD.sine, 0]
     shrunk = _turn_seat(turn, cosine, sine, pressure, elastic, bending)
     load_y, load_z = _turned(load_y, load_z, cosine, sine)
     allowed = _RELATIVE_RESIDUAL * math.hypot(load_y, load_z) + _LEAST_RESIDUAL
-    stiff, law = 0.5 * _typical_stiffness(stiffness, profile, held), (stiffness, profile)  # two contacts in series are half as stiff
-    if not _find_balance(load_y, load_z, allowed, shrunk, False, press_between_raceways, law, stiff, elastic, loads, bending):
+    law, typical = (stiffness, profile), 0.5 * typical_stiffness(stiffness, profile)  # two contacts in series are half as stiff
+    if not _find_balance(load_y, load_z, allowed, shrunk, False, press_between_raceways, law, typical, elastic, loads, bending):
         return False
     values = bending.tableau[size + 1]
-    y, z = -values[size - 2] - held[0], -values[size - 1] - held[1]
+    x_y, x_z = _place_in_housing(cosine, sine, elastic, bending)
+    y, z = -values[size - 2] - x_y, -values[size - 1] - x_z
     _conclude(y, z, elastic, loads, bending)
     ring[0], ring[1] = _turned(y, z, cosine, -sine)
-    bending.points[POINT.force, points], bending.points[POINT.force, points + 1] = _turned(held[0], held[1], cosine, -sine)
     return True
 
 
 @kernel
-def _typical_stiffness(stiffness, profile, held):
-    """Return the stiffness of a contact from which springs start [N/m], or 0 where they have started."""
-    return profile_force(_TYPICAL, stiffness, profile)[1] if held[2] == 0.0 else 0.0
+def _place_in_housing(cosine, sine, elastic, bending):
+    """Write where the ring is in its housing, and return it in axes that turn with the cage, of an angle of that cosine and sine [m]."""
+    points, parts, rows, held = elastic.seat.shape[0], elastic.turning.shape[0], bending.rollers, bending.held
+    y, z, places = held[0], held[1], bending.points
+    for j in range(rows.shape[1]):
+        y += elastic.radial * rows[ROLLER.force, j] * elastic.directions[0, parts * j]
+        z += elastic.radial * rows[ROLLER.force, j] * elastic.directions[1, parts * j]
+    places[POINT.gap, points], places[POINT.gap, points + 1] = _turned(held[0], held[1], cosine, -sine)
+    places[POINT.force, points], places[POINT.force, points + 1] = _turned(y, z, cosine, -sine)
+    return y, z
+
+
+@kernel
+def typical_stiffness(stiffness, profile):
+    """Return the stiffness of a contact from which springs start [N/m]."""
+    return profile_force(_TYPICAL, stiffness, profile)[1]
 
 
 @kernel
@@ -644,21 +660,21 @@ def _turn_seat(turn, cosine, sine, pressure, elastic, bending):
     points = elastic.seat.shape[0]
     play, shrunk = seat_gap(pressure, elastic)
     _look_at_bore(turn, play, elastic, bending)
-    x_y, x_z = bending.points[POINT.force, points], bending.points[POINT.force, points + 1]
+    x_y, x_z = bending.points[POINT.gap, points], bending.points[POINT.gap, points + 1]
     bending.held[0], bending.held[1] = _turned(x_y, x_z, cosine, sine)
     return shrunk
 
 
 @kernel
-def deflect_elastic_ring(turn, cosine, sine, pressure, press, law, stiffness, profile, elastic, loads, bending):
+def deflect_elastic_ring(angle, pressure, press, law, typical, elastic, loads, bending):
     """Find the deflections of the outer ring under rollers whose places are known.
 
     Parameters
     ----------
-    turn, cosine, sine : azimuth of the pocket of roller 0 [turns]; rollers count as if they stood in the middles of their pockets.
+    angle : azimuth of the pocket of roller 0 [rad]; rollers count as if they stood in the middles of their pockets.
     pressure, elastic : as of `balance_elastic_ring`.
     press, law : kernel ``(law, approaches, loads)`` that presses rollers outwards, as `press_outwards` does, and what it needs.
-    stiffness, profile : of contacts about as stiff, as of `balance_elastic_ring`.
+    typical : stiffness of a contact [N/m], see `typical_stiffness`.
     loads : array with rows `LOAD`; the squeeze goes in, of a roller against a rigid ring [m], and as ``free`` the approach at which its contact
         begins [m]; centrifugal is zero.
     bending : `Bending`, start and result: rows `ROLLER`.
@@ -667,18 +683,17 @@ def deflect_elastic_ring(turn, cosine, sine, pressure, press, law, stiffness, pr
     -------
     converged : bool
     """
-    points, rollers, parts, held, rows = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0], bending.held, bending.rollers
-    shrunk = _turn_seat(turn, cosine, sine, pressure, elastic, bending)
-    allowed = _LEAST_RESIDUAL
+    rollers, parts, rows = loads.shape[1], elastic.turning.shape[0], bending.rollers
+    cosine, sine, allowed = math.cos(angle), math.sin(angle), _LEAST_RESIDUAL
+    shrunk = _turn_seat(angle / (2.0 * math.pi), cosine, sine, pressure, elastic, bending)
     for j in range(rollers):
         allowed += _MOVING_RESIDUAL * loads[LOAD.outer, j]
-    stiffest = _typical_stiffness(stiffness, profile, held)
-    if not _find_balance(0.0, 0.0, allowed, shrunk, True, press, law, stiffest, elastic, loads, bending):
+    if not _find_balance(0.0, 0.0, allowed, shrunk, True, press, law, typical, elastic, loads, bending):
         return False
-    _conclude(-held[0], -held[1], elastic, loads, bending)
-    bending.points[POINT.force, points], bending.points[POINT.force, points + 1] = _turned(held[0], held[1], cosine, -sine)
+    y, z = _place_in_housing(cosine, sine, elastic, bending)
+    _conclude(-y, -z, elastic, loads, bending)
     for j in range(rollers):
-        along = held[1] * elastic.directions[0, parts * j] - held[0] * elastic.directions[1, parts * j]
+        along = z * elastic.directions[0, parts * j] - y * elastic.directions[1, parts * j]
         rows[ROLLER.moved, j] = loads[LOAD.squeeze, j] - loads[LOAD.approach, j]
         rows[ROLLER.slope, j] += along
     return True

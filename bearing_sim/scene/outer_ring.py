@@ -102,6 +102,9 @@ _PLAY = Annotated[
 ]
 
 
+_RADIAL = Annotated[float, Quantity("N/m", "radial load by the way that it moves the bore as a whole; None: it stays where it is", 1e5, 1e13)]
+
+
 @record
 class RigidBacking:
     """The ring is rigid, whatever is around it."""
@@ -121,6 +124,7 @@ class RigidBore:
     """The ring bends in a bore that does not yield."""
 
     law: Literal["rigid_bore"] = "rigid_bore"
+    radial_stiffness: _RADIAL | None = None
     play: _PLAY | None = None
     bore_waves: tuple[BoreWave, ...] = ()
 
@@ -131,6 +135,7 @@ class ElasticBacking:
 
     law: Literal["elastic"] = "elastic"
     massive: bool = False  # whether the housing is much larger than its bore
+    radial_stiffness: _RADIAL | None = None
     play: _PLAY | None = None
     bore_waves: tuple[BoreWave, ...] = ()
 

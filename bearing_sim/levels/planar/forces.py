@@ -55,7 +55,7 @@ from bearing_sim.physics.flange import axial_share
 from bearing_sim.physics.land import Land, land_contact, land_film, land_friction
 from bearing_sim.physics.pocket import pocket_friction_lanes, wall_force
 from bearing_sim.physics.profile import damped_profile_contact
-from bearing_sim.physics.ring_balance import deflect_elastic_ring, follow_rollers, press_outwards
+from bearing_sim.physics.ring_balance import deflect_elastic_ring, follow_rollers, press_outwards, typical_stiffness
 
 
 @fused
@@ -244,16 +244,14 @@ def _bend(y, outer_ring, model, work):
     """Let the outer ring give way to the rollers; return whether that was found.  ``outer_ring`` is that of the bearing, None where it is rigid."""
     if outer_ring is None:
         return True
-    raceways, loads, bending = model.params.raceways, work.ring_loads, work.bending
-    stiffness, profile, theta, pressure = raceways.stiffness, raceways.profile, y[THETA], model.lubrication.growth.housing_pressure
-    place_at_ring(ROLLER, CONTACT, theta, y[OMEGA], profile.highest, work.rollers, work.contacts, loads, work.ring_rates, bending)
-    turn, cosine, sine = theta / (2.0 * math.pi), math.cos(theta), math.sin(theta)
-    law = stiffness, profile
-    if not deflect_elastic_ring(turn, cosine, sine, pressure, press_outwards, law, stiffness, profile, outer_ring, loads, bending):
+    loads, bending, stiffness, profile = work.ring_loads, work.bending, model.params.raceways.stiffness, model.params.raceways.profile
+    place_at_ring(ROLLER, CONTACT, y[THETA], y[OMEGA], profile.highest, work.rollers, work.contacts, loads, work.ring_rates, bending)
+    law, typical, pressure = (stiffness, profile), typical_stiffness(stiffness, profile), model.lubrication.growth.housing_pressure
+    if not deflect_elastic_ring(y[THETA], pressure, press_outwards, law, typical, outer_ring, loads, bending):
         return False
     follow_rollers(loads, work.ring_rates, bending)
     give_way(ROLLER, CONTACT, profile.highest, work.rollers, work.contacts, loads, work.ring_rates, bending)
-    work.bent_at[0] = theta
+    work.bent_at[0] = y[THETA]
     return True
 
 

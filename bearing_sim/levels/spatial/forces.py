@@ -63,7 +63,7 @@ from bearing_sim.physics.contact import damped_line_contact
 from bearing_sim.physics.flange import axial_share
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.pocket import pocket_friction_lanes
-from bearing_sim.physics.ring_balance import deflect_elastic_ring, follow_rollers
+from bearing_sim.physics.ring_balance import deflect_elastic_ring, follow_rollers, typical_stiffness
 from bearing_sim.physics.traction import traction_along
 
 
@@ -381,18 +381,17 @@ def _bend(y, outer_ring, model, work):
     if outer_ring is None:
         return True
     params, rows, contacts, loads, bending, rates = model.params, work.rollers, work.contacts, work.ring_loads, work.bending, work.ring_rates
-    raceways, slices, theta, blocks = params.raceways, params.slices, y[THETA], work.rollers.shape[0]
-    place_at_ring(ROLLER, SLICED, theta, y[OMEGA], 0.0, rows, contacts, loads, rates, bending)
+    raceways, slices, blocks = params.raceways, params.slices, work.rollers.shape[0]
+    place_at_ring(ROLLER, SLICED, y[THETA], y[OMEGA], 0.0, rows, contacts, loads, rates, bending)
     for block in range(blocks):
         store(contacts, blocks + block, SLICED.rate, spread(0.0))
         store(contacts, blocks + block, SLICED.lean_rate, spread(0.0))
         store(rows, block, ROLLER.moved, -deepest(blocks + block, contacts, slices))
     for j in range(params.rollers.count):
         loads[LOAD.free, j] = rows[j // LANES, ROLLER.moved, j % LANES]
-    law = contacts, work.points, slices, raceways.stiffness, raceways.damping
-    turn, cosine, sine, pressure = theta / (2.0 * math.pi), math.cos(theta), math.sin(theta), model.lubrication.growth.housing_pressure
-    stiffness, profile = raceways.stiffness, raceways.profile
-    if not deflect_elastic_ring(turn, cosine, sine, pressure, press_outer_points, law, stiffness, profile, outer_ring, loads, bending):
+    law, pressure = (contacts, work.points, slices, raceways.stiffness, raceways.damping), model.lubrication.growth.housing_pressure
+    typical = typical_stiffness(raceways.stiffness, raceways.profile)
+    if not deflect_elastic_ring(y[THETA], pressure, press_outer_points, law, typical, outer_ring, loads, bending):
         return False
     for block in range(blocks):
         store(contacts, blocks + block, SLICED.lean_rate, load(rows, block, ROLLER.tilt_speed))
@@ -402,7 +401,7 @@ def _bend(y, outer_ring, model, work):
     for j in range(params.rollers.count):
         rates[j] -= _by_lean(blocks, j, contacts, loads) * rows[j // LANES, ROLLER.tilt_speed, j % LANES]
     give_way(ROLLER, SLICED, 0.0, rows, contacts, loads, rates, bending)
-    work.bent_at[0] = theta
+    work.bent_at[0] = y[THETA]
     return True
 
 
