@@ -79,6 +79,12 @@ EFFECTS = (
     ),
     Effect("bearing.flanges", LEVELS, "whose rollers rub on flanges", lambda scene: scene.bearing.flanges.present),
     Effect(
+        "mounting.housing.backing",
+        LEVELS,
+        "whose outer ring bends",
+        lambda scene: scene.mounting.housing.backing.law not in ("rigid", "free") and scene.mounting.housing.backing.law,
+    ),
+    Effect(
         "mounting.housing.backing.law",
         ("steady", "slip"),
         "at which the mass of a ring that nothing backs does not matter",
