@@ -24,6 +24,7 @@ from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.outer_ring import ring_geometry
 from bearing_sim.scene.scene import Scene
 from bearing_sim.studies.uncertainty_propagation import filled_in, varied_ranges
+from bearing_sim.sweep.ring_resonance import ring_resonance
 
 PAPER = "deng2017_table1"
 RING = "bearing.outer_ring={width: 10 mm, equivalent_thickness: 3.4 mm, area: 34 mm^2, neutral_radius: 35.8 mm, seat_radius: 37.5 mm, shear: false}"
@@ -130,22 +131,16 @@ def test_a_support_carries_the_housing_in_which_the_ring_sits():
 def test_a_housing_that_yields_as_a_whole_moves_the_ring_and_changes_no_load(law):
     stiff, soft = (settle(paper(backed(law, "2 um", more), "operating.load_angle=40 deg")) for more in ("", ", radial_stiffness: 100 N/um"))
     for name in ("cage_slip", "rating_life", "inner_load_maximum"):
-        assert getattr(soft, name) == pytest.approx(getattr(stiff, name), rel=1e-6), name
+        assert getattr(soft, name) == pytest.approx(getattr(stiff, name), rel=1e-4), name
     moved = [Simulation(paper(backed(law, "2 um", more), level="slip")).advance(1e-9, samples=1)[0] for more in ("", ", radial_stiffness: 100 N/um")]
     assert moved[1]["outer_ring_y"] - moved[0]["outer_ring_y"] == pytest.approx(800.0 / 1e8, rel=1e-3)
     assert moved[1]["ring_y"] == pytest.approx(moved[0]["ring_y"], abs=1e-10)
 
 
-def test_a_housing_that_yields_as_a_whole_lowers_the_resonance_of_the_inner_ring():
-    def period(more):
-        run = Simulation(paper(backed("elastic, massive: true", "0 um", more), "operating.shaft_speed=3000 rpm", level="planar"))
-        block = run.advance(0.02, samples=4000)
-        y = block["ring_y"] + block["outer_ring_y"]
-        y = y - y.mean()
-        power = np.abs(np.fft.rfft(y * np.hanning(len(y)))) ** 2
-        return 1 / (5 + np.argmax(power[5:]))
-
-    assert period(", radial_stiffness: 20 N/um") > 1.5 * period("")
+def test_a_housing_that_yields_as_a_whole_is_a_spring_in_series_beneath_the_inner_ring():
+    found = [ring_resonance(paper(backed("rigid_bore", "0 um", more), level="planar")) for more in ("", ", radial_stiffness: 100 N/um")]
+    stiff, soft = (1.0 / (each.moving_mass * (2 * math.pi * np.array(each.frequencies)) ** 2) for each in found)
+    assert soft - stiff == pytest.approx(1e-8, rel=0.05)  # of mean stiffnesses
 
 
 TURNED = 0.61
