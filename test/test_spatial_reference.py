@@ -325,6 +325,7 @@ class BentRing:
 BENT = pytest.mark.parametrize(("play", "seed"), [(0.0, 0), (0.0, 1), (3.0, 2), (40.0, 3), (-5.0, 4)])
 
 
+@pytest.mark.long
 @BENT
 def test_a_ring_that_bends_presses_the_plain_model_as_a_contour_that_moves(play, seed):
     ring = BentRing(play, seed)
@@ -337,6 +338,7 @@ def test_a_ring_that_bends_presses_the_plain_model_as_a_contour_that_moves(play,
         assert np.abs(rate - expected)[which == kind].max() <= 1e-4 * scale, kind
 
 
+@pytest.mark.long
 @BENT
 def test_the_ring_that_bends_follows_the_plain_forces_of_all_slices(play, seed):
     ring = BentRing(play, seed)
@@ -362,6 +364,7 @@ def test_the_ring_that_bends_follows_the_plain_forces_of_all_slices(play, seed):
     assert np.abs(gap[seat > 0.0]).max(initial=0.0) <= 1e-4 * largest
 
 
+@pytest.mark.long
 @BENT
 def test_a_ring_that_bends_keeps_the_books_of_level_spatial(play, seed):
     ring = BentRing(play, seed)
@@ -383,6 +386,7 @@ def test_a_ring_that_bends_keeps_the_books_of_level_spatial(play, seed):
     assert abs(gap + rows[ROLLER.force] @ rows[ROLLER.slope] * ring.state[BORDER_STATES - 1]) < 1e-3 * max(*powers, abs(stored))
 
 
+@pytest.mark.long
 @BENT
 def test_the_jacobian_of_a_roller_is_that_of_a_ring_that_gives_way(play, seed):
     ring = BentRing(play, seed, "bearing.contact.damping=0")
