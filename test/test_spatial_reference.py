@@ -15,6 +15,7 @@ from reference_planar import Reference
 from reference_spatial import SpatialReference, State
 from scipy.integrate import solve_ivp
 from test_planar_reference import GROWN, TIGHTER
+from test_power import HOUSED
 
 from bearing_sim import Simulation, load_scene
 from bearing_sim.levels.spatial import model as spatial
@@ -282,9 +283,6 @@ def test_energy_is_kept(crown):
     before, after = (reference.forces(plain(y)) for y in (state, end[:size]))
     gained = reference.energy(after) - reference.energy(before)
     assert work - heat.sum() - gained == pytest.approx(0.0, abs=1e-8 * (abs(work) + np.abs(heat).sum()))
-
-
-HOUSED = ["bearing.outer_ring={equivalent_thickness: 3.4 mm, seat_radius: 37.5 mm}", "mounting.housing.material=aluminium"]
 
 
 class BentRing:

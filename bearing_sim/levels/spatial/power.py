@@ -12,27 +12,22 @@ from bearing_sim.levels.common.power import Powers, seal_power, windage_powers
 from bearing_sim.levels.common.support import support_powers
 from bearing_sim.levels.planar.power import land_powers
 from bearing_sim.levels.spatial.forces import place_land
-from bearing_sim.levels.spatial.slices import damped_power, elastic_force
+from bearing_sim.levels.spatial.slices import damped_power
 from bearing_sim.levels.spatial.state import BORDER, CAGE_TILT_Y, CAGE_TILT_Z, CAGE_Y, CAGE_Z, OMEGA, ROLLER, SLICED
 from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.simd import LANES, larger, load, magnitude, spread, total, where_positive
+from bearing_sim.numerics.simd import LANES, larger, load, magnitude, spread, store, total, where_positive
 from bearing_sim.physics.contact import elastic_line_contact
 
 
 @kernel
-def _ring_damping(bending, cage_speed, params, work):
-    """Return the power lost in an outer ring that moves under what damps the contacts [W]; ``bending`` is None of a rigid ring."""
+def _ring_rates(block, bending, cage_speed, rows):
+    """Return how fast the outer ring moves outwards where a block of rollers is [m/s] (lanes); zeros of a rigid ring, whose ``bending`` is None."""
     if bending is None:
-        return 0.0
-    rows, contacts, count, lost = work.rollers, work.contacts, params.slices.points, 0.0
-    for j in range(params.rollers.count):
-        rows[j // LANES, ROLLER.moved, j % LANES] = ring_rate(bending, j, cage_speed)
-    for block in range(rows.shape[0]):
-        outer = rows.shape[0] + block
-        damped = load(contacts, outer, SLICED.load)
-        damped -= elastic_force(outer, contacts, work.points, work.first_points, count, params.raceways.stiffness)
-        lost += total(load(rows, block, ROLLER.present) * damped * load(rows, block, ROLLER.moved))
-    return lost
+        return spread(0.0)
+    store(rows, block, ROLLER.moved, spread(0.0))
+    for j in range(block * LANES, min((block + 1) * LANES, bending.rollers.shape[1])):
+        rows[block, ROLLER.moved, j % LANES] = ring_rate(bending, j, cage_speed)
+    return load(rows, block, ROLLER.moved)
 
 
 @kernel
@@ -45,7 +40,8 @@ def _contact_powers(first, y, params, work):
         traction = load(contacts, at, SLICED.force)
         slid = traction * load(contacts, at, SLICED.sliding) + load(contacts, at, SLICED.skewing) * load(contacts, at, SLICED.sliding_lean)
         resistance = load(contacts, at, SLICED.resistance)
-        lost = damped_power(at, contacts, work.points, work.first_points, count, params.raceways.stiffness, params.raceways.damping)
+        moving = _ring_rates(block, work.bending, y[OMEGA], work.rollers) if first > 0 else spread(0.0)
+        lost = damped_power(at, moving, contacts, work.points, work.first_points, count, params.raceways.stiffness, params.raceways.damping)
         sliding += total(present * slid)
         rolling += total(present * 2.0 * resistance * load(contacts, at, SLICED.rolling))
         damped += total(present * lost)
@@ -181,7 +177,7 @@ def spatial_powers(t, y, shaft_speed, model, work):
         windage,
         land,
         pocket,
-        inner_damped + outer_damped + _ring_damping(work.bending, y[OMEGA], params, work) + walls + touching + cornered,
+        inner_damped + outer_damped + walls + touching + cornered,
         seals,
         rubbing,
         support,

@@ -305,17 +305,6 @@ def soften_points(blocks, resists, contacts, bending):
                     contacts[block, by, lane] *= share
 
 
-@kernel
-def elastic_force(block, contacts, points, first_points, count, stiffness):
-    """Return the normal forces of a block of contacts without their damping [N] (lanes); parameters as of `press_points`, which has been called."""
-    force, first = spread(0.0), first_points[block]
-    for k in range(max(first, 0), first + count if first >= 0 else 0):
-        x = load(points, k, POSITION)
-        depth = load(contacts, block, SLICED.penetration) + load(contacts, block, SLICED.lean) * x - load(points, k, DROP)
-        force += load(points, k, FRACTION) * elastic_line_contact(depth, stiffness)
-    return force
-
-
 @fused
 def press_points(contacts, points, first_points, slices, stiffness, damping):
     """Write normal forces, tilting moments and their derivatives of all contacts, and what traction needs of the points that may bear.
@@ -447,15 +436,21 @@ def _store_changes(block, contacts, row, by_depth, by_lean, by_rate, by_lean_rat
 
 
 @kernel
-def damped_power(block, contacts, points, first_points, count, stiffness, damping):
-    """Return the power that the damping of a block of contacts takes [W] (lanes); parameters as of `press_points`, which has been called."""
+def damped_power(block, moving, contacts, points, first_points, count, stiffness, damping):
+    """Return the power that the damping of a block of contacts takes [W] (lanes).
+
+    Parameters
+    ----------
+    moving : speed of the raceway outwards, against which it works as well [m/s] (lanes).
+    block, contacts, points, first_points, count, stiffness, damping : as of `press_points`, which has been called.
+    """
     lost, first = spread(0.0), first_points[block]
     for k in range(max(first, 0), first + count if first >= 0 else 0):
         x = load(points, k, POSITION)
         depth = load(contacts, block, SLICED.penetration) + load(contacts, block, SLICED.lean) * x - load(points, k, DROP)
         rate = load(contacts, block, SLICED.rate) + load(contacts, block, SLICED.lean_rate) * x
         whole, _, _ = damped_line_contact(depth, rate, stiffness, damping)
-        lost += load(points, k, FRACTION) * ((whole - elastic_line_contact(depth, stiffness)) * rate)
+        lost += load(points, k, FRACTION) * ((whole - elastic_line_contact(depth, stiffness)) * (rate + moving))
     return lost
 
 
