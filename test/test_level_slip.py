@@ -15,6 +15,7 @@ from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.model import advance
 from bearing_sim.numerics.linear_algebra import ARROW
 from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.ring_balance import ElasticRing
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import IntegrationError, scene_inputs
 
@@ -386,12 +387,13 @@ def test_inputs_that_are_not_finite_are_refused_by_name(bad):
     assert run.time == 0.0
 
 
-def test_one_signature_serves_every_run():
-    # A second signature would be a compilation of seconds in the middle of a run.
+def test_one_signature_serves_every_run_with_a_rigid_outer_ring():
+    # A second signature would be a compilation of seconds in the middle of a run.  A ring that bends has one of its own,
+    # which a test before this one may have compiled.
     for rollers in (6, 18, 20):
         run = simulation(f"bearing.roller.count={rollers}", "operating.shaft_speed=9000 rad/s")
         run.advance(1, Inputs(5000, 1, 2, 390), samples=2) if rollers == 6 else run.advance(1e-3)
-    assert len(advance.signatures) == 1
+    assert [ElasticRing.__name__ in str(signature) for signature in advance.signatures].count(False) == 1
 
 
 def test_slip_comes_nearer_to_planar_when_told_of_an_eccentric_cage_and_of_pockets_that_act_back():
