@@ -59,6 +59,7 @@ _WRONG_FORCE, _WRONG_GAP = 1e-7, 1e-12  # of all forces; m
 _TYPICAL, _STIFFER = 1e-5, 1.1  # m, penetration at which contacts are no stiffer than springs at first; by what factor these are stiffer
 _REFRESHED = 4000  # pivots after which rounding is removed, some 1e-12 of the tableau
 _GROUP = 4 * LANES  # columns of a product that are computed at once
+_WAITING = 8  # pivots that the points' rows take at once
 _OPEN, _TOUCHING, _UNSIGNED, _GIVEN = 0, 1, 2, 3  # sides of what has a gap, of what has a force, of x and y, which have neither, and of a given y
 _ALIKE = 1.6  # stiffness of springs over that of contacts, up to which an iteration leaves less than half of the error before
 _RATE_ITERATIONS = 6  # of speeds
@@ -85,13 +86,16 @@ class Bending(NamedTuple):
 
     The tableau is the transform of N = M + Z + 4 equations by what touches: points, rollers, x, y; of the square the rows of the points end at the
     diagonal.  Three rows follow: constants by the gaps, solution, and what is added to it while sides change.  Columns are filled up to a multiple C
-    of `_GROUP`.
+    of `_GROUP`.  Only a later pivot looks at the rows of the points: changes of them wait for each other.
     """
 
     rollers: np.ndarray  # rows `ROLLER`, shape (len(ROLLER), Z)
     points: np.ndarray  # rows `POINT`, shape (len(POINT), M + 2); the last two columns belong to x
     tableau: np.ndarray  # shape (N + 3, C)
-    sides: np.ndarray  # `_OPEN`, `_TOUCHING` or `_UNSIGNED`, and how many pivots there were, int64, shape (N + 1,)
+    waiting: np.ndarray  # a row for each pivot u whose change -factor u u' the points' rows lack, shape (`_WAITING`, C)
+    factors: np.ndarray  # shape (`_WAITING`,)
+    pivots: np.ndarray  # since the tableau was written, and how many of them wait, int64, shape (2,)
+    sides: np.ndarray  # `_OPEN`, `_TOUCHING`, `_UNSIGNED` or `_GIVEN`, int64, shape (N,)
     matrix: np.ndarray  # of Newton's method, shape (Z, Z)
     right: np.ndarray  # shape (Z,)
     order: np.ndarray  # int64, shape (Z,)
@@ -188,14 +192,17 @@ def new_bending(elastic: ElasticRing, rollers_move: bool = False) -> Bending:
     rollers, points = (elastic.turning.shape[1] - _GROUP) // 2, elastic.seat.shape[0]
     equations = points + rollers + 4
     groups = -(-equations // _GROUP)
-    sides = np.full(equations + 1, _UNSIGNED)
-    sides[: points + rollers], sides[-1] = _TOUCHING, _REFRESHED
+    sides = np.full(equations, _UNSIGNED)
+    sides[: points + rollers] = _TOUCHING
     if rollers_move:
-        sides[-3:-1] = _GIVEN
+        sides[-2:] = _GIVEN
     return Bending(
         rollers=np.zeros((len(ROLLER), rollers)),
         points=np.zeros((len(POINT), points + 2)),
         tableau=new_blocks(4, (equations + 3) * groups).reshape(equations + 3, -1),
+        waiting=new_blocks(4, _WAITING * groups).reshape(_WAITING, -1),
+        factors=np.zeros(_WAITING),
+        pivots=np.array([_REFRESHED, 0]),
         sides=sides,
         matrix=np.zeros((rollers, rollers)),
         right=np.zeros(rollers),
@@ -216,21 +223,59 @@ def _add(factor, row, first, count, values):
 
 
 @kernel
-def _pivot(k, sense, points, column, tableau):
-    """Exchange what is given and what is found at an index, forwards (``sense`` 1) or back (-1); ``column`` is scratch."""
-    rows, size, inverse = tableau.shape[0], tableau.shape[0] - 3, 1.0 / tableau[k, k]
-    complete = size if k >= points else k + 1
+def _pivot(k, sense, points, tableau, waiting, factors, pivots):
+    """Exchange what is given and what is found at an index, forwards (``sense`` 1) or back (-1).
+
+    With u row k of the tableau T, of which u_k is the pivot, T loses its row and column k and u u'/pivot, in which u_k counts as -``sense``.
+    """
+    rows, size, count = tableau.shape[0], tableau.shape[0] - 3, pivots[1]
+    row, complete = waiting[count], size if k >= points else k + 1
     for i in range(complete):
-        column[i] = tableau[k, i]
-    for i in range(complete, size):
-        column[i] = tableau[i, k]
-    for j in range(rows):
-        part = inverse * (column[j] if j < size else tableau[j, k])
-        _add(-part, column, 0, j + 1 if j < points else size, tableau[j])
-        tableau[j, k] = sense * part
-    for i in range(complete):
-        tableau[k, i] = sense * inverse * column[i]
-    tableau[k, k] = -inverse
+        row[i] = tableau[k, i]
+    if k < points:
+        for i in range(k + 1, points):
+            row[i] = tableau[i, k]
+        for other in range(count):
+            _add(-factors[other] * waiting[other, k], waiting[other], 0, points, row)
+            waiting[other, k] = 0.0
+        for i in range(points, size):
+            row[i] = tableau[i, k]
+        for i in range(k):
+            tableau[k, i] = 0.0
+        for i in range(k, points):
+            tableau[i, k] = 0.0
+    else:
+        for i in range(size):
+            tableau[k, i] = 0.0
+    factor, row[k] = 1.0 / row[k], -sense
+    factors[count], pivots[1] = factor, count + 1
+    for j in range(points, rows):
+        part = row[j] if j < size else tableau[j, k]
+        tableau[j, k] = 0.0
+        _add(-factor * part, row, 0, size, tableau[j])
+    if count + 1 == factors.shape[0]:
+        _complete_points(points, tableau, waiting, factors, pivots)
+
+
+@kernel
+def _complete_points(points, tableau, waiting, factors, pivots):
+    """Change the points' rows by what waits."""
+    for j in range(points):
+        row = tableau[j]
+        for i in range(0, j + 1, _GROUP):
+            first, second = load_run(row, i), load_run(row, i + LANES)
+            third, fourth = load_run(row, i + 2 * LANES), load_run(row, i + 3 * LANES)
+            for k in range(pivots[1]):
+                part, change = -factors[k] * waiting[k, j], waiting[k]
+                first += part * load_run(change, i)
+                second += part * load_run(change, i + LANES)
+                third += part * load_run(change, i + 2 * LANES)
+                fourth += part * load_run(change, i + 3 * LANES)
+            store_run(row, i, first)
+            store_run(row, i + LANES, second)
+            store_run(row, i + 2 * LANES, third)
+            store_run(row, i + 3 * LANES, fourth)
+    pivots[1] = 0
 
 
 @kernel
@@ -238,6 +283,7 @@ def _refresh(elastic, bending):
     """Write the tableau anew for the points that touch."""
     points, rollers, tableau = elastic.seat.shape[0], (elastic.turning.shape[1] - _GROUP) // 2, bending.tableau
     parts, x, size = elastic.turning.shape[0], points + rollers, points + rollers + 4
+    bending.pivots[1] = 0
     for j in range(size + 1):
         for i in range(size):
             tableau[j, i] = 0.0
@@ -263,8 +309,8 @@ def _refresh(elastic, bending):
         tableau[x + axis, x + axis], tableau[x + 2 + axis, x + 2 + axis] = -_HOLDING_STIFFNESS, -_CENTRING_STIFFNESS
     for i in range(size):
         if bending.sides[i] == _TOUCHING or bending.sides[i] == _UNSIGNED:
-            _pivot(i, 1.0, points, bending.scratch, tableau)
-    bending.sides[size] = 0
+            _pivot(i, 1.0, points, tableau, bending.waiting, bending.factors, bending.pivots)
+    bending.pivots[0] = 0
 
 
 @kernel
@@ -276,47 +322,54 @@ def _settle(allowed, points, bending):
     allowed : force that counts as none [N].
     points : their number.
     """
-    tableau, sides, size, wrong = bending.tableau, bending.sides, bending.sides.shape[0] - 1, False
+    tableau, sides, size, wrong = bending.tableau, bending.sides, bending.sides.shape[0], False
     values, offsets = tableau[size + 1], tableau[size + 2]  # of what touches: negative
-    for i in range(size):
-        wrong = wrong or (sides[i] == _OPEN and values[i] < -_WRONG_GAP) or (sides[i] == _TOUCHING and values[i] > allowed)
+    for i in range(size):  # without branches: numba makes vectors of it
+        wrong |= ((sides[i] == _OPEN) & (values[i] < -_WRONG_GAP)) | ((sides[i] == _TOUCHING) & (values[i] > allowed))
     if not wrong:
         return 0
+    spread = 1
     for i in range(size):
         right, allowed_here = (1.0, _WRONG_GAP) if sides[i] == _OPEN else (-1.0, allowed)
         if sides[i] != _UNSIGNED and -allowed_here <= right * values[i] < 0.0:
             values[i] = 0.0
-        spread = 1e-3 * (1 + (i * 37) % 101)  # no two alike, so that no two reach zero together
-        offsets[i] = right * max(right * offsets[i], spread * abs(values[i])) - values[i]
+        offsets[i] = right * max(right * offsets[i], 1e-3 * spread * abs(values[i])) - values[i]
+        spread = spread + 37 if spread < 65 else spread - 64  # no two alike, so that no two reach zero together
     for change in range(_PIVOTS):
         first, highest = -1, 0.0
         for i in range(size):
-            if (sides[i] == _OPEN and values[i] < 0.0 and offsets[i] > 0.0) or (sides[i] == _TOUCHING and values[i] > 0.0 and offsets[i] < 0.0):
-                reached = -values[i] / offsets[i]
-                if reached > highest:
-                    first, highest = i, reached
+            right = 1.0 if sides[i] == _OPEN else -1.0 if sides[i] == _TOUCHING else 0.0
+            lacking, added = -right * values[i], right * offsets[i]
+            if added > 0.0 and lacking > highest * added:
+                first, highest = i, lacking / added
         if first < 0:
             return change
-        _pivot(first, 1.0 if sides[first] == _OPEN else -1.0, points, bending.scratch, tableau)
+        _pivot(first, 1.0 if sides[first] == _OPEN else -1.0, points, tableau, bending.waiting, bending.factors, bending.pivots)
         sides[first] = _TOUCHING if sides[first] == _OPEN else _OPEN
-        sides[size] += 1
+        bending.pivots[0] += 1
     return -1
 
 
 @kernel
 def _look_at_bore(turn, play, elastic, bending):
     """Write the gaps of the seat's points at a cage angle [turns], and what they change in the tableau's constants."""
-    points, intervals, tableau, size = elastic.seat.shape[0], elastic.bore.shape[0], bending.tableau, bending.sides.shape[0] - 1
-    changes, constants, gaps, changed = bending.scratch, tableau[size], bending.points[POINT.gap], False
+    points, intervals, changes, gaps, changed = elastic.seat.shape[0], elastic.bore.shape[0], bending.scratch, bending.points[POINT.gap], False
     for i in range(points):
         at = turn + i / points
         gap = play + (contour_at(elastic.bore, (at - math.floor(at)) * intervals)[0] if intervals > 1 else elastic.bore[0, 3])
         changes[i], gaps[i] = gap - gaps[i], gap
         changed = changed or changes[i] != 0.0
-    if not changed or bending.sides[size] >= _REFRESHED:
-        return
+    if changed and bending.pivots[0] < _REFRESHED:
+        _complete_points(points, bending.tableau, bending.waiting, bending.factors, bending.pivots)
+        _change_gaps(points, changes, bending.sides, bending.tableau)
+
+
+@kernel
+def _change_gaps(points, changes, sides, tableau):
+    """Change the tableau's constants by changes of the points' gaps [m], which are lost."""
+    size, constants = sides.shape[0], tableau[sides.shape[0]]
     for i in range(points):
-        if bending.sides[i] == _OPEN:
+        if sides[i] == _OPEN:
             constants[i] += changes[i]
             changes[i] = 0.0
     for i in range(size):
@@ -357,7 +410,7 @@ def _multiply(given, points, tableau):
 @kernel
 def _solve(load_y, load_z, shrunk, elastic, loads, bending):
     """Write the solution for the springs as they are; return whether there is one."""
-    points, rollers, parts, size = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0], bending.sides.shape[0] - 1
+    points, rollers, parts, size = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0], bending.sides.shape[0]
     tableau, sides, values, compliance = bending.tableau, bending.sides, bending.tableau[size + 1], bending.held[2]
     given, own = bending.given, bending.right
     allowed = abs(load_y) + abs(load_z) + 1.0
@@ -412,7 +465,7 @@ def press_outwards(law, approaches, loads):
 def _press_rollers(press, law, elastic, loads, bending):
     """Press all rollers at the approaches of the solution; return the largest force that it misses [N], of a roller or of the inner ring."""
     points, parts, sides, rows = elastic.seat.shape[0], elastic.turning.shape[0], bending.sides, bending.rollers
-    values, force_y, force_z, residual = bending.tableau[bending.sides.shape[0]], 0.0, 0.0, 0.0
+    values, force_y, force_z, residual = bending.tableau[bending.sides.shape[0] + 1], 0.0, 0.0, 0.0
     approaches = bending.right
     for j in range(loads.shape[1]):
         approach, pressed, value = loads[LOAD.free, j] + rows[ROLLER.opens, j], 0.0, values[points + j]
@@ -529,7 +582,7 @@ def _approach_tangents(points, loads, bending):
 def _conclude(y, z, elastic, loads, bending):
     """Write what follows from a solution: forces of the seat, deflections at the rollers and their slopes; y, z is the position of the inner ring."""
     points, rollers, parts = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0]
-    rows, pressed, values = bending.rollers, bending.points[POINT.force], bending.tableau[bending.sides.shape[0]]
+    rows, pressed, values = bending.rollers, bending.points[POINT.force], bending.tableau[bending.sides.shape[0] + 1]
     slopes = bending.scratch
     for j in range(rollers):
         slopes[j] = 0.0
@@ -567,15 +620,15 @@ def _find_balance(load_y, load_z, allowed, shrunk, moving, press, law, typical, 
     typical : stiffness of rollers, from which springs start [N/m].
     load_y, load_z, elastic, loads, bending : as of `balance_elastic_ring`.
     """
-    points, size, held = elastic.seat.shape[0], bending.sides.shape[0] - 1, bending.held
+    points, size, held = elastic.seat.shape[0], bending.sides.shape[0], bending.held
     values = bending.tableau[size + 1]
     before, descents, patience, stiffest = math.inf, 0, 1, typical if held[2] == 0.0 else 0.0
     for _ in range(_ITERATIONS):
         for j in range(loads.shape[1]):
             stiffest = max(stiffest, loads[LOAD.slope, j])
         if held[2] == 0.0 or stiffest * held[2] > 1.0:
-            held[2], bending.sides[size] = 1.0 / (_STIFFER * stiffest), _REFRESHED
-        if bending.sides[size] >= _REFRESHED:
+            held[2], bending.pivots[0] = 1.0 / (_STIFFER * stiffest), _REFRESHED
+        if bending.pivots[0] >= _REFRESHED:
             _refresh(elastic, bending)
         if not _solve(load_y, load_z, shrunk, elastic, loads, bending):
             break
@@ -594,7 +647,7 @@ def _find_balance(load_y, load_z, allowed, shrunk, moving, press, law, typical, 
             _approach_tangents(points, loads, bending)
         elif not _move_springs(descents == 0, points, loads, bending):
             break
-    bending.sides[size] = _REFRESHED  # nothing of a failure is left for the next call
+    bending.pivots[0] = _REFRESHED  # nothing of a failure is left for the next call
     for i in range(size):
         values[i] = 0.0
     for j in range(loads.shape[1]):
@@ -619,7 +672,7 @@ def balance_elastic_ring(load_y, load_z, turn, pressure, stiffness, profile, ela
     -------
     converged : bool
     """
-    size = bending.sides.shape[0] - 1
+    size = bending.sides.shape[0]
     cosine, sine = loads[LOAD.cosine, 0], loads[LOAD.sine, 0]
     shrunk = _turn_seat(turn, cosine, sine, pressure, elastic, bending)
     load_y, load_z = _turned(load_y, load_z, cosine, sine)
