@@ -92,8 +92,8 @@ class Bending(NamedTuple):
     rollers: np.ndarray  # rows `ROLLER`, shape (len(ROLLER), Z)
     points: np.ndarray  # rows `POINT`, shape (len(POINT), M + 2); the last two columns belong to x
     tableau: np.ndarray  # shape (N + 3, C)
-    waiting: np.ndarray  # a row for each pivot u whose change -factor u u' the points' rows lack, shape (`_WAITING`, C)
-    factors: np.ndarray  # shape (`_WAITING`,)
+    waiting: np.ndarray  # a row u for each pivot whose change factor u u' the points' rows lack, shape (`_WAITING`, C)
+    factors: np.ndarray  # of those, and scratch, shape (2, `_WAITING`)
     pivots: np.ndarray  # since the tableau was written, and how many of them wait, int64, shape (2,)
     sides: np.ndarray  # `_OPEN`, `_TOUCHING`, `_UNSIGNED` or `_GIVEN`, int64, shape (N,)
     matrix: np.ndarray  # of Newton's method, shape (Z, Z)
@@ -201,7 +201,7 @@ def new_bending(elastic: ElasticRing, rollers_move: bool = False) -> Bending:
         points=np.zeros((len(POINT), points + 2)),
         tableau=new_blocks(4, (equations + 3) * groups).reshape(equations + 3, -1),
         waiting=new_blocks(4, _WAITING * groups).reshape(_WAITING, -1),
-        factors=np.zeros(_WAITING),
+        factors=np.zeros((2, _WAITING)),
         pivots=np.array([_REFRESHED, 0]),
         sides=sides,
         matrix=np.zeros((rollers, rollers)),
@@ -215,6 +215,24 @@ def new_bending(elastic: ElasticRing, rollers_move: bool = False) -> Bending:
 
 
 @fused
+def _combine(values, factors, rows, first, count, found):
+    """Write ``count`` values plus rows, from index ``first`` on, times a factor for each row; or a few more values that fill up a `_GROUP`."""
+    for i in range(0, count, _GROUP):
+        one, two = load_run(values, i), load_run(values, i + LANES)
+        three, four = load_run(values, i + 2 * LANES), load_run(values, i + 3 * LANES)
+        for k in range(rows.shape[0]):
+            factor, row, at = factors[k], rows[k], first + i
+            one += factor * load_run(row, at)
+            two += factor * load_run(row, at + LANES)
+            three += factor * load_run(row, at + 2 * LANES)
+            four += factor * load_run(row, at + 3 * LANES)
+        store_run(found, i, one)
+        store_run(found, i + LANES, two)
+        store_run(found, i + 2 * LANES, three)
+        store_run(found, i + 3 * LANES, four)
+
+
+@fused
 def _add(factor, row, first, count, values):
     """Add a multiple of a row, from an index on, to ``count`` values, or a few more that fill up a `_GROUP`."""
     for start in range(0, count, _GROUP):
@@ -222,59 +240,45 @@ def _add(factor, row, first, count, values):
             store_run(values, i, load_run(values, i) + factor * load_run(row, first + i))
 
 
+@fused
+def _take_changes(k, row, width, count, waiting, factors):
+    """Change row k of a point by what waits."""
+    for other in range(count):
+        factors[1, other] = factors[0, other] * waiting[other, k]
+    _combine(row, factors[1], waiting[:count], 0, width, row)
+
+
 @kernel
-def _pivot(k, sense, points, tableau, waiting, factors, pivots):
+def _pivot(k, sense, points, pivots, tableau, waiting, factors):
     """Exchange what is given and what is found at an index, forwards (``sense`` 1) or back (-1).
 
     With u row k of the tableau T, of which u_k is the pivot, T loses its row and column k and u u'/pivot, in which u_k counts as -``sense``.
     """
-    rows, size, count = tableau.shape[0], tableau.shape[0] - 3, pivots[1]
+    count, size = pivots[1], tableau.shape[0] - 3
     row, complete = waiting[count], size if k >= points else k + 1
     for i in range(complete):
-        row[i] = tableau[k, i]
+        row[i], tableau[k, i] = tableau[k, i], 0.0
     if k < points:
         for i in range(k + 1, points):
-            row[i] = tableau[i, k]
+            row[i], tableau[i, k] = tableau[i, k], 0.0
+        _take_changes(k, row, points, count, waiting, factors)
         for other in range(count):
-            _add(-factors[other] * waiting[other, k], waiting[other], 0, points, row)
             waiting[other, k] = 0.0
         for i in range(points, size):
             row[i] = tableau[i, k]
-        for i in range(k):
-            tableau[k, i] = 0.0
-        for i in range(k, points):
-            tableau[i, k] = 0.0
-    else:
-        for i in range(size):
-            tableau[k, i] = 0.0
-    factor, row[k] = 1.0 / row[k], -sense
-    factors[count], pivots[1] = factor, count + 1
-    for j in range(points, rows):
-        part = row[j] if j < size else tableau[j, k]
-        tableau[j, k] = 0.0
-        _add(-factor * part, row, 0, size, tableau[j])
-    if count + 1 == factors.shape[0]:
-        _complete_points(points, tableau, waiting, factors, pivots)
+    factors[0, count], row[k], pivots[1] = -1.0 / row[k], -sense, count + 1
+    for j in range(points, size + 3):
+        part, tableau[j, k] = row[j] if j < size else tableau[j, k], 0.0
+        _add(factors[0, count] * part, row, 0, size, tableau[j])
+    if pivots[1] == _WAITING:
+        _complete_points(points, pivots, tableau, waiting, factors)
 
 
 @kernel
-def _complete_points(points, tableau, waiting, factors, pivots):
+def _complete_points(points, pivots, tableau, waiting, factors):
     """Change the points' rows by what waits."""
     for j in range(points):
-        row = tableau[j]
-        for i in range(0, j + 1, _GROUP):
-            first, second = load_run(row, i), load_run(row, i + LANES)
-            third, fourth = load_run(row, i + 2 * LANES), load_run(row, i + 3 * LANES)
-            for k in range(pivots[1]):
-                part, change = -factors[k] * waiting[k, j], waiting[k]
-                first += part * load_run(change, i)
-                second += part * load_run(change, i + LANES)
-                third += part * load_run(change, i + 2 * LANES)
-                fourth += part * load_run(change, i + 3 * LANES)
-            store_run(row, i, first)
-            store_run(row, i + LANES, second)
-            store_run(row, i + 2 * LANES, third)
-            store_run(row, i + 3 * LANES, fourth)
+        _take_changes(j, tableau[j], j + 1, pivots[1], waiting, factors)
     pivots[1] = 0
 
 
@@ -309,7 +313,7 @@ def _refresh(elastic, bending):
         tableau[x + axis, x + axis], tableau[x + 2 + axis, x + 2 + axis] = -_HOLDING_STIFFNESS, -_CENTRING_STIFFNESS
     for i in range(size):
         if bending.sides[i] == _TOUCHING or bending.sides[i] == _UNSIGNED:
-            _pivot(i, 1.0, points, tableau, bending.waiting, bending.factors, bending.pivots)
+            _pivot(i, 1.0, points, bending.pivots, tableau, bending.waiting, bending.factors)
     bending.pivots[0] = 0
 
 
@@ -344,7 +348,7 @@ def _settle(allowed, points, bending):
                 first, highest = i, lacking / added
         if first < 0:
             return change
-        _pivot(first, 1.0 if sides[first] == _OPEN else -1.0, points, tableau, bending.waiting, bending.factors, bending.pivots)
+        _pivot(first, 1.0 if sides[first] == _OPEN else -1.0, points, bending.pivots, tableau, bending.waiting, bending.factors)
         sides[first] = _TOUCHING if sides[first] == _OPEN else _OPEN
         bending.pivots[0] += 1
     return -1
@@ -360,7 +364,7 @@ def _look_at_bore(turn, play, elastic, bending):
         changes[i], gaps[i] = gap - gaps[i], gap
         changed = changed or changes[i] != 0.0
     if changed and bending.pivots[0] < _REFRESHED:
-        _complete_points(points, bending.tableau, bending.waiting, bending.factors, bending.pivots)
+        _complete_points(points, bending.pivots, bending.tableau, bending.waiting, bending.factors)
         _change_gaps(points, changes, bending.sides, bending.tableau)
 
 
@@ -388,26 +392,6 @@ def _change_gaps(points, changes, sides, tableau):
 
 
 @kernel
-def _multiply(given, points, tableau):
-    """Write the solution for what is given to all equations but the points'."""
-    size = tableau.shape[0] - 3
-    constants, values = tableau[size], tableau[size + 1]
-    for i in range(0, size, _GROUP):
-        first, second = load_run(constants, i), load_run(constants, i + LANES)
-        third, fourth = load_run(constants, i + 2 * LANES), load_run(constants, i + 3 * LANES)
-        for k in range(points, size):
-            factor, row = given[k - points], tableau[k]
-            first += factor * load_run(row, i)
-            second += factor * load_run(row, i + LANES)
-            third += factor * load_run(row, i + 2 * LANES)
-            fourth += factor * load_run(row, i + 3 * LANES)
-        store_run(values, i, first)
-        store_run(values, i + LANES, second)
-        store_run(values, i + 2 * LANES, third)
-        store_run(values, i + 3 * LANES, fourth)
-
-
-@kernel
 def _solve(load_y, load_z, shrunk, elastic, loads, bending):
     """Write the solution for the springs as they are; return whether there is one."""
     points, rollers, parts, size = elastic.seat.shape[0], loads.shape[1], elastic.turning.shape[0], bending.sides.shape[0]
@@ -429,7 +413,7 @@ def _solve(load_y, load_z, shrunk, elastic, loads, bending):
             gap = bending.rollers[ROLLER.opens, j] + loads[LOAD.free, j] + shrunk - loads[LOAD.squeeze, j] - compliance * carried
             touches = sides[points + j] == _TOUCHING
             given[j], own[j] = (-gap, carried) if touches else (carried, gap)
-        _multiply(given, points, tableau)
+        _combine(tableau[size], given, tableau[points:size], 0, size, values)
         for j in range(rollers):
             values[points + j] += own[j]
         changes = _settle(_WRONG_FORCE * allowed, points, bending)
