@@ -40,6 +40,9 @@ _REAL_TIME = {
     "test_view",
 }
 
+# Each would compile the equations of the dynamic levels for itself.
+_DYNAMIC = {"test_flanges", "test_level_planar", "test_planar_reference", "test_power", "test_spatial_reference", "test_support"}
+
 # What draws beside a solver: on two cores with another test on one of them, the server of the view, in idle time, never gets to run.
 _ALONE = {"test_bench_view", "test_frozen_viewer", "test_view"}
 
@@ -52,11 +55,11 @@ def pytest_configure():
 
 @pytest.hookimpl(tryfirst=True)  # before xdist reads the groups
 def pytest_collection_modifyitems(items):
-    """Keep the tests of a file together, and all files that run something in real time."""
+    """Keep the tests of a file together, all files that run something in real time, and all that compile the same."""
     for item in items:
         name = item.path.stem
         is_real_time = name in _REAL_TIME or (name.startswith("test_node") and name != "test_node_lifecycle")  # which is long, and in no hurry
-        item.add_marker(pytest.mark.xdist_group("real_time" if is_real_time else name))
+        item.add_marker(pytest.mark.xdist_group("real_time" if is_real_time else "dynamic" if name in _DYNAMIC else name))
         if name in _ALONE:
             item.add_marker(pytest.mark.alone)
 

@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -54,6 +55,7 @@ MOST_FLOORS = 10  # including launch_scripts, which import ros
 MOST_ROOMS, MOST_ARROWS = 18, 90
 
 
+@cache
 def _imports(path):
     """Return (third-party top level, or dotted name inside bearing_sim) of every import in a file, wherever it stands."""
     found = set()

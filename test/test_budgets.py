@@ -19,7 +19,7 @@ BUDGETS = {
     "numerics": 13_940,
     "sweep": 23_230,
     "model": 23_920,
-    "physics": 34_700,
+    "physics": 35_050,
     "ros": 30_565,
     "recording": 30_560,
     "inputs": 31_844,

@@ -79,6 +79,7 @@ def test_intensity_is_the_power_over_the_area_of_a_hertzian_contact_under_a_load
         assert 0.3 * each.load < load < found.loaded
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", BEARINGS)
 def test_growing_intervals_warm_a_bearing_as_a_plain_run_with_short_ones_does(name):
     scene = cold_scene(of(name))
@@ -133,6 +134,7 @@ def test_times_grow_evenly_up_to_the_end(first, duration):
     assert {60.0, 300.0} & set(times) == {each for each in (60.0, 300.0) if each < duration}
 
 
+@pytest.mark.long
 def test_the_command_reports_draws_and_refuses(tmp_path):
     def call(*arguments):
         return CliRunner().invoke(main, ["study", "cold-start", "nu215_rig", *arguments])

@@ -91,6 +91,7 @@ def test_the_map_says_of_every_raceway_whether_it_meets_the_limits(designed):
         assert row["meets_nominal"] == (border.low_from <= row[LOW] <= border.low_to)
 
 
+@pytest.mark.long
 def test_borders_do_not_hang_on_the_grid_they_were_found_from(designed):
     coarse = found(radii="34.859mm:34.868mm:4", d_values="0.105mm")
     for kind in (NOMINAL, WORST):
@@ -163,6 +164,7 @@ def within_the_papers_d_values(path):
 EXACT = ["--speed-tolerance", "0", "--load-tolerance", "0", "--verify-level", "none"]
 
 
+@pytest.mark.long
 def test_what_stands_beside_the_paper_spans_its_d_values_whatever_the_grid(tmp_path):
     def within(d_values):
         words = [*WORDS, "--d-value", d_values, "-o", str(tmp_path / "w.parquet"), *EXACT, "--json", "--force"]

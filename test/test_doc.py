@@ -31,6 +31,7 @@ def test_the_documents_build_without_a_warning_and_without_a_broken_internal_lin
     assert build.stderr.strip() == ""
 
 
+@pytest.mark.long
 def test_the_generated_reference_has_an_entry_for_what_the_code_declares(built):
     from bearing_sim.messages import topics
     from bearing_sim.model.sample import OBSERVABLES
@@ -50,6 +51,7 @@ def test_the_generated_reference_has_an_entry_for_what_the_code_declares(built):
         assert [name for name in names if name not in re.sub(r"<[^>]+>", "", text)] == [], page
 
 
+@pytest.mark.long
 def test_pages_need_no_network_and_every_equation_is_mathml(built):
     pytest.importorskip("math_core", reason="equations become MathML by math-core (pip install 'bearing_sim[doc]')")
     _, html = built

@@ -9,6 +9,7 @@ ROOT = Path(__file__).resolve().parent.parent
 CHECKED = ["bearing_sim", "launch_scripts", "setup.py", "test"]
 
 
+@pytest.mark.long
 @pytest.mark.flake8
 @pytest.mark.linter
 def test_ament_flake8_finds_no_fault(monkeypatch):

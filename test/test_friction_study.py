@@ -294,6 +294,7 @@ def test_a_slow_loaded_bearing_rubs_as_skf_says(bearing, oil, celsius, kilonewto
     assert smooth.model < 1.1 * before * found.skf  # by hydrodynamic resistance to rolling alone
 
 
+@pytest.mark.long
 def test_the_command_shows_parts_by_film_ratio(monkeypatch):
     monkeypatch.setattr(catalogue_friction, "FILM_BEARINGS", ("NU 205",))
     monkeypatch.setattr(catalogue_friction, "BEARINGS", ("NU 205",))

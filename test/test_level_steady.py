@@ -343,6 +343,7 @@ def test_a_cage_that_skids_begins_to_skid_and_idles_as_at_level_slip():
     assert slip.max() > 0.4 and np.abs(steady - slip).max() < 0.006
 
 
+@pytest.mark.long
 def test_samples_of_a_table_may_be_far_apart_on_the_way_of_a_cage():
     """A load that falls and a speed that rises within a turn and a half of the cage, in one sample and in thirty."""
     of, found = idling("steady", load="1.5 kN", table=empty_table()).scene, []

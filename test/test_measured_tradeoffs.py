@@ -167,6 +167,7 @@ def test_a_trade_says_where_it_is_kept_unless_it_is_not(folder, monkeypatch):
     }
 
 
+@pytest.mark.long
 def test_errors_against_a_level_that_leaves_something_out_are_not_kept(folder):
     result = CliRunner().invoke(main, [*WORDS, "--against", "slip"])
     assert result.exit_code == 0, result.output

@@ -12,6 +12,7 @@ LEFT_OUT = ["D100", "D101", "D102", "D103", "D104", "D105", "D106", "D107", "D40
 INSTEAD = ["D415"]  # of D400: a first line may end with a question mark
 
 
+@pytest.mark.long
 @pytest.mark.linter
 @pytest.mark.pep257
 def test_ament_pep257_finds_no_fault(monkeypatch, capsys):

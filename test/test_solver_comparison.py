@@ -39,6 +39,7 @@ def test_every_integrator_is_compared_with_lsoda_at_both_speeds(report):
         assert case["lsoda_ratio"] > 0 and 0 < case["trajectory_error"] < 1
 
 
+@pytest.mark.long
 def test_other_solvers_are_on_the_same_course(report):
     named = {run["solver"] for run in report["others"]}
     assert named >= {"LSODA", "CVODE"}
@@ -48,12 +49,14 @@ def test_other_solvers_are_on_the_same_course(report):
         assert reference["trajectory_own_error"] < 1e-6
 
 
+@pytest.mark.long
 def test_kernels_and_the_rest_make_up_a_step(report):
     for bound in report["bound"]:
         assert all(spent > 0 for name, spent in bound["kernel_us"].items() if name != "jacobian"), bound
         assert sum(bound["fraction"].values()) == pytest.approx(1.0)
 
 
+@pytest.mark.long
 def test_every_level_is_measured_with_more_rollers_and_fewer(report):
     assert [level["level"] for level in report["scaling"]] == list(MEASURED)
     for level in report["scaling"]:
@@ -61,6 +64,7 @@ def test_every_level_is_measured_with_more_rollers_and_fewer(report):
         assert all(spent > 0 for spent in level["core_seconds_per_second"]) and np.isfinite(level["exponent"])
 
 
+@pytest.mark.long
 def test_the_tables_name_every_level_integrator_and_solver(report, capsys):
     print_report(report)
     told = capsys.readouterr().out

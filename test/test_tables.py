@@ -186,6 +186,7 @@ def test_condition_outside_the_table_is_solved_for_and_not_extrapolated(small, i
     assert np.isnan(look_up(table, [(inputs[0], math.hypot(*inputs[1:3]), inputs[3], 0.0)])).all()
 
 
+@pytest.mark.long
 def test_table_with_an_axis_of_growth_agrees_with_the_solver_between_its_knots():
     scene = load_scene("deng2017_table1", [*SMALL, "bearing.dimensions_at=cold", "bearing.clearance=20 um", "table.tolerance=5 %"])
     params = pack(scene)
@@ -434,6 +435,7 @@ def test_symmetry_of_the_contour_is_found(overrides, period, mirrored):
         np.testing.assert_allclose(outer_contour(outer, axis + azimuths)[0], outer_contour(outer, axis - azimuths)[0], atol=2e-9)
 
 
+@pytest.mark.long
 def test_contour_without_symmetry_gets_nodes_for_both_senses_only_where_wanted():
     def table(reverse):
         scene = load_scene("deng2017_table1", ["bearing.outer_raceway.roundness=6 um"])
@@ -534,6 +536,7 @@ def test_clearances_within_a_step_share_a_table_and_others_do_not():
     assert path(56, corrected) != path(60, corrected)
 
 
+@pytest.mark.long
 @pytest.mark.timeout(600)
 def test_a_table_is_taken_for_another_clearance_and_for_another_machine(monkeypatch, tmp_path):
     monkeypatch.setattr(store, "FOLDER", tmp_path)

@@ -184,6 +184,7 @@ def test_residual_slip_is_written_in_points_and_a_zero_line_beside_it(tmp_path):
     assert set(column(tmp_path / "run.rrd", "/slip/no_residual")[1]) == {0.0}
 
 
+@pytest.mark.long
 def test_a_long_run_is_thinned_out_but_for_what_happened(tmp_path):
     seconds, rate, event = 260.0, 400.0, 200.0
     block = synthetic_block(SLIP, np.arange(1, round(seconds * rate) + 1) / rate, slips=(0.01, 0.02))
