@@ -86,7 +86,7 @@ class Bending(NamedTuple):
 
     The tableau is the transform of N = M + Z + 4 equations by what touches: points, rollers, x, y; of the square the rows of the points end at the
     diagonal.  Three rows follow: constants by the gaps, solution, and what is added to it while sides change.  Columns are filled up to a multiple C
-    of `_GROUP`.  Only a later pivot looks at the rows of the points: changes of them wait for each other.
+    of `_GROUP`.  Only a later pivot looks at the rows of the points, so their changes wait and are made together.
     """
 
     rollers: np.ndarray  # rows `ROLLER`, shape (len(ROLLER), Z)
@@ -215,17 +215,17 @@ def new_bending(elastic: ElasticRing, rollers_move: bool = False) -> Bending:
 
 
 @fused
-def _combine(values, factors, rows, first, count, found):
-    """Write ``count`` values plus rows, from index ``first`` on, times a factor for each row; or a few more values that fill up a `_GROUP`."""
+def _combine(values, factors, rows, count, found):
+    """Write ``count`` values plus rows times a factor for each row; or a few more values that fill up a `_GROUP`."""
     for i in range(0, count, _GROUP):
         one, two = load_run(values, i), load_run(values, i + LANES)
         three, four = load_run(values, i + 2 * LANES), load_run(values, i + 3 * LANES)
         for k in range(rows.shape[0]):
-            factor, row, at = factors[k], rows[k], first + i
-            one += factor * load_run(row, at)
-            two += factor * load_run(row, at + LANES)
-            three += factor * load_run(row, at + 2 * LANES)
-            four += factor * load_run(row, at + 3 * LANES)
+            factor, row = factors[k], rows[k]
+            one += factor * load_run(row, i)
+            two += factor * load_run(row, i + LANES)
+            three += factor * load_run(row, i + 2 * LANES)
+            four += factor * load_run(row, i + 3 * LANES)
         store_run(found, i, one)
         store_run(found, i + LANES, two)
         store_run(found, i + 2 * LANES, three)
@@ -245,7 +245,7 @@ def _take_changes(k, row, width, count, waiting, factors):
     """Change row k of a point by what waits."""
     for other in range(count):
         factors[1, other] = factors[0, other] * waiting[other, k]
-    _combine(row, factors[1], waiting[:count], 0, width, row)
+    _combine(row, factors[1], waiting[:count], width, row)
 
 
 @kernel
@@ -413,7 +413,7 @@ def _solve(load_y, load_z, shrunk, elastic, loads, bending):
             gap = bending.rollers[ROLLER.opens, j] + loads[LOAD.free, j] + shrunk - loads[LOAD.squeeze, j] - compliance * carried
             touches = sides[points + j] == _TOUCHING
             given[j], own[j] = (-gap, carried) if touches else (carried, gap)
-        _combine(tableau[size], given, tableau[points:size], 0, size, values)
+        _combine(tableau[size], given, tableau[points:size], size, values)
         for j in range(rollers):
             values[points + j] += own[j]
         changes = _settle(_WRONG_FORCE * allowed, points, bending)
