@@ -353,6 +353,10 @@ def test_the_ring_that_bends_follows_the_plain_forces_of_all_slices(play, seed):
     largest = np.abs(moved).max()
     shrunk = max(-ring.play, 0.0) * elastic.shrunk / elastic.pressed  # is in the mean growth
     assert np.abs(moved[::per_pitch] + shrunk - bending.rollers[ROLLER.moved]).max() <= 1e-4 * largest
+    waves = 1j * np.arange(points // 2 + 1) * np.fft.rfft(moved)
+    waves[-1] *= points % 2  # the finest wave has one phase, and no slope where its crests are
+    slopes = np.fft.irfft(waves, points)[::per_pitch]
+    assert np.abs(slopes - bending.rollers[ROLLER.slope]).max() <= 1e-4 * np.abs(slopes).max()
     yielding = (elastic.seat[np.abs(each[:, None] - each)] - elastic.between[np.abs(each[:, None] - each)]) @ seat
     wave = np.exp(1j * at)
     gap = ring.play + yielding + elastic.radial * np.real(np.conj(wave) * (seat @ wave)) - moved  # the seat stays where it is
