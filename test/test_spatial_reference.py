@@ -367,6 +367,24 @@ def test_the_ring_that_bends_follows_the_plain_forces_of_all_slices(play, seed):
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("crown", [CROWN, None])
+@BENT
+def test_the_speed_of_a_ring_that_bends_is_that_of_where_it_is(play, seed, crown):
+    ring = BentRing(play, seed, crown=crown)
+    by_roller(ring.state)[1] = ring.state[BORDER - 1] + 2 * math.pi * np.arange(ring.count) / ring.count
+    rate = ring.rate(ring.state)
+    rows = ring.run._work.bending.rollers
+    told, pressed, step = rows[ROLLER.rate].copy(), rows[ROLLER.force] > 10.0, 1e-7
+
+    def moved(time):
+        ring.rate(ring.state + time * rate)
+        return rows[ROLLER.moved].copy()
+
+    found = (moved(step) - moved(-step)) / (2 * step)
+    assert np.abs(found - told)[pressed].max() <= 1e-3 * np.abs(found[pressed]).max()
+
+
+@pytest.mark.long
 @BENT
 def test_a_ring_that_bends_keeps_the_books_of_level_spatial(play, seed):
     ring = BentRing(play, seed)
